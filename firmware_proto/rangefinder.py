@@ -1,0 +1,53 @@
+"""Messages of the laser rangefinder board: laser on and off, one shot."""
+
+import enum
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from firmware_proto.schema import REPLY, Message, u8, u16, u32, u64
+
+
+class ShotStatus(enum.IntEnum):
+    """What became of a shot."""
+
+    OK = 0
+    OVER_RANGE = 1
+    """Nothing came back from within the instrument's reach."""
+    TOO_NEAR = 2
+    WEAK = 3
+    SATURATED = 4
+    AMBIENT = 5
+    NOT_MEASURED = 6
+    """The instrument cannot see in this direction."""
+    LASER_OFF = 7
+    DEVICE_ERROR = 8
+
+
+@dataclass(frozen=True, slots=True)
+class SetLaser(Message):
+    """Switch the laser. Only in ``CONFIGURED`` and ``ARMED``; STOP and DISARM switch it off."""
+
+    TYPE: ClassVar[int] = 0x30
+    on: Annotated[int, u8("bool", "1 on, 0 off.")]
+
+
+@dataclass(frozen=True, slots=True)
+class Shoot(Message):
+    """Take one reading and answer with it."""
+
+    TYPE: ClassVar[int] = 0x31
+    timeout_ms: Annotated[int, u16("ms", "Longest time the measurement may take.")]
+
+
+@dataclass(frozen=True, slots=True)
+class Shot(Message):
+    """One reading along the beam."""
+
+    TYPE: ClassVar[int] = 0x31 | REPLY
+    board_us: Annotated[int, u64("us", "When the light was sent, the board's time.")]
+    range_mm: Annotated[int, u32("mm", "Distance along the beam; 0 unless the status is OK.")]
+    strength: Annotated[int, u16("", "Signal strength, as the instrument counts it.")]
+    status: Annotated[int, u8("ShotStatus", "What became of the shot.")]
+
+
+MESSAGES: tuple[type[Message], ...] = (SetLaser, Shoot, Shot)

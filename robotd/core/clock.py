@@ -1,0 +1,79 @@
+"""The one place that reads time.
+
+Everything in the daemon asks :func:`now_ns` and sleeps through asyncio, so a program that runs on
+:class:`VirtualClockLoop` runs on virtual time, whole and unmodified: when nothing is ready, the clock
+jumps to the next timer. Tests and replay use it; they never wait, and they are repeatable.
+"""
+
+import asyncio
+import selectors
+import time
+from collections.abc import Callable, Coroutine
+from typing import Any, TypeVar
+
+NS_PER_S = 1_000_000_000
+_STUCK_AFTER_S = 10.0
+
+T = TypeVar("T")
+
+
+def now_ns() -> int:
+    """Return the monotonic time of the running loop [ns], real or virtual."""
+    return round(asyncio.get_running_loop().time() * NS_PER_S)
+
+
+def wall_offset_ns() -> int:
+    """Return what to add to a monotonic time to get Unix time [ns], as of now."""
+    return time.time_ns() - time.monotonic_ns()
+
+
+class VirtualClockLoop(asyncio.SelectorEventLoop):
+    """An event loop whose clock jumps to the next timer as soon as nothing is ready.
+
+    Executor work is done at once, on this thread: it takes no virtual time and keeps its order.
+    """
+
+    def __init__(self, start_ns: int = 0) -> None:
+        self._now_ns = start_ns
+        super().__init__(_JumpingSelector(self._jump))
+
+    def time(self) -> float:
+        """Return the virtual time [s]."""
+        return self._now_ns / NS_PER_S
+
+    def _jump(self, by_s: float) -> None:
+        self._now_ns += max(1, round(by_s * NS_PER_S))
+
+    def run_in_executor(self, executor: Any, func: Callable[..., T], *args: Any) -> asyncio.Future[T]:  # type: ignore[override]  # typeshed has the loop's TypeVarTuple here
+        """Run ``func`` now and return its finished future."""
+        future: asyncio.Future[T] = self.create_future()
+        try:
+            future.set_result(func(*args))
+        except Exception as error:  # handed to the one who awaits
+            future.set_exception(error)
+        return future
+
+
+class _JumpingSelector(selectors.DefaultSelector):
+    """A selector that turns waiting into a jump of the clock."""
+
+    def __init__(self, jump: Callable[[float], None]) -> None:
+        super().__init__()
+        self._jump = jump
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        if timeout is None:
+            ready = super().select(_STUCK_AFTER_S)
+            if not ready:
+                raise RuntimeError("virtual time is stuck: no timer is set and no descriptor is ready")
+            return ready
+        ready = super().select(0)
+        if not ready and timeout > 0:
+            self._jump(timeout)
+        return ready
+
+
+def run_virtual(main: Coroutine[Any, Any, T], *, start_ns: int = 0) -> T:
+    """Run a coroutine to its end in virtual time and return its result."""
+    with asyncio.Runner(loop_factory=lambda: VirtualClockLoop(start_ns)) as runner:
+        return runner.run(main)

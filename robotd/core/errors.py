@@ -1,0 +1,95 @@
+"""Everything robotd raises on purpose.
+
+::
+
+    RobotdError
+    ├── ConfigError            a key of the configuration is unknown, missing or impossible
+    ├── TransportError         the port is gone, busy, or not what it should be
+    ├── ProtocolError
+    │   ├── LocalProtocolError     we misused the protocol
+    │   └── RemoteProtocolError    the board did, or it is not the board we expect
+    ├── LinkTimeout            the board did not answer in time
+    ├── DeviceError            the board answered that it will not, or reported a fault
+    ├── MissionError           the request cannot be done now; says why
+    ├── MapError               a stored map is missing or damaged; says what
+    ├── RecordingError         a recording is missing or damaged; says what and where
+    ├── ReplayMismatch         the same bytes gave another answer; says where
+    ├── ServerError            the server refused; carries its error code
+    └── RequestTimeout         the server did not answer in time
+
+Damaged bytes on a line are data: counted, and resynchronized. "No feasible pose" and "no path" are
+results with their evidence. Exceptions are for what a caller cannot foresee.
+"""
+
+
+class RobotdError(Exception):
+    """Base of everything robotd raises on purpose."""
+
+
+class ConfigError(RobotdError):
+    """A key of the configuration is unknown, missing, of the wrong type or impossible."""
+
+    def __init__(self, message: str, *, file: str = "", line: int | None = None, key: str = "") -> None:
+        where = ":".join(part for part in (file, "" if line is None else str(line)) if part)
+        super().__init__(": ".join(part for part in (where, key, message) if part))
+        self.file = file
+        self.line = line
+        self.key = key
+
+
+class TransportError(RobotdError):
+    """The port is gone, busy, or not what it should be."""
+
+
+class ProtocolError(RobotdError):
+    """The rules of the wire were broken."""
+
+
+class LocalProtocolError(ProtocolError):
+    """We misused the protocol."""
+
+
+class RemoteProtocolError(ProtocolError):
+    """The board broke the protocol, or it is not the board we expect."""
+
+
+class LinkTimeout(RobotdError):
+    """The board did not answer in time."""
+
+
+class DeviceError(RobotdError):
+    """The board answered that it will not, or reported a fault."""
+
+    def __init__(self, device: str, code: str, message: str = "") -> None:
+        super().__init__(f"{device}: {code}" + (f": {message}" if message else ""))
+        self.device = device
+        self.code = code
+
+
+class MissionError(RobotdError):
+    """The request cannot be done now; the message says why."""
+
+
+class MapError(RobotdError):
+    """A stored map is missing or damaged; the message says which part."""
+
+
+class RecordingError(RobotdError):
+    """A recording is missing or damaged; the message says what and where."""
+
+
+class ReplayMismatch(RobotdError):
+    """The same bytes gave another answer."""
+
+
+class ServerError(RobotdError):
+    """The server refused a request."""
+
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(f"{code}: {message}")
+        self.code = code
+        self.message = message
+
+
+class RequestTimeout(RobotdError):
+    """The server did not answer in time."""

@@ -1,0 +1,79 @@
+"""One laser measurement, and the 300 of them that are taken at a stop.
+
+The paper calls a measurement a *probe*, a vector with its tail at the robot and its head at an
+obstacle ([BrownDonald2000]_ sec. 2.2). Here it is a :class:`RangeReading`; 300 make a :class:`Sweep`.
+"""
+
+import enum
+import math
+from dataclasses import dataclass
+
+from robotd.core.pose import Pose2
+
+
+class ReadingStatus(enum.StrEnum):
+    """What became of one shot. Never a sentinel number in place of a range."""
+
+    OK = "ok"
+    MISS = "miss"
+    """Over-range: the beam met nothing up to the cut-off."""
+    TOO_NEAR = "too_near"
+    WEAK = "weak"
+    SATURATED = "saturated"
+    AMBIENT = "ambient"
+    NOT_MEASURED = "not_measured"
+    """The instrument cannot see in this direction."""
+    TIMEOUT = "timeout"
+    DEVICE_ERROR = "device_error"
+
+
+@dataclass(frozen=True, slots=True)
+class RangeReading:
+    """One horizontal range measurement, in the frame of the robot at its stop."""
+
+    time_ns: int
+    """When the light was sent, monotonic clock of this host [ns]."""
+    bearing_rad: float
+    """Direction of the beam in the robot frame, counter-clockwise from its heading."""
+    status: ReadingStatus
+    range_m: float | None
+    """Horizontal distance from ``(origin_x_m, origin_y_m)`` to the obstacle; for a miss, the
+    cut-off up to which nothing was met; None for every other status."""
+    strength: int | None = None
+    """Signal strength as the device counts it."""
+    origin_x_m: float = 0.0
+    """Where the beam starts, in the robot frame."""
+    origin_y_m: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse a reading whose range and status contradict each other."""
+        measured = self.status in {ReadingStatus.OK, ReadingStatus.MISS}
+        if measured != (self.range_m is not None):
+            raise ValueError(f"a {self.status} reading has range {self.range_m}")
+        if self.range_m is not None and not (math.isfinite(self.range_m) and self.range_m > 0.0):
+            raise ValueError(f"range must be finite and positive, got {self.range_m}")
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether the reading says something about the room: a hit or a miss."""
+        return self.range_m is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """The readings of one stop, evenly round the robot, all in the robot frame of ``in_odom``."""
+
+    number: int
+    """Counts the sweeps of this run of the daemon."""
+    in_odom: Pose2
+    """Where the robot stood, by odometry, when the sweep began."""
+    readings: tuple[RangeReading, ...]
+
+    def count(self, status: ReadingStatus) -> int:
+        """Return how many readings ended with this status."""
+        return sum(reading.status is status for reading in self.readings)
+
+    @property
+    def measured(self) -> tuple[RangeReading, ...]:
+        """The hits and misses, in order."""
+        return tuple(reading for reading in self.readings if reading.is_measured)

@@ -1,0 +1,1 @@
+"""From bytes on a serial line to metres and radians, and back."""

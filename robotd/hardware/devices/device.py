@@ -1,0 +1,67 @@
+"""What the mission may ask of any device, whatever dialect it speaks."""
+
+import enum
+from dataclasses import dataclass
+from typing import Protocol
+
+from robotd.core.broadcast import Broadcast
+
+
+class LinkState(enum.StrEnum):
+    """Whether there is a device to talk to. A missing device is a state, not an error."""
+
+    ABSENT = "absent"
+    CONNECTING = "connecting"
+    READY = "ready"
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceStatus:
+    """Health of one device, published whenever it changes."""
+
+    name: str
+    link: LinkState
+    armed: bool
+    faults: tuple[str, ...] = ()
+    """Latched faults, in lower case; empty when there is none."""
+    detail: str = ""
+    """One line for people: why the link is absent, what the fault said."""
+    counters: tuple[tuple[str, int], ...] = ()
+    """What was counted on the line since start: frames, CRC errors, retries, reconnects."""
+
+
+class Device(Protocol):
+    """The part that drive, pan/tilt and rangefinder share."""
+
+    @property
+    def name(self) -> str:
+        """``drive``, ``pantilt`` or ``rangefinder``."""
+
+    @property
+    def status(self) -> DeviceStatus:
+        """Its health now."""
+
+    @property
+    def status_changes(self) -> Broadcast[DeviceStatus]:
+        """Its health, whenever it changes."""
+
+    async def run(self) -> None:
+        """Own the link until cancelled: connect, serve, reconnect with back-off, never arm by itself."""
+
+    async def arm(self) -> None:
+        """Allow motion.
+
+        Raises:
+            DeviceError: the device will not, for example because a fault is latched.
+            LinkTimeout: no answer.
+            TransportError: the device is absent.
+        """
+
+    async def disarm(self) -> None:
+        """Stop and forbid motion; same errors as :meth:`arm`."""
+
+    async def clear_faults(self) -> None:
+        """Acknowledge latched faults; leaves the device disarmed; same errors as :meth:`arm`."""
+
+    def stop_now(self) -> None:
+        """Put the preformatted stop on the wire ahead of everything else; never blocks, never raises."""

@@ -1,0 +1,37 @@
+"""The synchro-drive base, in SI units."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from robotd.core.broadcast import Broadcast
+from robotd.core.pose import Odometry, Twist2
+from robotd.hardware.devices.device import Device
+
+
+@dataclass(frozen=True, slots=True)
+class DriveReadout:
+    """Battery and bumpers."""
+
+    time_ns: int
+    battery_v: float
+    bumpers_rad: tuple[float, ...]
+    """Directions of the pressed bumpers in the robot frame."""
+
+
+class Drive(Device, Protocol):
+    """A base that translates along its heading and rotates on the spot."""
+
+    @property
+    def odometry(self) -> Broadcast[Odometry]:
+        """Wheel-derived pose, periodic. Restarts at the origin of ``odom`` with the daemon, not with the board."""
+
+    @property
+    def readouts(self) -> Broadcast[DriveReadout]:
+        """Battery and bumpers, periodic and on change."""
+
+    def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
+        """Send a set-point that the base may follow for ``ttl_s``; the newest wins, none is resent.
+
+        Raises:
+            TransportError: the device is absent.
+        """

@@ -1,0 +1,43 @@
+"""The pan/tilt unit, in SI units."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from robotd.hardware.devices.device import Device
+
+
+@dataclass(frozen=True, slots=True)
+class PanTiltLimits:
+    """How far the head turns. A pan range of a full turn or more needs no turn of the base."""
+
+    pan_min_rad: float
+    pan_max_rad: float
+    tilt_min_rad: float
+    tilt_max_rad: float
+
+
+@dataclass(frozen=True, slots=True)
+class AimReadback:
+    """Where the head points, as measured."""
+
+    time_ns: int
+    pan_rad: float
+    """Counter-clockwise from the robot's heading (pan zero applied)."""
+    tilt_rad: float
+    """Up from level."""
+
+
+class PanTilt(Device, Protocol):
+    """A head that turns to a setpoint and says where it came to rest."""
+
+    async def limits(self) -> PanTiltLimits:
+        """Return the mechanical limits, in the robot frame (pan zero applied)."""
+
+    async def aim(self, pan_rad: float, tilt_rad: float, *, timeout_s: float) -> AimReadback:
+        """Turn the head and return where it came to rest.
+
+        Raises:
+            DeviceError: outside the limits, not armed, or a fault.
+            LinkTimeout: still turning, or silent, after ``timeout_s``; the head was told to halt.
+            TransportError: the device is absent.
+        """

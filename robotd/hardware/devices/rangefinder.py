@@ -1,0 +1,32 @@
+"""The laser rangefinder, in SI units."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from robotd.core.reading import ReadingStatus
+from robotd.hardware.devices.device import Device
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """One measurement along the beam, before it is laid into the robot frame."""
+
+    time_ns: int
+    status: ReadingStatus
+    range_m: float | None
+    """Distance along the beam, range bias applied; None unless the status is ``ok``."""
+    strength: int | None
+
+
+class Rangefinder(Device, Protocol):
+    """A point-and-shoot laser."""
+
+    async def switch_laser(self, *, on: bool) -> None:
+        """Switch the light; same errors as :meth:`Device.arm`."""
+
+    async def shoot(self, *, timeout_s: float) -> Shot:
+        """Take one reading. A reading that failed is a result, with its status.
+
+        Raises:
+            TransportError: the device is absent.
+        """

@@ -1,0 +1,1 @@
+"""A conversation over a transport: requests, retries, clock, reconnecting, and the tap."""

@@ -1,0 +1,1 @@
+"""Bytes only: serial port, pseudo-terminal, TCP, memory."""

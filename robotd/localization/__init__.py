@@ -1,0 +1,1 @@
+"""Where is the robot? The feasible poses of Brown & Donald, rasterized."""

@@ -1,0 +1,30 @@
+"""Array work, away from the event loop."""
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Protocol, TypeVar
+
+T = TypeVar("T")
+
+
+class Compute(Protocol):
+    """Somebody who runs a function off the loop and hands back its result."""
+
+    async def run(self, name: str, function: Callable[..., T], *args: object) -> T:
+        """Return ``function(*args)``; ``name`` says what it is for in logs and recordings."""
+
+
+class ThreadCompute:
+    """One worker thread: the order of jobs is the order of their results."""
+
+    def __init__(self) -> None:
+        self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="compute")
+
+    async def run(self, name: str, function: Callable[..., T], *args: object) -> T:
+        """Return ``function(*args)``, computed on the worker thread."""
+        return await asyncio.get_running_loop().run_in_executor(self._executor, function, *args)
+
+    def close(self) -> None:
+        """Wait for the job under way and end the thread."""
+        self._executor.shutdown()

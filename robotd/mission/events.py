@@ -1,0 +1,104 @@
+"""What the mission tells the world, as it happens."""
+
+import enum
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.pose import Odometry
+from robotd.core.reading import Sweep
+from robotd.grid.spec import GridSpec
+from robotd.hardware.devices.device import DeviceStatus
+from robotd.localization.estimate import PoseEstimate
+from robotd.mission.modes import Mode
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """The whole robot in one look; published on every change and once a second."""
+
+    time_ns: int
+    mode: Mode
+    reason: str
+    """Why it is in this mode, for people."""
+    devices: tuple[DeviceStatus, ...]
+    battery_v: float | None
+    bumpers_rad: tuple[float, ...]
+    mission_id: int | None
+    map_id: str | None
+    map_name: str | None
+    recording: str | None
+    """File being recorded to."""
+
+
+@dataclass(frozen=True, slots=True)
+class SweepProgress:
+    """How far a sweep has come."""
+
+    time_ns: int
+    number: int
+    taken: int
+    total: int
+    hits: int
+    misses: int
+    rejected: int
+
+
+@dataclass(frozen=True, slots=True)
+class SweepDone:
+    """A whole sweep: the record of one stop."""
+
+    time_ns: int
+    sweep: Sweep
+
+
+class MissionPhase(enum.StrEnum):
+    """What a mission is at."""
+
+    STARTED = "started"
+    DRIVING = "driving"
+    SWEEPING = "sweeping"
+    COMPUTING = "computing"
+    DONE = "done"
+    STOPPED = "stopped"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, slots=True)
+class MissionProgress:
+    """A step of a mission; the last one has phase ``done``, ``stopped`` or ``failed``."""
+
+    time_ns: int
+    mission_id: int
+    kind: str
+    """``map``, ``localize`` or ``drive``."""
+    phase: MissionPhase
+    stop: int
+    """Which stop, from 0."""
+    stops: int
+    message: str = ""
+
+    @property
+    def is_last(self) -> bool:
+        """Whether the mission ended with this."""
+        return self.phase in {MissionPhase.DONE, MissionPhase.STOPPED, MissionPhase.FAILED}
+
+
+@dataclass(frozen=True, slots=True)
+class MapChanged:
+    """Cells that changed in the map in use, or all of them."""
+
+    time_ns: int
+    map_id: str
+    generation: int
+    """Counts the changes of this map: a reader that missed one asks for the whole."""
+    spec: GridSpec
+    whole: bool
+    cells: NDArray[np.intp]
+    """Changed cells as flat indices ``row * cols + col``, ``intp[n]``; empty when ``whole``."""
+    values: NDArray[np.uint8]
+    """Their values ``uint8[n]``, or the whole grid ``uint8[rows, cols]``."""
+
+
+Event = Odometry | PoseEstimate | Status | SweepProgress | SweepDone | MissionProgress | MapChanged

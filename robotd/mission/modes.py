@@ -1,0 +1,59 @@
+"""The supervisor's modes as a table.
+
+Theory of operation: everything that changes the mode is an :class:`Occasion`; the table says where it
+leads; what the table does not name is refused, and nothing else in the daemon assigns a mode. Two
+occasions are never refused: ``STOP`` and ``DEVICE_LOST`` lead to ``DISARMED`` from everywhere, and
+``FAULT`` leads to ``FAULT`` from everywhere. There is no way from ``DISARMED`` to motion that does not
+pass through an explicit ``ARM``, and none out of ``FAULT`` but ``CLEAR``.
+"""
+
+import enum
+
+
+class Mode(enum.StrEnum):
+    """What the robot is allowed to do."""
+
+    DISARMED = "disarmed"
+    IDLE = "idle"
+    MAPPING = "mapping"
+    LOCALIZING = "localizing"
+    DRIVING = "driving"
+    FAULT = "fault"
+
+
+class Occasion(enum.StrEnum):
+    """What can change the mode."""
+
+    ARM = "arm"
+    START_MAPPING = "start_mapping"
+    START_LOCALIZING = "start_localizing"
+    START_DRIVING = "start_driving"
+    FINISH = "finish"
+    STOP = "stop"
+    DEVICE_LOST = "device_lost"
+    FAULT = "fault"
+    CLEAR = "clear"
+
+
+_BUSY = (Mode.MAPPING, Mode.LOCALIZING, Mode.DRIVING)
+
+TRANSITIONS: dict[tuple[Mode, Occasion], Mode] = {
+    (Mode.DISARMED, Occasion.ARM): Mode.IDLE,
+    (Mode.IDLE, Occasion.ARM): Mode.IDLE,
+    (Mode.IDLE, Occasion.START_MAPPING): Mode.MAPPING,
+    (Mode.IDLE, Occasion.START_LOCALIZING): Mode.LOCALIZING,
+    (Mode.IDLE, Occasion.START_DRIVING): Mode.DRIVING,
+    **{(mode, Occasion.FINISH): Mode.IDLE for mode in _BUSY},
+    **{(mode, Occasion.STOP): Mode.DISARMED for mode in Mode if mode is not Mode.FAULT},
+    (Mode.FAULT, Occasion.STOP): Mode.FAULT,
+    **{(mode, Occasion.DEVICE_LOST): Mode.DISARMED for mode in Mode if mode is not Mode.FAULT},
+    (Mode.FAULT, Occasion.DEVICE_LOST): Mode.FAULT,
+    **{(mode, Occasion.FAULT): Mode.FAULT for mode in Mode},
+    (Mode.FAULT, Occasion.CLEAR): Mode.DISARMED,
+    (Mode.DISARMED, Occasion.CLEAR): Mode.DISARMED,
+}
+
+
+def next_mode(mode: Mode, occasion: Occasion) -> Mode | None:
+    """Return where an occasion leads, or None if it is refused in this mode."""
+    return TRANSITIONS.get((mode, occasion))

@@ -1,0 +1,47 @@
+"""What a client can ask the robot to do."""
+
+import enum
+from dataclasses import dataclass
+
+from robotd.core.pose import IDENTITY, Pose2
+
+
+class Legs(enum.StrEnum):
+    """How to get from one stop to the next."""
+
+    PLANNED = "planned"
+    """Round the obstacles on the map so far."""
+    STRAIGHT = "straight"
+    """In a straight line, as somebody knows it to be free."""
+
+
+@dataclass(frozen=True, slots=True)
+class MapMission:
+    """Make a new map, stop by stop."""
+
+    name: str
+    stops_m: tuple[tuple[float, float], ...]
+    """Where to stop after the start, ``(x, y)`` in the map frame. The start is always the first stop."""
+    start: Pose2 = IDENTITY
+    """Where the robot stands now: it defines the map frame."""
+    legs: Legs = Legs.PLANNED
+
+
+@dataclass(frozen=True, slots=True)
+class LocalizeMission:
+    """Sweep at the present stop and say where it is on the map in use."""
+
+    heading_rad: float | None = None
+    """The robot's heading in the map frame, if the client knows better than odometry."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveMission:
+    """Drive to a place on the map in use."""
+
+    x_m: float
+    y_m: float
+    legs: Legs = Legs.PLANNED
+
+
+Mission = MapMission | LocalizeMission | DriveMission

@@ -1,0 +1,1 @@
+"""How to get there: grown obstacles, flood-fill distance, descent, legs."""

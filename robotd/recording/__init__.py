@@ -1,0 +1,1 @@
+"""Every byte of the serial lines, to MCAP and back."""

@@ -1,0 +1,1 @@
+"""Commands and state over ZeroMQ, and the client for both."""

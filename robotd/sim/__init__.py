@@ -1,0 +1,1 @@
+"""A robot that is not there: world, body, boards that speak the real protocol."""

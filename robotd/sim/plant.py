@@ -1,0 +1,85 @@
+"""What an emulated board has under it: the physics, simulated or recorded.
+
+Boards speak the protocol and know no physics; plants are physics and know no protocol. All times are the
+board's own, in microseconds, and only ever grow.
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from firmware_proto.rangefinder import ShotStatus
+
+
+class DrivePlant(Protocol):
+    """A synchro-drive base."""
+
+    def advance(self, to_us: int) -> None:
+        """Let time pass."""
+
+    def command(self, speed_mps: float, turn_radps: float) -> None:
+        """Ramp towards these velocities."""
+
+    def cut(self) -> None:
+        """Cut the motors: no ramp."""
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Translation and rotation encoder, unwrapped."""
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """Measured translation [m/s] and rotation [rad/s]."""
+
+    @property
+    def bumpers(self) -> int:
+        """Pressed bumpers, bit i at i * 22.5 degrees counter-clockwise of the heading."""
+
+    @property
+    def battery_mv(self) -> int:
+        """Battery voltage [mV]."""
+
+
+class HeadPlant(Protocol):
+    """A pan/tilt head."""
+
+    limits_rad: tuple[float, float, float, float]
+    """Pan min, pan max, tilt min, tilt max."""
+
+    def advance(self, to_us: int) -> None:
+        """Let time pass."""
+
+    def aim(self, pan_rad: float, tilt_rad: float) -> None:
+        """Start turning there; inside the limits."""
+
+    def halt(self) -> None:
+        """Stop turning where it is."""
+
+    @property
+    def angles_rad(self) -> tuple[float, float]:
+        """Measured pan and tilt."""
+
+    @property
+    def arrives_us(self) -> int | None:
+        """When the motion under way will be done; None at rest."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShotAnswer:
+    """What the instrument gives for one shot."""
+
+    status: ShotStatus
+    range_m: float
+    """Along the beam; 0.0 unless the status is OK."""
+    strength: int
+    takes_us: int
+    """How long the measurement lasts before the board can answer."""
+
+
+class LaserPlant(Protocol):
+    """A laser rangefinder on the head."""
+
+    def switch(self, *, on: bool) -> None:
+        """Switch the light."""
+
+    def shoot(self, at_us: int) -> ShotAnswer:
+        """Measure along the beam as the head points at that moment."""

@@ -1,0 +1,71 @@
+"""Rules that hold for every test: virtual time, no leaked task, no leaked descriptor."""
+
+import asyncio
+import gc
+import inspect
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robotd.core.clock import VirtualClockLoop
+
+DATA_DIR = Path(os.environ.get("ROBOTD_DATA", Path(__file__).parents[2] / "shared" / "data"))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
+    """Run ``async def`` tests on a virtual clock, or on the real one if marked ``real_clock``."""
+    if not inspect.iscoroutinefunction(pyfuncitem.obj):
+        return None
+    factory = None if pyfuncitem.get_closest_marker("real_clock") else VirtualClockLoop
+    wanted = inspect.signature(pyfuncitem.obj).parameters
+    arguments = {name: value for name, value in pyfuncitem.funcargs.items() if name in wanted}
+    with asyncio.Runner(loop_factory=factory) as runner:
+        runner.run(_without_leaked_tasks(pyfuncitem.obj, arguments))
+    return True
+
+
+async def _without_leaked_tasks(test: Any, arguments: dict[str, Any]) -> None:
+    await test(**arguments)
+    for _ in range(3):  # cancelled tasks need a turn or two to end
+        await asyncio.sleep(0)
+    leaked = [task for task in asyncio.all_tasks() if task is not asyncio.current_task() and not task.done()]
+    if leaked:
+        pytest.fail("tasks left running: " + ", ".join(str(task.get_coro()) for task in leaked))
+
+
+@pytest.fixture(autouse=True)
+def _no_leaked_descriptors(request: pytest.FixtureRequest) -> Iterator[None]:
+    if request.node.get_closest_marker("shares_descriptors"):
+        yield
+        return
+    before = _open_descriptors()
+    yield
+    if _open_descriptors() - before:
+        gc.collect()  # reference cycles may still hold what the test let go
+    leaked = dict(_open_descriptors() - before)
+    if leaked:
+        pytest.fail(f"descriptors left open: {leaked}")
+
+
+def _open_descriptors() -> set[tuple[str, str]]:
+    found = set()
+    for link in Path("/proc/self/fd").iterdir():
+        try:
+            target = str(link.readlink())
+        except OSError:
+            continue
+        if target.startswith(("/dev/pts", "/dev/ptmx", "socket:", "pipe:", "/tmp", "anon_inode:[event")):
+            found.add((link.name, target))
+    return found
+
+
+@pytest.fixture(scope="session")
+def laser_data() -> Path:
+    """The folder of recorded laser logs; the test is skipped, saying so, where there is none."""
+    if not (DATA_DIR / "intel").is_dir():
+        pytest.skip(f"no recorded laser logs at {DATA_DIR}: set ROBOTD_DATA to the folder that holds intel/ and fr079/")
+    return DATA_DIR
