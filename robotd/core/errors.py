@@ -4,6 +4,7 @@
 
     RobotdError
     ├── ConfigError            a key of the configuration is unknown, missing or impossible
+    │   └── ConfigErrors           all that is wrong with one configuration
     ├── TransportError         the port is gone, busy, or not what it should be
     ├── ProtocolError
     │   ├── LocalProtocolError     we misused the protocol
@@ -35,6 +36,17 @@ class ConfigError(RobotdError):
         self.file = file
         self.line = line
         self.key = key
+        self.problems: tuple[ConfigError, ...] = (self,)
+        """Everything that is wrong, one line each."""
+
+
+class ConfigErrors(ConfigError):
+    """All that is wrong with one configuration; its text has a line for each problem."""
+
+    def __init__(self, problems: tuple[ConfigError, ...]) -> None:
+        super().__init__("\n".join(map(str, problems)), key="")
+        self.file, self.line = problems[0].file, problems[0].line
+        self.problems = problems
 
 
 class TransportError(RobotdError):

@@ -1,0 +1,1 @@
+"""The configuration: TOML in, a frozen typed tree out, and every mistake named with its line."""

@@ -1,0 +1,188 @@
+"""From TOML values to frozen dataclasses, whatever they are; every problem is found, not only the first.
+
+A dataclass is a table, its fields are the keys. Field types are bool, int, float, str, an enum, ``T | None``,
+``tuple[T, ...]``, ``tuple[A, B]`` and further dataclasses. A ``ValueError`` of ``__post_init__`` that begins
+with, or mentions, the name of a field is laid at that key's door.
+"""
+
+import contextlib
+import dataclasses
+import enum
+import math
+import re
+import types
+import typing
+from typing import Any, Generic, TypeVar, cast
+
+from robotd.config.lines import KeyPath
+from robotd.config.problems import Problems, did_you_mean, unknown_name
+
+T = TypeVar("T")
+Table = dict[str, Any]
+
+_NAMES = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
+_EXPECTED = {bool: "true or false", int: "a whole number", float: "a number", str: "a string"}
+
+
+class Bad(Exception):  # a signal between the readers, never an error that leaves them
+    """A value that could not be read; what is wrong with it is among the problems."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Shape(Generic[T]):
+    """The keys of a table."""
+
+    kind: type[T]
+    types: dict[str, Any]
+    required: set[str]
+
+    @classmethod
+    def of(cls, kind: type[T]) -> "_Shape[T]":
+        fields = dataclasses.fields(cast("Any", kind))
+        hints = typing.get_type_hints(kind)
+        required = {
+            item.name
+            for item in fields
+            if item.default is dataclasses.MISSING and item.default_factory is dataclasses.MISSING
+        }
+        return cls(kind, {item.name: hints[item.name] for item in fields}, required)
+
+
+def read_table(kind: type[T], table: Table, path: KeyPath, problems: Problems) -> T:
+    """Return the dataclass ``kind`` filled from a table.
+
+    Raises:
+        Bad: it cannot be made; why, and all else that is wrong with the table, was added to ``problems``.
+    """
+    before = len(problems.found)
+    shape = _Shape.of(kind)
+    values = _read_known(shape, table, path, problems)
+    for name in table.keys() - shape.types.keys():
+        problems.add((*path, name), unknown_name("key" if path else "section", name, shape.types))
+    broken = table.keys() - values.keys()
+    made = None if shape.required - values.keys() else _construct(shape, values, broken, path, problems)
+    if made is None or len(problems.found) > before:
+        raise Bad
+    return made
+
+
+def _read_known(shape: _Shape[T], table: Table, path: KeyPath, problems: Problems) -> Table:
+    """Return the values that could be read; a required table that the text leaves out is read as an empty one."""
+    values: Table = {}
+    for name, kind in shape.types.items():
+        if name not in table and name not in shape.required:
+            continue
+        if name not in table and not dataclasses.is_dataclass(kind):
+            problems.add((*path, name), "required key is missing")
+            continue
+        with contextlib.suppress(Bad):
+            values[name] = read_value(kind, table.get(name, {}), (*path, name), problems)
+    return values
+
+
+def _construct(shape: _Shape[T], values: Table, broken: set[str], path: KeyPath, problems: Problems) -> T | None:
+    """Return the object, or None after reporting every impossible value.
+
+    A value refused is put back to its default and the rest is tried again: so one mistake does not hide
+    the next. A complaint that speaks of a value already known to be ``broken`` is not repeated.
+    """
+    while True:
+        try:
+            return shape.kind(**values)
+        except ValueError as error:
+            message = str(error)
+        names = [name for name in _NAMES.findall(message) if name.split(".")[0] in shape.types]
+        roots = [name.split(".")[0] for name in names]
+        if broken.intersection(roots):
+            return None
+        _blame(message, names, path, problems)
+        culprit = next((root for root in roots if root in values), None)
+        if culprit is None or culprit in shape.required:
+            return None
+        del values[culprit]
+        broken.add(culprit)
+
+
+def _blame(message: str, names: list[str], path: KeyPath, problems: Problems) -> None:
+    """Report a refusal at the first key it mentions that the text sets."""
+    paths = [(*path, *name.split(".")) for name in names]
+    set_here = [candidate for candidate in paths if candidate in problems.lines]
+    key = (set_here or paths or [path])[0]
+    if names and message.startswith(f"{names[0]} ") and key == paths[0]:
+        message = message.removeprefix(f"{names[0]} ")
+    problems.add(key, message)
+
+
+def read_value(kind: Any, value: object, path: KeyPath, problems: Problems) -> Any:
+    """Return a TOML value as ``kind``.
+
+    Raises:
+        Bad: it is not one; why was added to ``problems``.
+    """
+    if dataclasses.is_dataclass(kind):
+        if not isinstance(value, dict):
+            raise _bad(path, problems, f"expected a table, got {_describe(value)}")
+        return read_table(cast("type[Any]", kind), value, path, problems)
+    if isinstance(kind, types.UnionType) or typing.get_origin(kind) is typing.Union:
+        [inner] = [option for option in typing.get_args(kind) if option is not types.NoneType]
+        return read_value(inner, value, path, problems)
+    if typing.get_origin(kind) is tuple:
+        return _read_tuple(typing.get_args(kind), value, path, problems)
+    if issubclass(kind, enum.Enum):
+        return _read_enum(kind, value, path, problems)
+    return _read_plain(kind, value, path, problems)
+
+
+def _read_tuple(kinds: tuple[Any, ...], value: object, path: KeyPath, problems: Problems) -> tuple[Any, ...]:
+    if not isinstance(value, list):
+        raise _bad(path, problems, f"expected a list, got {_describe(value)}")
+    if kinds[-1] is Ellipsis:
+        kinds = (kinds[0],) * len(value)
+    if len(kinds) != len(value):
+        raise _bad(path, problems, f"expected a list of {len(kinds)}, got {len(value)}")
+    items: list[Any] = []
+    for index, (kind, item) in enumerate(zip(kinds, value, strict=True)):
+        with contextlib.suppress(Bad):
+            items.append(read_value(kind, item, (*path[:-1], f"{path[-1]}[{index}]"), problems))
+    if len(items) < len(value):
+        raise Bad
+    return tuple(items)
+
+
+def _read_enum(kind: type[enum.Enum], value: object, path: KeyPath, problems: Problems) -> enum.Enum:
+    by_value = {member.value: member for member in kind}
+    if isinstance(value, str) and value in by_value:
+        return by_value[value]
+    shown = f'"{value}"{did_you_mean(value, by_value)}' if isinstance(value, str) else _describe(value)
+    raise _bad(path, problems, f"expected one of {', '.join(by_value)}; got {shown}")
+
+
+def _read_plain(kind: type[Any], value: object, path: KeyPath, problems: Problems) -> Any:
+    if kind is float and type(value) is int:
+        value = float(value)
+    if type(value) is not kind:
+        raise _bad(path, problems, f"expected {_EXPECTED[kind]}, got {_describe(value)}")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise _bad(path, problems, f"must be finite, got {value}")
+    return value
+
+
+def _bad(path: KeyPath, problems: Problems, message: str) -> Bad:
+    problems.add(path, message)
+    return Bad()
+
+
+def _describe(value: object) -> str:
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case str():
+            return "a string"
+        case int() | float():
+            return f"the number {value}"
+        case list():
+            return "a list"
+        case dict():
+            return "a table"
+        case _:
+            return "a date or time"

@@ -1,0 +1,39 @@
+"""From the text of a TOML file to settings of any kind, or to all that is wrong with it."""
+
+import re
+import tomllib
+from typing import TypeVar
+
+from robotd.config.lines import key_lines
+from robotd.config.problems import Problems
+from robotd.config.reader import Bad, read_table
+from robotd.core.errors import ConfigError, ConfigErrors
+
+T = TypeVar("T")
+
+_PLACE = re.compile(r" \((?:at line (?P<line>\d+), column \d+|at end of document)\)$")
+
+
+def read_text(kind: type[T], text: str, file: str) -> T:
+    """Return the dataclass ``kind`` as a TOML text describes it; ``file`` names the text in complaints.
+
+    Raises:
+        ConfigErrors: all that is wrong with it, one problem each with file, line and key.
+        ConfigError: it is not TOML; only the first mistake can be named.
+    """
+    try:
+        table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise _not_toml(str(error), text, file) from None
+    problems = Problems(file, key_lines(text))
+    try:
+        return read_table(kind, table, (), problems)
+    except Bad:
+        raise ConfigErrors(problems.sorted()) from None
+
+
+def _not_toml(message: str, text: str, file: str) -> ConfigError:
+    place = _PLACE.search(message)
+    line = int(place["line"]) if place and place["line"] else max(1, len(text.splitlines()))
+    what = _PLACE.sub("", message)
+    return ConfigError(f"not TOML: {what[:1].lower()}{what[1:]}", file=file, line=line)
