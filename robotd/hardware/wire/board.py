@@ -1,0 +1,108 @@
+"""The dialect of our own boards, the host's side: bytes in, messages out. No loop, no clock.
+
+Normative: ``firmware_proto/PROTOCOL.md``.
+"""
+
+import struct
+from dataclasses import dataclass
+
+from firmware_proto.common import BoardKind, HelloReply, Kill, Stop
+from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START, answers_for
+from firmware_proto.framing import Deframer, RawFrame, encode_frame
+from firmware_proto.schema import Message, payload_size
+from robotd.core.errors import LocalProtocolError
+
+EMERGENCY_SEQ = 0xFFFF
+"""``seq`` of the preformatted frames, so that their answers are not taken for those of a session's request."""
+
+STOP_BYTES = encode_frame(RawFrame(Stop.TYPE, EMERGENCY_SEQ, b""))
+KILL_BYTES = encode_frame(RawFrame(Kill.TYPE, EMERGENCY_SEQ, b""))
+
+_SEQ_SPAN = 1 << 16
+
+
+@dataclass(frozen=True, slots=True)
+class Received:
+    """A message from a board."""
+
+    type: int
+    """As on the wire: tells which request an ``Ack`` answers (its type | 0x80)."""
+    seq: int
+    """The request's, in a reply; the counter of its type, in telemetry."""
+    message: Message
+
+
+@dataclass(frozen=True, slots=True)
+class WireCounters:
+    """What came over the line so far."""
+
+    frames: int
+    """Frames with a right checksum."""
+    crc_errors: int
+    cobs_errors: int
+    length_errors: int
+    """No frame at all, or the wrong size for its type."""
+    unknown_types: int
+    telemetry_gaps: int
+    """Telemetry frames that never arrived."""
+
+
+class BoardWire:
+    """Reads and writes the bytes of one line to a board of one kind."""
+
+    def __init__(self, kind: BoardKind) -> None:
+        self._layouts = {code: (message, payload_size(message)) for code, message in answers_for(kind).items()}
+        self._telemetry = [code for code in self._layouts if TELEMETRY_START <= code < TELEMETRY_END]
+        self._deframer = Deframer()
+        self._expected: dict[int, int] = {}
+        self._wrong_sizes = 0
+        self._unknown_types = 0
+        self._gaps = 0
+
+    @property
+    def counters(self) -> WireCounters:
+        """What came over the line so far."""
+        return WireCounters(
+            self._deframer.frames,
+            self._deframer.crc_errors,
+            self._deframer.cobs_errors,
+            self._deframer.length_errors + self._wrong_sizes,
+            self._unknown_types,
+            self._gaps,
+        )
+
+    def encode(self, message: Message, seq: int) -> bytes:
+        """Return the bytes of a request; ``seq`` counts modulo 65536.
+
+        Raises:
+            LocalProtocolError: a value does not fit its field.
+        """
+        try:
+            return encode_frame(RawFrame(message.TYPE, seq % _SEQ_SPAN, message.to_payload()))
+        except struct.error as error:
+            raise LocalProtocolError(f"{message} does not fit the wire: {error}") from error
+
+    def feed(self, data: bytes) -> list[Received]:
+        """Take bytes as they come and return the messages that they complete; damage is only counted."""
+        received = (self._received(frame) for frame in self._deframer.feed(data))
+        return [one for one in received if one is not None]
+
+    def _received(self, frame: RawFrame) -> Received | None:
+        if frame.type not in self._layouts:
+            self._unknown_types += 1
+            return None
+        message, size = self._layouts[frame.type]
+        if len(frame.payload) != size:
+            self._wrong_sizes += 1
+            return None
+        if message is HelloReply:
+            self._expected = dict.fromkeys(self._telemetry, 0)
+        if frame.type in self._telemetry:
+            self._count_gap(frame)
+        return Received(frame.type, frame.seq, message.from_payload(frame.payload))
+
+    def _count_gap(self, frame: RawFrame) -> None:
+        gap = (frame.seq - self._expected.get(frame.type, frame.seq)) % _SEQ_SPAN
+        if gap < _SEQ_SPAN // 2:  # otherwise the counter went back: a repeat or a restart, nothing is lost
+            self._gaps += gap
+        self._expected[frame.type] = frame.seq + 1
