@@ -1,0 +1,40 @@
+"""From the address in the configuration to a line."""
+
+import urllib.parse
+
+from robotd.core.errors import ConfigError
+from robotd.hardware.transport.descriptor import DescriptorTransport
+from robotd.hardware.transport.serial_port import open_serial
+from robotd.hardware.transport.tcp import open_tcp
+from robotd.hardware.transport.transport import Connect
+
+
+def connector(address: str, baud: int) -> Connect:
+    """Return what opens the line at an address; a name under ``/dev`` is resolved anew each time.
+
+    Args:
+        address: ``/dev/serial/by-id/...`` or another absolute path, or ``tcp://host:port``.
+        baud: speed of a serial line; TCP has none.
+
+    Raises:
+        ConfigError: the address is neither.
+    """
+    if address.startswith("/"):
+        return lambda: open_serial(address, baud)
+    host, port = _host_and_port(address)
+
+    async def connect() -> DescriptorTransport:
+        return await open_tcp(host, port)
+
+    return connect
+
+
+def _host_and_port(address: str) -> tuple[str, int]:
+    parts = urllib.parse.urlsplit(address)
+    try:
+        port = parts.port
+    except ValueError:
+        port = None
+    if parts.scheme != "tcp" or not parts.hostname or not port or parts.path:
+        raise ConfigError(f"expected a device path or tcp://host:port, got {address!r}")
+    return parts.hostname, port

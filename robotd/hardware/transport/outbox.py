@@ -1,0 +1,44 @@
+"""Bytes that wait to be written: bounded, with a lane for those that cannot wait."""
+
+from robotd.core.errors import TransportError
+
+OUTBOX_LIMIT_BYTES = 64 * 1024
+
+
+class Outbox:
+    """Two queues; the urgent one goes first and has no bound, as only a stop travels in it."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._urgent = bytearray()
+        self._waiting = bytearray()
+
+    def __len__(self) -> int:
+        return len(self._urgent) + len(self._waiting)
+
+    def put(self, data: bytes) -> None:
+        """Queue bytes, all or none.
+
+        Raises:
+            TransportError: they would exceed ``OUTBOX_LIMIT_BYTES``.
+        """
+        if len(self._waiting) + len(data) > OUTBOX_LIMIT_BYTES:
+            raise TransportError(f"{self._name}: {len(self._waiting)} bytes wait to be written, the line is stuck")
+        self._waiting += data
+
+    def put_urgent(self, data: bytes) -> None:
+        """Queue bytes ahead of all others that wait, behind earlier urgent ones."""
+        self._urgent += data
+
+    def head(self) -> bytes:
+        """Return the bytes to write next."""
+        return bytes(self._urgent or self._waiting)
+
+    def drop(self, count: int) -> None:
+        """Forget the first ``count`` bytes of :meth:`head`: they are written."""
+        del (self._urgent or self._waiting)[:count]
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._urgent.clear()
+        self._waiting.clear()
