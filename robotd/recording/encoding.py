@@ -1,0 +1,94 @@
+"""Entries as messages of an MCAP file, and back.
+
+One channel per device and direction carries the raw bytes; everything else is JSON. The channel's name
+says what a message is, its ``log_time`` is the monotonic time, and its ``sequence`` counts all messages
+of the file, so that a lost chunk shows.
+"""
+
+import json
+from dataclasses import asdict
+from typing import Any
+
+from robotd.core.errors import RecordingError
+from robotd.hardware.link.tap import Direction
+from robotd.recording.entries import (
+    BytesEntry,
+    CommandEntry,
+    ComputedEntry,
+    Entry,
+    LineEntry,
+    RecordingHeader,
+    ResultEntry,
+)
+
+PROFILE = "robotd"
+HEADER_TOPIC = "header"
+_SERIAL = "serial"
+_LINE = "line"
+_JSON_ENTRIES: dict[str, type[CommandEntry | ComputedEntry | ResultEntry]] = {
+    "command": CommandEntry,
+    "computed": ComputedEntry,
+    "result": ResultEntry,
+}
+_TOPICS = {entry: topic for topic, entry in _JSON_ENTRIES.items()}
+
+
+def encode_header(header: RecordingHeader) -> bytes:
+    """Return the first message of a recording."""
+    return _dumps(asdict(header))
+
+
+def decode_header(data: bytes) -> RecordingHeader:
+    """Return the header of a recording.
+
+    Raises:
+        RecordingError: the message is not one of ours.
+    """
+    try:
+        return RecordingHeader(**json.loads(data))
+    except (ValueError, TypeError) as error:
+        raise RecordingError(f"the header is not one of robotd's: {error}") from error
+
+
+def encode(entry: Entry) -> tuple[str, bytes]:
+    """Return the channel and the message of an entry.
+
+    Raises:
+        TypeError: a command or a result holds something that JSON cannot.
+    """
+    if isinstance(entry, BytesEntry):
+        return f"{_SERIAL}/{entry.device}/{entry.direction}", bytes(entry.data)
+    if isinstance(entry, LineEntry):
+        return f"{_LINE}/{entry.device}", _dumps({"up": entry.up})
+    fields = asdict(entry)
+    del fields["time_ns"]
+    return _TOPICS[type(entry)], _dumps(fields)
+
+
+def decode(topic: str, time_ns: int, data: bytes) -> Entry | None:
+    """Return the entry of a message, or None on a channel that a later version may have added.
+
+    Raises:
+        RecordingError: the message does not fit its channel.
+    """
+    kind, _, rest = topic.partition("/")
+    try:
+        if kind == _SERIAL:
+            device, _, direction = rest.rpartition("/")
+            return BytesEntry(time_ns, device, Direction(direction), data)
+        if kind == _LINE:
+            return LineEntry(time_ns, rest, **json.loads(data))
+        if kind in _JSON_ENTRIES:
+            return _JSON_ENTRIES[kind](time_ns=time_ns, **json.loads(data))
+    except (ValueError, TypeError) as error:
+        raise RecordingError(f"a message on channel {topic} is not one of robotd's: {error}") from error
+    return None
+
+
+def is_raw(topic: str) -> bool:
+    """Whether a channel carries bytes as they are, and not JSON."""
+    return topic.startswith(f"{_SERIAL}/")
+
+
+def _dumps(value: dict[str, Any]) -> bytes:
+    return json.dumps(value, separators=(",", ":")).encode()

@@ -1,0 +1,73 @@
+"""What a recording holds: typed entries in the order in which they happened."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from robotd.hardware.link.tap import Direction
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingHeader:
+    """What a replay must know before the first entry."""
+
+    robotd_version: str
+    config_text: str
+    """The configuration as TOML, so that a recording is replayed under the settings it was made with."""
+    session_seed: int
+    """Seed of the session nonces and of everything else the daemon draws at random."""
+    wall_offset_ns: int
+    """Unix time less monotonic time when the recording began [ns]."""
+    started_ns: int
+    """When the recording began, monotonic clock of the recording host [ns]."""
+
+
+@dataclass(frozen=True, slots=True)
+class BytesEntry:
+    """Bytes that passed a serial line, in the chunk in which they were read or handed over."""
+
+    time_ns: int
+    device: str
+    direction: Direction
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class LineEntry:
+    """A line was opened or lost."""
+
+    time_ns: int
+    device: str
+    up: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CommandEntry:
+    """A client asked for something."""
+
+    time_ns: int
+    name: str
+    arguments: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class ComputedEntry:
+    """The ``index``-th piece of array work called ``name`` was handed back, counted from 0."""
+
+    time_ns: int
+    name: str
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
+class ResultEntry:
+    """The daemon came to a result: a sweep, an estimate, a map."""
+
+    time_ns: int
+    kind: str
+    content: dict[str, Any]
+    """Enough of it to show to people."""
+    digest: str
+    """Of all of it."""
+
+
+Entry = BytesEntry | LineEntry | CommandEntry | ComputedEntry | ResultEntry
