@@ -1,6 +1,7 @@
 """Array work, away from the event loop."""
 
 import asyncio
+from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Protocol, TypeVar
@@ -28,3 +29,19 @@ class ThreadCompute:
     def close(self) -> None:
         """Wait for the job under way and end the thread."""
         self._executor.shutdown()
+
+
+class NotedCompute:
+    """Notes when each job was handed back: a replay hands it back no sooner."""
+
+    def __init__(self, inner: Compute, note: Callable[[str, int], None]) -> None:
+        self._inner = inner
+        self._note = note
+        self._done: Counter[str] = Counter()
+
+    async def run(self, name: str, function: Callable[..., T], *args: object) -> T:
+        """Return ``function(*args)`` and note that it is done."""
+        result = await self._inner.run(name, function, *args)
+        self._note(name, self._done[name])
+        self._done[name] += 1
+        return result

@@ -1,0 +1,59 @@
+# make demo   the main job, end to end, on simulated hardware
+# make test   all tests
+# make help   the rest
+PYTHON ?= python3
+BIN := .venv/bin
+WORLD ?= laboratory
+SEED ?= 1
+PYTEST_ARGS ?=
+
+.DEFAULT_GOAL := help
+.PHONY: help demo demo-real test lint types contracts check clean
+
+help:  ## Say what can be made
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
+
+demo: .venv/.demo  ## Map a room, localize in it, serve the pose: simulated robot, real serial protocol, real daemon
+	@$(BIN)/robotctl demo room $(WORLD) --seed $(SEED) --out demo
+
+demo-real: .venv/.demo  ## The same in a recorded building: make demo-real LOG=path/to/a/carmen.log.gz
+	@test -n "$(LOG)" || { echo "usage: make demo-real LOG=path/to/a/carmen.log.gz" >&2; exit 2; }
+	@$(BIN)/robotctl demo building "$(LOG)" --out demo
+
+test: .venv/.dev  ## Run all tests
+	@echo "robotd: running all tests (about three minutes on two cores)"
+	@$(BIN)/python -m pytest -n 2 --dist worksteal -q $(PYTEST_ARGS)
+
+lint: .venv/.dev  ## Check format and style
+	@echo "robotd: ruff"
+	@$(BIN)/ruff format --check --quiet .
+	@$(BIN)/ruff check --quiet .
+
+types: .venv/.dev  ## Check types
+	@echo "robotd: mypy --strict"
+	@$(BIN)/mypy
+
+contracts: .venv/.dev  ## Check which room may import which, and that generated files are fresh
+	@echo "robotd: import contracts"
+	@$(BIN)/lint-imports --no-cache
+	@$(BIN)/python -m firmware_proto.generate --check
+
+check: lint types contracts test  ## Everything that CI checks
+
+clean:  ## Remove the environment and all that was made
+	@rm -rf .venv build demo *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
+
+.venv/bin/python:
+	@echo "robotd: making a Python environment in .venv (once)"
+	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "robotd needs Python 3.11 or newer: make PYTHON=python3.11 ...")'
+	@$(PYTHON) -m venv .venv
+
+.venv/.demo: pyproject.toml | .venv/bin/python
+	@echo "robotd: installing robotd and what it needs (once, under a minute)"
+	@test -e .venv/.dev || $(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[plots]'
+	@touch $@
+
+.venv/.dev: pyproject.toml | .venv/bin/python
+	@echo "robotd: installing robotd and its development tools (once, about a minute)"
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[dev]'
+	@touch $@

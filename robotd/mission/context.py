@@ -1,0 +1,75 @@
+"""What a mission works with, handed to it by the supervisor."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from robotd.core.clock import now_ns
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.mission.compute import Compute
+from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepDone, SweepProgress
+from robotd.mission.robot import Robot
+from robotd.mission.settings import MissionSettings
+from robotd.mission.stop_and_sweep import Sweeper
+
+_PROGRESS_EVERY = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Reporter:
+    """Tells the world how one mission gets on."""
+
+    mission_id: int
+    kind: str
+    stops: int
+    publish: Callable[[Event], None]
+
+    def at(self, phase: MissionPhase, stop: int, message: str = "") -> None:
+        """Report a step of the mission."""
+        self.publish(MissionProgress(now_ns(), self.mission_id, self.kind, phase, stop, self.stops, message))
+
+
+@dataclass(frozen=True, slots=True)
+class MissionContext:
+    """Robot, settings, worker and ear of the world."""
+
+    robot: Robot
+    settings: MissionSettings
+    compute: Compute
+    publish: Callable[[Event], None]
+
+    @property
+    def sweeper(self) -> Sweeper:
+        """Takes sweeps with this robot."""
+        settings = self.settings
+        return Sweeper(self.robot, settings.head_mount, settings.rangefinder, settings.sweep, settings.driving)
+
+    async def sweep(self, number: int, on_reading: Callable[[RangeReading], None] | None = None) -> Sweep:
+        """Take a sweep and publish its progress and its end."""
+        counter = SweepCounter(number, self.settings.sweep.readings, self.publish)
+
+        def note(reading: RangeReading) -> None:
+            counter.note(reading)
+            if on_reading is not None:
+                on_reading(reading)
+
+        sweep = await self.sweeper.sweep(number, note)
+        self.publish(SweepDone(now_ns(), sweep))
+        return sweep
+
+
+class SweepCounter:
+    """Counts the readings of a sweep under way and publishes every tenth count."""
+
+    def __init__(self, number: int, total: int, publish: Callable[[Event], None]) -> None:
+        self._number = number
+        self._total = total
+        self._publish = publish
+        self._counts = {"hits": 0, "misses": 0, "rejected": 0}
+
+    def note(self, reading: RangeReading) -> None:
+        """Count one reading."""
+        kind = {ReadingStatus.OK: "hits", ReadingStatus.MISS: "misses"}.get(reading.status, "rejected")
+        self._counts[kind] += 1
+        taken = sum(self._counts.values())
+        if taken % _PROGRESS_EVERY == 0 or taken == self._total:
+            self._publish(SweepProgress(now_ns(), self._number, taken, self._total, **self._counts))

@@ -1,0 +1,205 @@
+"""Everything that can be asked of the robot, in one place; the server and a replay both ask here.
+
+Each request is noted in the journal before it is carried out, so a replay can ask the same again.
+"""
+
+import base64
+import zlib
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from robotd.core.broadcast import Broadcast
+from robotd.core.clock import now_ns, wall_offset_ns
+from robotd.core.errors import MissionError
+from robotd.core.pose import Pose2
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.spec import GridSpec
+from robotd.maps.store import MapEntry, MapStore
+from robotd.mission.compute import Compute
+from robotd.mission.events import Event, MapChanged, Status
+from robotd.mission.map_in_use import MapInUse
+from robotd.mission.requests import Mission
+from robotd.mission.supervisor import Supervisor
+from robotd.recording.preroll import PrerollJournal
+
+
+class Control:
+    """The robot as its clients see it."""
+
+    def __init__(
+        self,
+        supervisor: Supervisor,
+        store: MapStore,
+        journal: PrerollJournal,
+        compute: Compute,
+        recordings_dir: Path,
+        config_text: str,
+    ) -> None:
+        self._supervisor = supervisor
+        self._store = store
+        self._journal = journal
+        self._compute = compute
+        self._recordings_dir = recordings_dir
+        self.config_text = config_text
+
+    @property
+    def events(self) -> Broadcast[Event]:
+        """Everything that happens."""
+        return self._supervisor.events
+
+    @property
+    def status(self) -> Status:
+        """The whole robot in one look."""
+        return self._supervisor.status
+
+    async def arm(self) -> None:
+        """Allow motion; see :meth:`Supervisor.arm`."""
+        self._journal.command(now_ns(), "arm", {})
+        await self._supervisor.arm()
+
+    async def disarm(self) -> None:
+        """Stop and forbid motion."""
+        await self.stop("disarmed by request")
+
+    async def stop(self, reason: str) -> None:
+        """Stop everything and disarm; valid at any time."""
+        self._supervisor.robot.stop_now()
+        self._journal.command(now_ns(), "stop", {"reason": reason})
+        await self._supervisor.stop(reason)
+
+    async def clear(self) -> None:
+        """Acknowledge latched faults; see :meth:`Supervisor.clear`."""
+        self._journal.command(now_ns(), "clear", {})
+        await self._supervisor.clear()
+
+    def start(self, mission: Mission, lease_s: float) -> int:
+        """Start a mission under a lease; see :meth:`Supervisor.start`."""
+        arguments = {"kind": type(mission).__name__, "mission": msgspec.to_builtins(mission), "lease_s": lease_s}
+        self._journal.command(now_ns(), "start", arguments)
+        return self._supervisor.start(mission, lease_s)
+
+    def renew(self, mission_id: int) -> None:
+        """Keep a mission's lease alive; see :meth:`Supervisor.renew`."""
+        self._journal.command(now_ns(), "renew", {"mission_id": mission_id})
+        self._supervisor.renew(mission_id)
+
+    def whole_map(self) -> MapChanged:
+        """Return every cell of the map in use.
+
+        Raises:
+            MissionError: there is none.
+        """
+        return self._place().whole(now_ns())
+
+    async def stored_map(self, name: str, version: int | None) -> MapChanged:
+        """Return every cell of a stored map; MapError if it is missing or damaged."""
+        grid, entry = await self._compute.run("read map", self._store.load, name, version)
+        return MapInUse(entry.digest, entry.name, grid, None).whole(now_ns())
+
+    async def list_maps(self) -> tuple[MapEntry, ...]:
+        """Return what is in the store."""
+        return await self._compute.run("list maps", self._store.list)
+
+    async def save_map(self, name: str | None) -> MapEntry:
+        """Save the map in use as a new version, under its own or another name.
+
+        Raises:
+            MissionError: there is none.
+            MapError: it cannot be written; what was there before is untouched.
+        """
+        place = self._place()
+        metadata = {"generation": place.generation, "map_id": place.map_id}
+        created_ns = now_ns() + wall_offset_ns()
+        grid = place.grid.snapshot()
+        return await self._compute.run("save map", self._store.save, name or place.name, grid, metadata, created_ns)
+
+    async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
+        """Make a stored map the one in use; ``robot_in_map`` says where the robot stands on it, if known.
+
+        Raises:
+            MapError: it is missing or damaged; the map in use stays.
+            MissionError: a mission is under way.
+        """
+        grid, entry = await self._compute.run("read map", self._store.load, name, version)
+        self.use_map(entry.digest, name, grid, robot_in_map)
+        return entry
+
+    def use_map(self, map_id: str, name: str, grid: OccupancyGrid, robot_in_map: Pose2 | None) -> None:
+        """Make a grid the map in use."""
+        arguments = {"map_id": map_id, "name": name, "grid": _packed(grid)}
+        arguments["robot_in_map"] = None if robot_in_map is None else msgspec.to_builtins(robot_in_map)
+        self._journal.command(now_ns(), "use_map", arguments)
+        place = MapInUse(map_id, name, grid, None)
+        here = self._supervisor.robot.drive.odometry.latest
+        if robot_in_map is not None:
+            if here is None:
+                raise MissionError("there is no odometry yet to tie to the map")
+            place.tie(robot_in_map, here)
+        self._supervisor.use(place)
+
+    async def start_recording(self, path: str | None) -> str:
+        """Record from the daemon's start on; return the file.
+
+        Raises:
+            RecordingError: it cannot be done now.
+        """
+        file = self._recordings_dir / f"{now_ns() + wall_offset_ns()}.mcap" if path is None else Path(path)
+        self._journal.start(file)
+        self._recording_changed(str(file))
+        return str(file)
+
+    async def stop_recording(self) -> str | None:
+        """End the recording and return its file; RecordingError if there is none, or if it is incomplete."""
+        path = self._journal.path
+        finish = self._journal.stop()
+        self._recording_changed(None)
+        await self._compute.run("end recording", finish)
+        return str(path)
+
+    async def repeat(self, name: str, arguments: dict[str, Any]) -> None:
+        """Carry out a request as the journal noted it."""
+        match name:
+            case "arm":
+                await self.arm()
+            case "clear":
+                await self.clear()
+            case "stop":
+                await self.stop(arguments["reason"])
+            case "renew":
+                self.renew(arguments["mission_id"])
+            case "start":
+                kind = _MISSIONS[arguments["kind"]]
+                self.start(msgspec.convert(arguments["mission"], kind), arguments["lease_s"])
+            case "use_map":
+                pose = arguments["robot_in_map"]
+                robot_in_map = None if pose is None else msgspec.convert(pose, Pose2)
+                self.use_map(arguments["map_id"], arguments["name"], _unpacked(arguments["grid"]), robot_in_map)
+            case _:
+                raise MissionError(f"unknown request {name!r}")
+
+    def _place(self) -> MapInUse:
+        place = self._supervisor.place
+        if place is None:
+            raise MissionError("no map is in use: make one, or load one")
+        return place
+
+    def _recording_changed(self, path: str | None) -> None:
+        self._supervisor.recording = path
+        self._supervisor.publish(self._supervisor.status)
+
+
+_MISSIONS: dict[str, type[Mission]] = {kind.__name__: kind for kind in Mission.__args__}
+
+
+def _packed(grid: OccupancyGrid) -> dict[str, Any]:
+    cells = base64.b64encode(zlib.compress(grid.cells.tobytes())).decode()
+    return {"spec": msgspec.to_builtins(grid.spec), "cells": cells}
+
+
+def _unpacked(packed: dict[str, Any]) -> OccupancyGrid:
+    spec = msgspec.convert(packed["spec"], GridSpec)
+    cells = np.frombuffer(zlib.decompress(base64.b64decode(packed["cells"])), dtype=np.uint8)
+    return OccupancyGrid(spec, cells.reshape(spec.shape).copy())

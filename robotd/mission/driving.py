@@ -1,0 +1,46 @@
+"""From here to a place on the map: plan, then leg by leg."""
+
+from robotd.core.errors import MissionError
+from robotd.core.pose import Odometry, Pose2
+from robotd.mission.context import MissionContext, Reporter
+from robotd.mission.events import MissionPhase
+from robotd.mission.map_in_use import MapInUse
+from robotd.mission.motion import drive_leg, next_odometry
+from robotd.mission.requests import DriveMission, Legs
+from robotd.planning.path import Path, plan
+
+
+async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: float, legs: Legs) -> Odometry:
+    """Drive to a point in the map frame and return odometry there.
+
+    Raises:
+        MissionError: nobody knows where the robot is on the map, or the point cannot be reached.
+        DeviceError, LinkTimeout, TransportError: the base failed on the way.
+    """
+    here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
+    start = place.pose_of(here)
+    if start is None or place.map_from_odom is None:
+        raise MissionError("cannot drive on this map: the robot is not localized on it")
+    waypoints_m = ((x_m, y_m),) if legs is Legs.STRAIGHT else await _planned(context, place, start, (x_m, y_m))
+    odom_from_map = place.map_from_odom.inverse()
+    for waypoint_m in waypoints_m:
+        here = await drive_leg(context.robot.drive, *odom_from_map.transform(*waypoint_m), context.settings.driving)
+    return here
+
+
+async def _planned(
+    context: MissionContext, place: MapInUse, start: Pose2, goal_m: tuple[float, float]
+) -> tuple[tuple[float, float], ...]:
+    route = await context.compute.run("plan", plan, place.grid.snapshot(), start, goal_m, context.settings.planning)
+    if not isinstance(route, Path):
+        raise MissionError(f"({goal_m[0]:.2f}, {goal_m[1]:.2f}) m cannot be reached: {route.reason}")
+    return route.waypoints_m
+
+
+async def run_driving(context: MissionContext, place: MapInUse, mission: DriveMission, report: Reporter) -> str:
+    """Carry out a :class:`DriveMission`; return what to tell the client."""
+    report.at(MissionPhase.DRIVING, 0)
+    arrived = await drive_to(context, place, mission.x_m, mission.y_m, mission.legs)
+    pose = place.pose_of(arrived)
+    assert pose is not None  # noqa: S101  # drive_to refuses to start without
+    return f"arrived at ({pose.x_m:.2f}, {pose.y_m:.2f}) m"

@@ -1,0 +1,113 @@
+"""Where am I? Sweep here, and narrow the feasible poses down reading by reading, while the sweep goes on.
+
+Readings go to the localizer in batches of a fixed count, so what is estimated after which reading never depends
+on how fast this machine happens to be.
+"""
+
+import asyncio
+import math
+
+from robotd.core.angles import wrap_rad
+from robotd.core.clock import now_ns
+from robotd.core.errors import MissionError
+from robotd.core.pose import Odometry, Pose2
+from robotd.core.reading import RangeReading
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.localization.localizer import Localizer
+from robotd.mission.context import MissionContext, Reporter
+from robotd.mission.events import MissionPhase
+from robotd.mission.map_in_use import MapInUse
+from robotd.mission.motion import settle
+from robotd.mission.requests import LocalizeMission
+
+_BATCH = 20
+
+
+async def run_localizing(
+    context: MissionContext, place: MapInUse, mission: LocalizeMission, report: Reporter, number: int
+) -> PoseEstimate:
+    """Carry out a :class:`LocalizeMission`: sweep, estimate, and tie odometry to the map if the answer is unique."""
+    driving = context.settings.driving
+    here = await settle(context.robot.drive, context.settings.sweep.settle_s, driving.silence_s)
+    heading_rad = _heading(place, mission, here)
+    report.at(MissionPhase.SWEEPING, 0)
+    narrowing = await Narrowing.begin(context, place, heading_rad)
+    narrowed = asyncio.create_task(narrowing.run(), name="narrowing")
+    try:
+        sweep = await context.sweep(number, narrowing.offer)
+        report.at(MissionPhase.COMPUTING, 0)
+        narrowing.end()
+        estimate = await narrowed
+    finally:
+        narrowed.cancel()
+        await asyncio.wait((narrowed,))
+    if estimate.state is PoseState.LOCALIZED and estimate.best is not None:
+        place.map_from_odom = estimate.best @ sweep.in_odom.inverse()
+    return estimate
+
+
+def _heading(place: MapInUse, mission: LocalizeMission, here: Odometry) -> float:
+    if mission.heading_rad is not None:
+        return wrap_rad(mission.heading_rad)
+    pose = place.pose_of(here)
+    if pose is None:
+        raise MissionError("the heading is unknown: odometry is not tied to this map; give heading_rad")
+    return pose.heading_rad
+
+
+class Narrowing:
+    """The rank grid of a sweep under way: takes readings as they come, publishes estimates as they firm up."""
+
+    def __init__(self, context: MissionContext, localizer: Localizer) -> None:
+        self._context = context
+        self._localizer = localizer
+        self._batches: asyncio.Queue[tuple[RangeReading, ...] | None] = asyncio.Queue()  # bounded by one sweep
+        self._batch: list[RangeReading] = []
+
+    @classmethod
+    async def begin(cls, context: MissionContext, place: MapInUse, heading_rad: float) -> "Narrowing":
+        """Prepare the map for this heading."""
+        localizer = await context.compute.run("prepare", _prepare, context, place, heading_rad)
+        return cls(context, localizer)
+
+    def offer(self, reading: RangeReading) -> None:
+        """Take a reading."""
+        self._batch.append(reading)
+        if len(self._batch) == _BATCH:
+            self._flush()
+
+    def end(self) -> None:
+        """Say that the sweep is whole."""
+        self._flush()
+        self._batches.put_nowait(None)
+
+    def _flush(self) -> None:
+        self._batches.put_nowait(tuple(self._batch))
+        self._batch.clear()
+
+    async def run(self) -> PoseEstimate:
+        """Narrow down until the sweep is whole; return the last word."""
+        while True:
+            batch = await self._batches.get()
+            final = batch is None
+            estimate = await self._context.compute.run("narrow", self._narrow, batch or (), now_ns(), final)
+            self._context.publish(estimate)
+            if final:
+                return estimate
+
+    def _narrow(self, batch: tuple[RangeReading, ...], time_ns: int, final: bool) -> PoseEstimate:
+        for reading in batch:
+            if reading.is_measured:
+                self._localizer.add(reading)
+        return self._localizer.estimate(time_ns, final=final)
+
+
+def _prepare(context: MissionContext, place: MapInUse, heading_rad: float) -> Localizer:
+    localizer = Localizer(place.binary(), context.settings.localization, place.map_id)
+    localizer.begin((heading_rad,))
+    return localizer
+
+
+def pose_text(pose: Pose2) -> str:
+    """Return a pose for people."""
+    return f"({pose.x_m:.3f}, {pose.y_m:.3f}) m, {math.degrees(pose.heading_rad):.1f} deg"

@@ -1,0 +1,63 @@
+"""The map the robot lives on now, and where odometry lies on it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.pose import Odometry, Pose2
+from robotd.core.reading import Sweep
+from robotd.grid.binary import BinaryMap
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.mission.events import MapChanged
+
+_NO_CELLS: NDArray[np.intp] = np.empty(0, dtype=np.intp)
+
+
+@dataclass(slots=True)
+class MapInUse:
+    """One map and its ties; the supervisor has one at a time."""
+
+    map_id: str
+    """Digest of its content when it was loaded or begun."""
+    name: str
+    grid: OccupancyGrid
+    map_from_odom: Pose2 | None
+    """Where the odometry frame lies on the map; None while nothing ties them."""
+    generation: int = 0
+    """Counts its changes since it came into use."""
+
+    def pose_of(self, odometry: Odometry) -> Pose2 | None:
+        """Return where odometry places the robot on the map, if anything ties them."""
+        return None if self.map_from_odom is None else self.map_from_odom @ odometry.in_odom
+
+    def tie(self, map_from_robot: Pose2, odometry: Odometry) -> None:
+        """Note that the robot was at ``map_from_robot`` when odometry said ``odometry``."""
+        self.map_from_odom = map_from_robot @ odometry.in_odom.inverse()
+
+    def insert(self, sweep: Sweep) -> NDArray[np.intp]:
+        """Lay a sweep into the grid where odometry places it; return the changed cells as flat indices.
+
+        Raises:
+            ValueError: nothing ties odometry to the map.
+        """
+        if self.map_from_odom is None:
+            raise ValueError("a sweep cannot be inserted: odometry is not tied to the map")
+        changed = self.grid.insert(sweep, self.map_from_odom @ sweep.in_odom)
+        self.generation += 1
+        return changed
+
+    def changes(self, time_ns: int, cells: NDArray[np.intp]) -> MapChanged:
+        """Return the event for these changed cells."""
+        return MapChanged(
+            time_ns, self.map_id, self.generation, self.grid.spec, False, cells, self.grid.cells.reshape(-1)[cells]
+        )
+
+    def whole(self, time_ns: int) -> MapChanged:
+        """Return the event that carries every cell."""
+        event = self.changes(time_ns, _NO_CELLS)
+        return replace(event, whole=True, values=self.grid.cells.copy())
+
+    def binary(self) -> BinaryMap:
+        """Return the thresholded map."""
+        return BinaryMap.from_grid(self.grid)

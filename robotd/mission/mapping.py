@@ -1,0 +1,50 @@
+"""Make a map: at each stop sweep and insert, then go on."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from robotd.core.clock import now_ns
+from robotd.core.errors import MissionError
+from robotd.mission.context import MissionContext, Reporter
+from robotd.mission.driving import drive_to
+from robotd.mission.events import MissionPhase
+from robotd.mission.map_in_use import MapInUse
+from robotd.mission.requests import MapMission
+
+
+@dataclass(frozen=True, slots=True)
+class MappingResult:
+    """What became of the stops."""
+
+    swept: int
+    unreachable: tuple[str, ...]
+
+    def __str__(self) -> str:
+        """Say it in a line."""
+        missed = f"; not reached: {'; '.join(self.unreachable)}" if self.unreachable else ""
+        return f"{self.swept} stops swept{missed}"
+
+
+async def run_mapping(
+    context: MissionContext, place: MapInUse, mission: MapMission, report: Reporter, take_number: Callable[[], int]
+) -> MappingResult:
+    """Carry out a :class:`MapMission` on a fresh map that odometry is already tied to.
+
+    A stop that cannot be reached is said at once, left out, and named in the result.
+    """
+    unreachable: list[str] = []
+    for stop, (x_m, y_m) in enumerate(((mission.start.x_m, mission.start.y_m), *mission.stops_m)):
+        if stop:
+            report.at(MissionPhase.DRIVING, stop)
+            try:
+                await drive_to(context, place, x_m, y_m, mission.legs)
+            except MissionError as error:
+                unreachable.append(f"stop {stop}: {error}")
+                report.at(MissionPhase.DRIVING, stop, unreachable[-1])
+                continue
+        report.at(MissionPhase.SWEEPING, stop)
+        sweep = await context.sweep(take_number())
+        report.at(MissionPhase.COMPUTING, stop)
+        cells = await context.compute.run("insert", place.insert, sweep)
+        context.publish(place.changes(now_ns(), cells))
+    return MappingResult(1 + len(mission.stops_m) - len(unreachable), tuple(unreachable))

@@ -1,0 +1,88 @@
+"""The kinds of mission, each a row: its name, what it does to the mode, and how it is carried out."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from robotd.core.errors import MissionError
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.localization.estimate import PoseEstimate
+from robotd.mission.context import MissionContext, Reporter
+from robotd.mission.driving import run_driving
+from robotd.mission.localizing import pose_text, run_localizing
+from robotd.mission.map_in_use import MapInUse
+from robotd.mission.mapping import run_mapping
+from robotd.mission.modes import Occasion
+from robotd.mission.motion import next_odometry
+from robotd.mission.requests import DriveMission, LocalizeMission, MapMission, Mission
+
+
+class Host(Protocol):
+    """What a mission needs of the one that runs it."""
+
+    place: MapInUse | None
+
+    def adopt(self, place: MapInUse) -> None:
+        """Make this the map in use."""
+
+    def take_sweep_number(self) -> int:
+        """Return the next number of a sweep."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """One kind of mission."""
+
+    name: str
+    occasion: Occasion
+    stops: Callable[[Any], int]
+
+
+KINDS: dict[type[Mission], Kind] = {
+    MapMission: Kind("map", Occasion.START_MAPPING, lambda mission: 1 + len(mission.stops_m)),
+    LocalizeMission: Kind("localize", Occasion.START_LOCALIZING, lambda _: 1),
+    DriveMission: Kind("drive", Occasion.START_DRIVING, lambda _: 1),
+}
+
+
+async def carry_out(host: Host, context: MissionContext, mission: Mission, report: Reporter) -> str:
+    """Carry out a mission and return what to tell the client.
+
+    Raises:
+        MissionError: it cannot be done; the robot stands.
+        DeviceError, LinkTimeout, TransportError: a device failed; the robot must be stopped.
+    """
+    match mission:
+        case MapMission():
+            place = await _begin_map(context, mission, report)
+            host.adopt(place)
+            return str(await run_mapping(context, place, mission, report, host.take_sweep_number))
+        case LocalizeMission():
+            estimate = await run_localizing(context, _place(host), mission, report, host.take_sweep_number())
+            return describe(estimate)
+        case DriveMission():
+            return await run_driving(context, _place(host), mission, report)
+
+
+def _place(host: Host) -> MapInUse:
+    if host.place is None:
+        raise MissionError("no map is in use: make one, or load one")
+    return host.place
+
+
+async def _begin_map(context: MissionContext, mission: MapMission, report: Reporter) -> MapInUse:
+    grid = OccupancyGrid.centred(context.settings.grid, mission.start.x_m, mission.start.y_m)
+    here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
+    place = MapInUse(f"new-{report.mission_id}", mission.name, grid, None)
+    place.tie(mission.start, here)
+    return place
+
+
+def describe(estimate: PoseEstimate) -> str:
+    """Return an estimate in one line for people."""
+    share = f"{estimate.best_rank} of {estimate.readings} readings"
+    if estimate.best is not None:
+        return f"{estimate.state} at {pose_text(estimate.best)}: {share}"
+    if not estimate.regions:
+        return f"{estimate.state}: no pose explains more than {share}"
+    return f"{estimate.state}: {len(estimate.regions)} regions explain up to {share}"

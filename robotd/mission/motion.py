@@ -1,0 +1,128 @@
+"""Turning, driving and standing still, advanced by each odometry message and by nothing else.
+
+A set-point goes out for every odometry message that comes in, so a line that falls silent takes the
+set-points with it and the base's own deadman does the rest. Because no timer decides anything but how long
+silence may last, the same bytes always lead to the same motion: replay depends on it.
+"""
+
+import asyncio
+import math
+from collections.abc import AsyncIterator, Callable
+
+from robotd.core.angles import wrap_rad
+from robotd.core.broadcast import Subscription
+from robotd.core.clock import NS_PER_S
+from robotd.core.errors import DeviceError, LinkTimeout
+from robotd.core.pose import STANDSTILL, Odometry, Twist2
+from robotd.hardware.devices.drive import Drive
+from robotd.mission.steering import DrivingSettings, distance_left_m, leg_twist, turn_rate_radps
+
+
+async def rotate_to(drive: Drive, heading_rad: float, settings: DrivingSettings) -> Odometry:
+    """Turn on the spot to a heading in the ``odom`` frame, the short way round.
+
+    Raises:
+        LinkTimeout: odometry fell silent.
+        DeviceError: the base does not turn.
+    """
+
+    def error_rad(now: Odometry) -> float:
+        return wrap_rad(heading_rad - now.in_odom.heading_rad)
+
+    return await _approach(
+        drive,
+        settings,
+        what="turn",
+        left=lambda now: abs(error_rad(now)),
+        tolerance=settings.heading_tolerance_rad,
+        twist=lambda now: Twist2(0.0, turn_rate_radps(error_rad(now), settings)),
+    )
+
+
+async def translate_to(drive: Drive, x_m: float, y_m: float, settings: DrivingSettings) -> Odometry:
+    """Drive straight to a point in the ``odom`` frame that lies ahead.
+
+    Raises:
+        LinkTimeout: odometry fell silent.
+        DeviceError: the base does not get nearer.
+    """
+    return await _approach(
+        drive,
+        settings,
+        what="drive",
+        left=lambda now: max(0.0, distance_left_m(now.in_odom, x_m, y_m)),
+        tolerance=settings.position_tolerance_m,
+        twist=lambda now: leg_twist(now.in_odom, x_m, y_m, settings),
+    )
+
+
+async def drive_leg(drive: Drive, x_m: float, y_m: float, settings: DrivingSettings) -> Odometry:
+    """Drive one leg: rotate towards its end in the ``odom`` frame, then translate to it."""
+    here = await next_odometry(drive, settings.silence_s)
+    if math.hypot(x_m - here.in_odom.x_m, y_m - here.in_odom.y_m) <= settings.position_tolerance_m:
+        return here
+    await rotate_to(drive, math.atan2(y_m - here.in_odom.y_m, x_m - here.in_odom.x_m), settings)
+    return await translate_to(drive, x_m, y_m, settings)
+
+
+async def settle(drive: Drive, settle_s: float, silence_s: float) -> Odometry:
+    """Wait until odometry has reported standstill for ``settle_s`` by its own times; return the last report.
+
+    Raises:
+        LinkTimeout: odometry fell silent.
+    """
+    since_ns: int | None = None
+    with drive.odometry.subscribe() as stream:
+        async for now in _within(stream, silence_s):
+            if not now.twist.is_zero:
+                since_ns = None
+            elif since_ns is None:
+                since_ns = now.time_ns
+            elif now.time_ns - since_ns >= settle_s * NS_PER_S:
+                return now
+    raise AssertionError("a subscription never ends")
+
+
+async def next_odometry(drive: Drive, silence_s: float) -> Odometry:
+    """Return the next odometry message; LinkTimeout if there is none for ``silence_s``."""
+    with drive.odometry.subscribe() as stream:
+        async for now in _within(stream, silence_s):
+            return now
+    raise AssertionError("a subscription never ends")
+
+
+async def _approach(
+    drive: Drive,
+    settings: DrivingSettings,
+    *,
+    what: str,
+    left: Callable[[Odometry], float],
+    tolerance: float,
+    twist: Callable[[Odometry], Twist2],
+) -> Odometry:
+    """Send ``twist`` for each odometry message until ``left`` is within ``tolerance``; then stand."""
+    nearest, nearest_ns = math.inf, 0
+    try:
+        with drive.odometry.subscribe() as stream:
+            async for now in _within(stream, settings.silence_s):
+                remaining = left(now)
+                if remaining <= tolerance:
+                    break
+                if remaining < nearest - tolerance / 4.0:
+                    nearest, nearest_ns = remaining, now.time_ns
+                elif now.time_ns - nearest_ns > settings.stall_s * NS_PER_S:
+                    raise DeviceError(drive.name, "stalled", f"{what} is no nearer to its end for {settings.stall_s:g} s")
+                drive.set_velocity(twist(now), settings.setpoint_ttl_s)
+    finally:
+        drive.set_velocity(STANDSTILL, settings.setpoint_ttl_s)
+    return now
+
+
+async def _within(stream: Subscription[Odometry], silence_s: float) -> AsyncIterator[Odometry]:
+    while True:
+        try:
+            async with asyncio.timeout(silence_s):
+                now = await stream.get()
+        except TimeoutError:
+            raise LinkTimeout(f"drive: no odometry for {silence_s:g} s") from None
+        yield now

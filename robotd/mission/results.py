@@ -1,0 +1,42 @@
+"""What a replay must come to again: sweeps, estimates, maps and the ends of missions, each with a digest.
+
+Times are left out of the digests: they are what a replay may change, by the time this host takes to think.
+"""
+
+import hashlib
+import json
+from dataclasses import asdict
+from typing import Any
+
+from robotd.core.reading import Sweep
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.events import Event, MapChanged, MissionProgress, SweepDone
+from robotd.mission.map_in_use import MapInUse
+from robotd.recording.journal import Journal
+
+
+def note_result(journal: Journal, event: Event, place: MapInUse | None) -> None:
+    """Note an event in the journal if it is a result."""
+    match event:
+        case SweepDone():
+            _note(journal, event.time_ns, "sweep", _sweep(event.sweep))
+        case PoseEstimate() if event.state is not PoseState.PREDICTED:
+            _note(journal, event.time_ns, "estimate", _without_time(asdict(event)))
+        case MapChanged() if place is not None:
+            content = {"map_id": event.map_id, "generation": event.generation}
+            journal.result(event.time_ns, "map", content, place.grid.digest())
+        case MissionProgress() if event.is_last:
+            _note(journal, event.time_ns, "mission", _without_time(asdict(event)))
+
+
+def _note(journal: Journal, time_ns: int, kind: str, content: dict[str, Any]) -> None:
+    text = json.dumps(content, sort_keys=True)
+    journal.result(time_ns, kind, content, hashlib.sha256(text.encode()).hexdigest())
+
+
+def _sweep(sweep: Sweep) -> dict[str, Any]:
+    return _without_time(asdict(sweep)) | {"readings": [_without_time(asdict(reading)) for reading in sweep.readings]}
+
+
+def _without_time(content: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in content.items() if key != "time_ns"}

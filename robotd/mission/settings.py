@@ -1,0 +1,23 @@
+"""Everything a mission can be tuned by, gathered from the models it uses."""
+
+from dataclasses import dataclass, field
+
+from robotd.grid.occupancy import GridSettings
+from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
+from robotd.localization.localizer import LocalizationSettings
+from robotd.mission.steering import DrivingSettings
+from robotd.mission.stop_and_sweep import SweepSettings
+from robotd.planning.path import PlanningSettings
+
+
+@dataclass(frozen=True, slots=True)
+class MissionSettings:
+    """Settings of the rooms that a mission brings together."""
+
+    head_mount: HeadMount
+    rangefinder: RangefinderCalibration
+    sweep: SweepSettings = field(default_factory=SweepSettings)
+    driving: DrivingSettings = field(default_factory=DrivingSettings)
+    grid: GridSettings = field(default_factory=GridSettings)
+    localization: LocalizationSettings = field(default_factory=LocalizationSettings)
+    planning: PlanningSettings = field(default_factory=PlanningSettings)

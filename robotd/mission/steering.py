@@ -1,0 +1,72 @@
+"""Control laws of the synchro-drive: pure functions from where it is to how fast it should go."""
+
+import math
+from dataclasses import dataclass
+
+from robotd.core.angles import wrap_rad
+from robotd.core.pose import Pose2, Twist2
+
+_STEER_WITHIN_M = 0.10  # nearer than this the bearing to the goal says nothing about the heading
+
+
+@dataclass(frozen=True, slots=True)
+class DrivingSettings:
+    """How the base drives its legs."""
+
+    speed_mps: float = 0.4
+    """Cruising speed."""
+    turn_radps: float = 1.0
+    """Turning speed."""
+    deceleration_mps2: float = 0.3
+    """How hard it plans to brake; well below what the base can."""
+    turn_deceleration_radps2: float = 1.0
+    """The same for turning."""
+    gain_hz: float = 2.5
+    """Speed per remaining distance at the very end of a leg."""
+    position_tolerance_m: float = 0.02
+    """A leg ends this near to its end."""
+    heading_tolerance_rad: float = 0.01
+    """A turn ends this near to its heading."""
+    setpoint_ttl_s: float = 0.4
+    """How long the base may follow one set-point without hearing another."""
+    silence_s: float = 0.5
+    """Odometry silent for so long means stop."""
+    stall_s: float = 3.0
+    """No nearer to the goal for so long means that something is wrong."""
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be driven."""
+        for name in self.__slots__:
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ValueError(f"{name} must be positive, got {value}")
+
+
+def turn_rate_radps(error_rad: float, settings: DrivingSettings) -> float:
+    """Return how fast to turn with ``error_rad`` still to go; fades out towards the goal."""
+    remaining = abs(error_rad)
+    rate = min(
+        settings.turn_radps,
+        math.sqrt(2.0 * settings.turn_deceleration_radps2 * remaining),
+        settings.gain_hz * remaining,
+    )
+    return math.copysign(rate, error_rad)
+
+
+def distance_left_m(here: Pose2, goal_x_m: float, goal_y_m: float) -> float:
+    """Return how far the goal lies ahead along the heading; negative once it is passed."""
+    return (goal_x_m - here.x_m) * math.cos(here.heading_rad) + (goal_y_m - here.y_m) * math.sin(here.heading_rad)
+
+
+def leg_twist(here: Pose2, goal_x_m: float, goal_y_m: float, settings: DrivingSettings) -> Twist2:
+    """Return the velocity that follows a straight leg to its end, steering while there is room to."""
+    left_m = max(0.0, distance_left_m(here, goal_x_m, goal_y_m))
+    speed_mps = min(
+        settings.speed_mps,
+        math.sqrt(2.0 * settings.deceleration_mps2 * left_m),
+        settings.gain_hz * left_m,
+    )
+    if left_m < _STEER_WITHIN_M:
+        return Twist2(speed_mps, 0.0)
+    bearing_rad = math.atan2(goal_y_m - here.y_m, goal_x_m - here.x_m)
+    return Twist2(speed_mps, turn_rate_radps(wrap_rad(bearing_rad - here.heading_rad), settings))

@@ -1,0 +1,275 @@
+"""Who allows motion: holds the mode, watches the devices, and runs one mission at a time.
+
+The rules are in :mod:`robotd.mission.modes`; this file carries them out. Whatever goes wrong, stop comes first: the
+preformatted stop goes to every board before anything is cancelled, logged or published.
+"""
+
+import asyncio
+import logging
+from collections.abc import Callable
+
+from robotd.core.broadcast import Broadcast
+from robotd.core.clock import now_ns
+from robotd.core.errors import LinkTimeout, MissionError, RobotdError
+from robotd.core.pose import Odometry
+from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.context import MissionContext, Reporter
+from robotd.mission.events import Event, MissionPhase, Status
+from robotd.mission.lease import Lease
+from robotd.mission.map_in_use import MapInUse
+from robotd.mission.missions import KINDS, carry_out
+from robotd.mission.modes import Mode, Occasion, next_mode
+from robotd.mission.prediction import Predictor, unlocalized
+from robotd.mission.requests import Mission
+from robotd.mission.robot import Robot
+
+_STATUS_PERIOD_S = 1.0
+_DEVICE_TIMEOUT_S = 5.0
+
+log = logging.getLogger(__name__)
+
+
+class Supervisor:
+    """The robot's conscience."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        make_context: Callable[[Callable[[Event], None]], MissionContext],
+        note: Callable[[Event, MapInUse | None], None],
+    ) -> None:
+        self.robot = robot
+        self.events: Broadcast[Event] = Broadcast()
+        self.place: MapInUse | None = None
+        self.recording: str | None = None
+        """File being recorded to, as shown in the status."""
+        self._context = make_context(self.publish)
+        self._note = note
+        self._mode = Mode.DISARMED
+        self._reason = "started"
+        self._mission: asyncio.Task[None] | None = None
+        self._mission_id = 0
+        self._sweeps = 0
+        self._lease: Lease | None = None
+        self._predictor = Predictor()
+
+    @property
+    def mode(self) -> Mode:
+        """What the robot is allowed to do now."""
+        return self._mode
+
+    @property
+    def status(self) -> Status:
+        """The whole robot in one look."""
+        readout = self.robot.drive.readouts.latest
+        return Status(
+            time_ns=now_ns(),
+            mode=self._mode,
+            reason=self._reason,
+            devices=tuple(device.status for device in self.robot.devices),
+            battery_v=readout.battery_v if readout else None,
+            bumpers_rad=readout.bumpers_rad if readout else (),
+            mission_id=self._mission_id if self._busy else None,
+            map_id=self.place.map_id if self.place else None,
+            map_name=self.place.name if self.place else None,
+            recording=self.recording,
+        )
+
+    @property
+    def _busy(self) -> bool:
+        return self._mission is not None and not self._mission.done()
+
+    def publish(self, event: Event) -> None:
+        """Hand an event to the world, and to the journal."""
+        if isinstance(event, PoseEstimate) and event.state is PoseState.LOCALIZED and event.final:
+            self._predictor.said = event.best
+        self._note(event, self.place)
+        self.events.publish(event)
+
+    async def run(self) -> None:
+        """Watch the devices until cancelled."""
+        self.publish(unlocalized(now_ns(), ""))
+        async with asyncio.TaskGroup() as group:
+            for device in self.robot.devices:
+                group.create_task(self._watch(device))
+            group.create_task(self._follow_odometry())
+            group.create_task(self._repeat_status())
+
+    async def arm(self) -> None:
+        """Allow motion, on every device or on none.
+
+        Raises:
+            MissionError: a device is absent, a fault is latched, or a mission is under way.
+            DeviceError, LinkTimeout, TransportError: a device will not; all are disarmed again.
+        """
+        self._require(Occasion.ARM)
+        if self.robot.absent:
+            raise MissionError(f"cannot arm: {', '.join(self.robot.absent)} absent")
+        if self.robot.faults:
+            raise MissionError(f"cannot arm: {'; '.join(self.robot.faults)}: clear first")
+        try:
+            async with asyncio.timeout(_DEVICE_TIMEOUT_S):
+                for device in self.robot.devices:
+                    await device.arm()
+        except TimeoutError:
+            self.robot.stop_now()
+            raise LinkTimeout(f"arming took longer than {_DEVICE_TIMEOUT_S:g} s") from None
+        except BaseException:
+            self.robot.stop_now()
+            raise
+        self._apply(Occasion.ARM, "armed")
+
+    async def stop(self, reason: str) -> None:
+        """Stop everything and disarm; valid at any time."""
+        self.halt(Occasion.STOP, reason)
+        if self._mission is not None:
+            await asyncio.wait((self._mission,))
+
+    async def clear(self) -> None:
+        """Acknowledge latched faults; the robot stays disarmed.
+
+        Raises:
+            MissionError: the robot is armed.
+            DeviceError, LinkTimeout, TransportError: a device will not.
+        """
+        self._require(Occasion.CLEAR)
+        for device in self.robot.devices:
+            if device.status.link is LinkState.READY:
+                await device.clear_faults()
+        if self.robot.faults:
+            raise MissionError(f"faults remain: {'; '.join(self.robot.faults)}")
+        self._apply(Occasion.CLEAR, "faults cleared")
+
+    def start(self, mission: Mission, lease_s: float) -> int:
+        """Start a mission under a lease and return its number.
+
+        Raises:
+            MissionError: not armed, or another mission is under way.
+        """
+        kind = KINDS[type(mission)]
+        if self._mode is Mode.DISARMED:
+            raise MissionError(f"cannot {kind.name}: the robot is disarmed; arm it first")
+        self._require(kind.occasion)
+        self._mission_id += 1
+        mission_id = self._mission_id
+        report = Reporter(mission_id, kind.name, kind.stops(mission), self.publish)
+        self._lease = Lease(lease_s, lambda: self._lease_expired(mission_id))
+        self._apply(kind.occasion, f"mission {mission_id}")
+        self._mission = asyncio.create_task(self._run_mission(mission, report), name=f"mission {mission_id}")
+        return mission_id
+
+    def renew(self, mission_id: int) -> None:
+        """Keep a mission's lease alive.
+
+        Raises:
+            MissionError: that mission is not under way.
+        """
+        if not self._busy or mission_id != self._mission_id or self._lease is None:
+            raise MissionError(f"mission {mission_id} is not under way")
+        self._lease.renew()
+
+    def use(self, place: MapInUse) -> None:
+        """Make another map the one in use.
+
+        Raises:
+            MissionError: a mission is under way.
+        """
+        if self._busy:
+            raise MissionError("the map cannot be changed while a mission is under way")
+        self.adopt(place)
+
+    def adopt(self, place: MapInUse) -> None:
+        """Take over a map, from a mission or from the store, and tell everybody."""
+        self.place = place
+        self._predictor.said = None
+        self.publish(place.whole(now_ns()))
+        if place.map_from_odom is None:
+            self.publish(unlocalized(now_ns(), place.map_id))
+        self.publish(self.status)
+
+    def take_sweep_number(self) -> int:
+        """Return the next number of a sweep."""
+        self._sweeps += 1
+        return self._sweeps - 1
+
+    def halt(self, occasion: Occasion, reason: str) -> None:
+        """Stop first, then everything else."""
+        self.robot.stop_now()
+        if self._mission is not None and self._mission is not asyncio.current_task():
+            self._mission.cancel()
+        self._apply(occasion, reason)
+
+    def _require(self, occasion: Occasion) -> None:
+        if next_mode(self._mode, occasion) is None:
+            raise MissionError(f"cannot {occasion.replace('_', ' ')} while {self._mode}: {self._reason}")
+
+    def _apply(self, occasion: Occasion, reason: str) -> None:
+        mode = next_mode(self._mode, occasion)
+        if mode is None:
+            return
+        if (mode, reason) != (self._mode, self._reason):
+            log.info("%s -> %s: %s", self._mode, mode, reason)
+        self._mode, self._reason = mode, reason
+        self.publish(self.status)
+
+    def _lease_expired(self, mission_id: int) -> None:
+        if self._busy and mission_id == self._mission_id:
+            self.halt(Occasion.STOP, f"the lease of mission {mission_id} expired: its client fell silent")
+
+    async def _run_mission(self, mission: Mission, report: Reporter) -> None:
+        try:
+            report.at(MissionPhase.STARTED, 0)
+            message = await carry_out(self, self._context, mission, report)
+        except asyncio.CancelledError:
+            report.at(MissionPhase.STOPPED, 0, self._reason)
+            raise
+        except MissionError as error:
+            self._apply(Occasion.FINISH, str(error))
+            report.at(MissionPhase.FAILED, 0, str(error))
+        except RobotdError as error:
+            self.halt(Occasion.STOP, str(error))
+            report.at(MissionPhase.FAILED, 0, str(error))
+        except Exception as error:
+            self.halt(Occasion.STOP, f"internal error: {error!r}")
+            log.exception("mission %d", report.mission_id)
+            report.at(MissionPhase.FAILED, 0, self._reason)
+        else:
+            self._apply(Occasion.FINISH, message)
+            report.at(MissionPhase.DONE, report.stops, message)
+        finally:
+            if self._lease is not None:
+                self._lease.end()
+
+    async def _watch(self, device: Device) -> None:
+        with device.status_changes.subscribe() as changes:
+            async for status in changes:
+                self._device_changed(status)
+
+    def _device_changed(self, status: DeviceStatus) -> None:
+        if status.faults and self._mode is not Mode.FAULT:
+            self.halt(Occasion.FAULT, f"{status.name}: {', '.join(status.faults)}")
+        elif self._mode in {Mode.DISARMED, Mode.FAULT}:
+            self.publish(self.status)
+        elif status.link is not LinkState.READY:
+            self.halt(Occasion.DEVICE_LOST, f"{status.name} is gone: {status.detail}")
+        elif not status.armed:
+            self.halt(Occasion.STOP, f"{status.name} is no longer armed")
+        else:
+            self.publish(self.status)
+
+    async def _follow_odometry(self) -> None:
+        with self.robot.drive.odometry.subscribe() as stream:
+            async for odometry in stream:
+                self._moved(odometry)
+
+    def _moved(self, odometry: Odometry) -> None:
+        self.publish(odometry)
+        estimate = self._predictor.predict(odometry, self.place) if self.place else None
+        if estimate is not None:
+            self.publish(estimate)
+
+    async def _repeat_status(self) -> None:
+        while True:
+            await asyncio.sleep(_STATUS_PERIOD_S)
+            self.publish(self.status)

@@ -1,0 +1,85 @@
+"""A journal that can be recorded from any moment on, and still from the beginning.
+
+A replay must begin where the daemon began: with the handshakes, the maps in use, the commands. So the journal remembers
+all of it, up to a bound, and a recording that is started later gets what went before. Past the bound it says that
+it cannot, rather than to record what no replay could use.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from robotd.core.errors import RecordingError
+from robotd.recording.encoding import encode
+from robotd.recording.entries import Entry, RecordingHeader
+from robotd.recording.journal import Journal
+from robotd.recording.recorder import Recorder
+
+_ENTRY_OVERHEAD_BYTES = 160
+
+
+class PrerollJournal(Journal):
+    """Remembers what happened since the daemon started, and hands it to the recorder while there is one."""
+
+    def __init__(self, header: RecordingHeader, limit_bytes: int) -> None:
+        self._header = header
+        self._limit_bytes = limit_bytes
+        self._remembered: list[Entry] | None = []
+        self._size_bytes = 0
+        self._recorder: Recorder | None = None
+
+    @property
+    def path(self) -> Path | None:
+        """The file being recorded to."""
+        return self._recorder.path if self._recorder else None
+
+    @property
+    def error(self) -> str | None:
+        """Why the recording under way ended by itself, if it did."""
+        return self._recorder.error if self._recorder else None
+
+    def note(self, entry: Entry) -> None:
+        """Remember an entry, and record it."""
+        if self._recorder is not None:
+            self._recorder.note(entry)
+        if self._remembered is None:
+            return
+        self._remembered.append(entry)
+        self._size_bytes += _ENTRY_OVERHEAD_BYTES + len(encode(entry)[1])
+        if self._size_bytes > self._limit_bytes:
+            self._remembered = None
+
+    def start(self, path: Path) -> None:
+        """Begin to record, from the daemon's start on.
+
+        Raises:
+            RecordingError: one is under way, the file cannot be made, or the daemon has run for too long.
+        """
+        if self._recorder is not None:
+            raise RecordingError(f"already recording to {self._recorder.path}")
+        if self._remembered is None:
+            raise RecordingError(
+                f"the daemon has run past its pre-roll of {self._limit_bytes} bytes, and a recording must begin where"
+                " the daemon began: restart it, or set recording.from_start = true"
+            )
+        path.parent.mkdir(parents=True, exist_ok=True)
+        recorder = Recorder(path, self._header)
+        for entry in self._remembered:
+            recorder.note(entry)
+        self._recorder = recorder
+
+    def stop(self) -> Callable[[], None]:
+        """End the recording; the returned function waits for the file and may block.
+
+        Raises:
+            RecordingError: nothing is being recorded, or it ended by itself before.
+        """
+        if self._recorder is None:
+            raise RecordingError("nothing is being recorded")
+        recorder, self._recorder = self._recorder, None
+
+        def finish() -> None:
+            recorder.close()
+            if recorder.error is not None:
+                raise RecordingError(f"{recorder.path} is incomplete: {recorder.error}")
+
+        return finish
