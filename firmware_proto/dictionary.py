@@ -24,6 +24,7 @@ _ENUMS: tuple[type[enum.IntEnum] | type[enum.IntFlag], ...] = (
     common.BoardState,
     common.Result,
     common.Fault,
+    pantilt.Motion,
     rangefinder.ShotStatus,
 )
 _OF_KIND = {

@@ -1,9 +1,20 @@
 """Messages of the pan/tilt board: aim, readback, limits, motion done."""
 
+import enum
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from firmware_proto.schema import REPLY, Message, i32, u8, u16, u64
+
+
+class Motion(enum.IntEnum):
+    """What became of the newest AIM."""
+
+    DONE = 0
+    """Reached, and nothing stopped the head since."""
+    TURNING = 1
+    HALTED = 2
+    """Not turning, and not there on its account: something stopped the head, or this session saw no AIM yet."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +43,7 @@ class AimReadback(Message):
     pan_tenth_mrad: Annotated[int, i32("0.1 mrad", "Measured pan.")]
     tilt_tenth_mrad: Annotated[int, i32("0.1 mrad", "Measured tilt.")]
     aim_seq: Annotated[int, u16("", "seq of the newest AIM.")]
-    moving: Annotated[int, u8("bool", "1 while the head turns.")]
+    moving: Annotated[int, u8("Motion", "Whether it is there, turns, or was halted.")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +73,7 @@ class AimReport(Message):
     pan_tenth_mrad: Annotated[int, i32("0.1 mrad", "Measured pan.")]
     tilt_tenth_mrad: Annotated[int, i32("0.1 mrad", "Measured tilt.")]
     aim_seq: Annotated[int, u16("", "seq of the newest AIM.")]
-    moving: Annotated[int, u8("bool", "1 while the head turns; a report with 0 and its own aim_seq is *motion done*.")]
+    moving: Annotated[int, u8("Motion", "DONE with the aim_seq of an AIM is *motion done*.")]
 
 
 MESSAGES: tuple[type[Message], ...] = (Aim, ReadAim, AimReadback, ReadLimits, Limits, AimReport)
