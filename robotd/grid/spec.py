@@ -69,6 +69,17 @@ class GridSpec:
 
     def cells_at(self, points_m: NDArray[np.float64]) -> NDArray[np.intp]:
         """Return the cells ``intp[n, 2]`` as ``(row, col)`` of map-frame points ``float64[n, 2]`` as ``(x, y)``."""
+        return np.floor(self.positions_at(points_m)).astype(np.intp)
+
+    def positions_at(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return map-frame points ``float64[n, 2]`` as ``(x, y)`` in cells, ``float64[n, 2]`` as ``(row, col)``."""
         origin = np.array([self.origin_x_m, self.origin_y_m])
-        cells: NDArray[np.intp] = np.floor((points_m - origin) / self.resolution_m).astype(np.intp)
-        return cells[:, ::-1]
+        positions: NDArray[np.float64] = ((points_m - origin) / self.resolution_m)[:, ::-1]
+        return positions
+
+    def flat_at(self, points_m: NDArray[np.float64]) -> NDArray[np.intp]:
+        """Return flat indices ``row * cols + col`` of map-frame points, -1 for those outside the grid."""
+        positions = np.clip(self.positions_at(points_m), -1.0, np.array(self.shape))
+        rows, cols = np.floor(positions).astype(np.intp).T
+        inside = (rows >= 0) & (rows < self.rows) & (cols >= 0) & (cols < self.cols)
+        return np.where(inside, rows * self.cols + cols, -1)

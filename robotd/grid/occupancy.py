@@ -1,0 +1,165 @@
+"""The statistical occupancy grid: what the beams of all stops say about each cell ([BrownDonald2000]_ sec. 1, 3.2)."""
+
+import enum
+import hashlib
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.pose import Pose2
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.grid.ray import ray_cells
+from robotd.grid.spec import GridSpec
+from robotd.grid.tables import NO_INFORMATION, UpdateTable, lower_table, raise_table
+
+
+class UpdatePolicy(enum.StrEnum):
+    """How the readings of one sweep are put together."""
+
+    PER_READING = "per_reading"
+    """One after the other, exactly as in the paper: the last beam through a cell has the last word."""
+    PER_SWEEP = "per_sweep"
+    """Each cell is updated at most once, and a hit beats all misses."""
+
+
+class OverRange(enum.StrEnum):
+    """What a beam says that met nothing up to the cut-off."""
+
+    CLEAR = "clear"
+    """The cells up to the cut-off are vacant."""
+    DISCARD = "discard"
+    """Nothing, as in the paper's own runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class GridSettings:
+    """Size of a new map and how readings change it; the defaults are LILY's, but for the two policies."""
+
+    resolution_m: float = 0.05
+    """Side of one cell."""
+    rows: int = 256
+    """Cells along map y."""
+    cols: int = 256
+    """Cells along map x."""
+    raise_alpha: float = 0.3
+    """Share of the doubt that a hit leaves."""
+    lower_alpha: float = 0.15
+    """Share of the probability of an obstacle that a miss leaves."""
+    policy: UpdatePolicy = UpdatePolicy.PER_SWEEP
+    """How the readings of one sweep are put together."""
+    over_range: OverRange = OverRange.CLEAR
+    """What becomes of readings beyond the cut-off."""
+
+    def __post_init__(self) -> None:
+        """Refuse impossible values."""
+        if not self.resolution_m > 0.0:
+            raise ValueError(f"resolution_m must be positive, got {self.resolution_m}")
+        if not (1 <= self.rows <= MAX_SIDE_CELLS and 1 <= self.cols <= MAX_SIDE_CELLS):
+            raise ValueError(f"rows and cols must lie between 1 and {MAX_SIDE_CELLS}, got {self.rows} x {self.cols}")
+        for name, alpha in (("raise_alpha", self.raise_alpha), ("lower_alpha", self.lower_alpha)):
+            if not 0.0 <= alpha < 1.0:
+                raise ValueError(f"{name} must be at least 0 and less than 1, got {alpha}")
+
+    def spec_around(self, x_m: float, y_m: float) -> GridSpec:
+        """Return the placement of a grid of this size with a map-frame point in its middle."""
+        half_width_m, half_height_m = self.cols * self.resolution_m / 2, self.rows * self.resolution_m / 2
+        return GridSpec(self.resolution_m, x_m - half_width_m, y_m - half_height_m, (self.rows, self.cols))
+
+
+MAX_SIDE_CELLS = 8192
+"""More cells than this along one side is a mistake, not a map."""
+
+
+class OccupancyGrid:
+    """8-bit cells, 0 surely vacant to 255 surely occupied, and the two tables that change them."""
+
+    def __init__(
+        self, spec: GridSpec, cells: NDArray[np.uint8] | None = None, settings: GridSettings | None = None
+    ) -> None:
+        """Start from nothing known, or from the cells of a stored map ``uint8[rows, cols]`` (copied).
+
+        ``spec`` has the last word on size and resolution; ``settings`` on tables and policies.
+        """
+        if cells is not None and (cells.shape != spec.shape or cells.dtype != np.uint8):
+            raise ValueError(f"expected uint8{list(spec.shape)}, got {cells.dtype}{list(cells.shape)}")
+        self.spec = spec
+        self.settings = settings or GridSettings()
+        self.cells: NDArray[np.uint8] = (
+            np.full(spec.shape, NO_INFORMATION, np.uint8) if cells is None else np.array(cells, np.uint8, order="C")
+        )
+        self._raise = raise_table(self.settings.raise_alpha)
+        self._lower = lower_table(self.settings.lower_alpha)
+
+    def insert(self, sweep: Sweep, map_from_robot: Pose2) -> NDArray[np.intp]:
+        """Update the cells by the readings of a stop; what lies outside the grid is ignored.
+
+        Args:
+            sweep: the readings, in the robot frame.
+            map_from_robot: where the robot stood.
+
+        Returns:
+            Flat indices ``row * cols + col`` of the cells whose value changed, ascending. O(readings x cells a beam).
+        """
+        before = self.cells.copy()
+        beams = _Beams.of(self._usable(sweep), map_from_robot, self.spec)
+        if self.settings.policy is UpdatePolicy.PER_SWEEP:
+            self._insert_at_once(beams)
+        else:
+            self._insert_one_by_one(beams)
+        return np.flatnonzero(self.cells != before)
+
+    def snapshot(self) -> NDArray[np.uint8]:
+        """Return a read-only copy of the cells, ``uint8[rows, cols]``."""
+        copy = self.cells.copy()
+        copy.flags.writeable = False
+        return copy
+
+    def digest(self) -> str:
+        """Return the SHA-256 of placement and cells, in hexadecimal: equal exactly if the maps are."""
+        spec = self.spec
+        place = f"{spec.resolution_m!r} {spec.origin_x_m!r} {spec.origin_y_m!r} {spec.rows} {spec.cols}\n"
+        return hashlib.sha256(place.encode() + self.cells.tobytes()).hexdigest()
+
+    def _usable(self, sweep: Sweep) -> tuple[RangeReading, ...]:
+        if self.settings.over_range is OverRange.CLEAR:
+            return sweep.measured
+        return tuple(reading for reading in sweep.measured if reading.status is ReadingStatus.OK)
+
+    def _insert_at_once(self, beams: "_Beams") -> None:
+        hit = np.unique(beams.hit_cells[beams.hit_cells >= 0])
+        self._apply(self._lower, np.setdiff1d(beams.passed_cells, hit))
+        self._apply(self._raise, hit)
+
+    def _insert_one_by_one(self, beams: "_Beams") -> None:
+        bounds = np.searchsorted(beams.passed_rays, np.arange(len(beams.hit_cells) + 1))
+        for ray, hit in enumerate(beams.hit_cells):
+            passed = beams.passed_cells[bounds[ray] : bounds[ray + 1]]
+            self._apply(self._lower, passed[passed != hit])
+            if hit >= 0:
+                self._apply(self._raise, np.array([hit]))
+
+    def _apply(self, table: UpdateTable, cells: NDArray[np.intp]) -> None:
+        flat = self.cells.reshape(-1)
+        flat[cells] = table[flat[cells]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Beams:
+    """The cells that the beams of one sweep touch, as flat indices."""
+
+    passed_rays: NDArray[np.intp]
+    passed_cells: NDArray[np.intp]
+    """Cells that beam ``passed_rays[i]`` ran through; its hit cell may be among them."""
+    hit_cells: NDArray[np.intp]
+    """Per beam the cell in which it ended, -1 if it met nothing or ended outside the grid."""
+
+    @classmethod
+    def of(cls, readings: tuple[RangeReading, ...], map_from_robot: Pose2, spec: GridSpec) -> "_Beams":
+        origins_m = np.array([map_from_robot.transform(r.origin_x_m, r.origin_y_m) for r in readings]).reshape(-1, 2)
+        bearings = np.array([map_from_robot.heading_rad + r.bearing_rad for r in readings], np.float64)
+        ranges_m = np.array([r.range_m for r in readings], np.float64)
+        is_hit = np.array([r.status is ReadingStatus.OK for r in readings], np.bool_)
+        rays, cells = ray_cells(spec.positions_at(origins_m), bearings, ranges_m / spec.resolution_m, spec.shape)
+        ends_m = origins_m + ranges_m[:, None] * np.stack((np.cos(bearings), np.sin(bearings)), axis=1)
+        return cls(rays, cells, np.where(is_hit, spec.flat_at(ends_m), -1))
