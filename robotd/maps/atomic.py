@@ -1,0 +1,74 @@
+"""Directories that appear on disk whole or not at all, whenever the power goes.
+
+Everything is written beside its place, synced file by file, synced as a directory, renamed into place, and
+the rename is synced. All calls that change the disk are here, through :mod:`os`.
+"""
+
+import os
+import shutil
+from pathlib import Path
+
+_READABLE_BY_ALL = 0o644
+_LISTABLE_BY_ALL = 0o755
+
+
+def write_synced(path: Path, data: bytes) -> None:
+    """Write a new file down to the disk.
+
+    Raises:
+        OSError: it exists already, or the disk refused a part of it.
+    """
+    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, _READABLE_BY_ALL)
+    try:
+        rest = memoryview(data)
+        while rest:
+            rest = rest[os.write(descriptor, rest) :]
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def sync_directory(path: Path) -> None:
+    """Bring the names in a directory down to the disk; raises OSError."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def make_directory(path: Path) -> None:
+    """Make a directory, and those it lies in, unless they are there; raises OSError."""
+    if path.is_dir():
+        return
+    if path.parent != path:
+        make_directory(path.parent)
+    os.mkdir(path, _LISTABLE_BY_ALL)  # noqa: PTH102  # every change of the disk goes through os, for the fault tests
+    sync_directory(path.parent)
+
+
+def publish_directory(temporary: Path, final: Path, files: dict[str, bytes]) -> None:
+    """Make the directory ``final`` with these files: after a crash at any moment it is there whole, or not there.
+
+    ``temporary`` must lie on the same file system; after a crash it may be left behind.
+
+    Raises:
+        OSError: ``final`` exists already, or the disk refused.
+    """
+    make_directory(temporary)
+    for name, data in files.items():
+        write_synced(temporary / name, data)
+    sync_directory(temporary)
+    os.rename(temporary, final)  # noqa: PTH104  # every change of the disk goes through os, for the fault tests
+    sync_directory(final.parent)
+
+
+def withdraw_directory(path: Path, bin_path: Path) -> None:
+    """Take a directory out of its place in one step, then remove it bit by bit; raises OSError."""
+    os.rename(path, bin_path)  # noqa: PTH104  # every change of the disk goes through os, for the fault tests
+    remove_leftover(bin_path)
+
+
+def remove_leftover(path: Path) -> None:
+    """Remove a directory that is not in use, as far as that is possible."""
+    shutil.rmtree(path, ignore_errors=True)

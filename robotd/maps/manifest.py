@@ -1,0 +1,99 @@
+"""The manifest of a stored map: what it is, where it lies, and the checksum of every file, its own included."""
+
+import hashlib
+import json
+import re
+from dataclasses import asdict, dataclass
+from typing import Any, Self
+
+from robotd.core.errors import MapError
+from robotd.grid.spec import GridSpec
+
+SCHEMA = 1
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
+
+
+def check_name(name: str) -> None:
+    """Refuse a name that is not also a harmless directory name.
+
+    Raises:
+        MapError: it is empty, too long, or holds more than letters, digits, dots, dashes and underscores.
+    """
+    if not _NAME.fullmatch(name):
+        raise MapError(
+            f"{name!r} cannot name a map: take 1 to 64 letters, digits, '.', '-', '_', the first a letter or a digit"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class FileSum:
+    """Size and checksum of one file."""
+
+    size_bytes: int
+    sha256: str
+
+    @classmethod
+    def of(cls, data: bytes) -> Self:
+        """Return the sum of these bytes."""
+        return cls(len(data), hashlib.sha256(data).hexdigest())
+
+
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """What a map's ``manifest.json`` says."""
+
+    name: str
+    version: int
+    created_unix_ns: int
+    digest: str
+    """Of placement and cells, as :meth:`OccupancyGrid.digest` gives it."""
+    spec: GridSpec
+    files: dict[str, FileSum]
+    metadata: dict[str, Any]
+
+    def encode(self) -> bytes:
+        """Return the file's bytes.
+
+        Raises:
+            TypeError: ``metadata`` holds something that JSON cannot.
+        """
+        content = {"schema": SCHEMA, **asdict(self)}
+        return json.dumps({**content, "sha256": _sum(content)}, indent=1).encode() + b"\n"
+
+
+def decode_manifest(data: bytes) -> Manifest:
+    """Return what a ``manifest.json`` says.
+
+    Raises:
+        MapError: it is cut, altered, or of a schema that this version does not know; says which.
+    """
+    try:
+        content = json.loads(data)
+        claimed = content.pop("sha256")
+        schema = content.pop("schema")
+    except KeyError as error:
+        raise MapError(f"manifest.json has no {error.args[0]!r}") from error
+    except (ValueError, AttributeError, TypeError, RecursionError) as error:
+        raise MapError(f"manifest.json is damaged: {error}") from error
+    if schema != SCHEMA:
+        raise MapError(f"manifest.json has schema {schema}, this version reads schema {SCHEMA}")
+    if claimed != _sum({"schema": schema, **content}):
+        raise MapError("manifest.json was altered: its own checksum is wrong")
+    return _manifest_of(content)
+
+
+def _manifest_of(content: dict[str, Any]) -> Manifest:
+    try:
+        placement = content.pop("spec")
+        spec = GridSpec(**{**placement, "shape": tuple(placement["shape"])})
+        files = {name: FileSum(**one) for name, one in content.pop("files").items()}
+        return Manifest(spec=spec, files=files, **content)
+    except KeyError as error:
+        raise MapError(f"manifest.json has no {error.args[0]!r}") from error
+    except (ValueError, TypeError, AttributeError) as error:
+        raise MapError(f"manifest.json makes no sense: {error}") from error
+
+
+def _sum(content: dict[str, Any]) -> str:
+    canonical = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(canonical.encode()).hexdigest()

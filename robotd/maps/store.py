@@ -1,0 +1,226 @@
+"""Maps on disk, as ``root/NAME/VERSION/{manifest.json, cells.bin, map.pgm, map.yaml}``.
+
+A version appears whole or not at all and is never changed afterwards. ``cells.bin`` is the map: the cells row by
+row, 8 bits each; ``map.pgm`` and ``map.yaml`` are exports of it for other programs. Loading checks everything and
+never falls back by itself: a robot that trusts the wrong map is worse off than one that has none.
+"""
+
+import contextlib
+import logging
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robotd.core.errors import MapError
+from robotd.grid.image import encode_pgm, trinary_from_cells
+from robotd.grid.map_yaml import MapYaml
+from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.maps.atomic import make_directory, publish_directory, remove_leftover, withdraw_directory
+from robotd.maps.manifest import FileSum, Manifest, check_name, decode_manifest
+
+MANIFEST, CELLS, IMAGE, YAML = "manifest.json", "cells.bin", "map.pgm", "map.yaml"
+_LEFTOVER = ".tmp-"
+_VERSION = re.compile(r"[1-9][0-9]{0,8}")
+_MANIFEST_MAX_BYTES = 1 << 20
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class MapEntry:
+    """One version of a stored map."""
+
+    name: str
+    version: int
+    digest: str
+    """Of placement and cells: the map's identity. Empty if the manifest is damaged."""
+    created_unix_ns: int
+    metadata: dict[str, Any]
+    path: Path
+    """The directory; ``map.yaml`` in it is for other programs."""
+    damage: str | None = None
+    """Why its manifest cannot be read."""
+
+
+class MapStore:
+    """The maps under one directory. Blocks on the disk: call it on a thread. One writer at a time."""
+
+    def __init__(self, root: Path, settings: GridSettings | None = None, *, keep: int = 10) -> None:
+        """Look at ``root``, which need not exist yet.
+
+        Args:
+            root: where the maps are.
+            settings: how further readings change a map that was loaded.
+            keep: how many versions of each map to keep.
+        """
+        self._root = root
+        self._settings = settings
+        self._keep = keep
+        self._loaded: tuple[str, int] | None = None
+
+    def save(self, name: str, grid: OccupancyGrid, metadata: dict[str, Any], created_unix_ns: int) -> MapEntry:
+        """Store a map as a new version, synced to the disk, and drop versions too many.
+
+        Raises:
+            MapError: the name is no name, or the disk refused; what was there before is untouched.
+            TypeError: ``metadata`` holds something that JSON cannot.
+        """
+        check_name(name)
+        with _disk_errors(f"cannot save map {name}"):
+            make_directory(self._root / name)
+            self._remove_leftovers()
+            version = max(self._versions(name), default=0) + 1
+            files, manifest = _files_of(name, version, grid, metadata, created_unix_ns)
+            path = self._root / name / str(version)
+            try:
+                publish_directory(self._leftover(name, version), path, files)
+            except OSError:
+                self._remove_leftovers()
+                raise
+            self._prune(name)
+        return _entry_of(manifest, path)
+
+    def load(self, name: str, version: int | None = None) -> tuple[OccupancyGrid, MapEntry]:
+        """Return a map, checked byte by byte; the newest version if none is given.
+
+        Raises:
+            MapError: there is no such map, or it is damaged; says what is damaged, and which older version is not.
+        """
+        check_name(name)
+        with _disk_errors(f"cannot load map {name}"):
+            loaded = self._load_version(name, version)
+        self._loaded = (name, loaded[1].version)
+        return loaded
+
+    def list(self) -> tuple[MapEntry, ...]:
+        """Return every version of every map by its manifest, oldest first; the files are not checked."""
+        with _disk_errors("cannot list the maps"):
+            return tuple(self._listed(name, version) for name in self._names() for version in self._versions(name))
+
+    def _load_version(self, name: str, version: int | None) -> tuple[OccupancyGrid, MapEntry]:
+        versions = self._versions(name)
+        if not versions:
+            raise MapError(f"there is no map {name!r}; there is {', '.join(self._names()) or 'none at all'}")
+        wanted = versions[-1] if version is None else version
+        if wanted not in versions:
+            raise MapError(f"map {name} has no version {wanted}; it has {', '.join(map(str, versions))}")
+        try:
+            return self._load(name, wanted)
+        except MapError as error:
+            raise MapError(f"map {name} version {wanted} is damaged: {error}; {self._intact(name, wanted)}") from error
+
+    def _load(self, name: str, version: int) -> tuple[OccupancyGrid, MapEntry]:
+        path = self._root / name / str(version)
+        manifest = _read_manifest(path)
+        if (manifest.name, manifest.version) != (name, version):
+            raise MapError(f"{MANIFEST} belongs to map {manifest.name} version {manifest.version}")
+        files = {file: _read_checked(path / file, manifest.files.get(file)) for file in (CELLS, IMAGE, YAML)}
+        return _grid_of(manifest, files[CELLS], self._settings), _entry_of(manifest, path)
+
+    def _listed(self, name: str, version: int) -> MapEntry:
+        path = self._root / name / str(version)
+        try:
+            return _entry_of(_read_manifest(path), path)
+        except MapError as error:
+            return MapEntry(name, version, "", 0, {}, path, damage=str(error))
+
+    def _intact(self, name: str, damaged: int) -> str:
+        for version in reversed([version for version in self._versions(name) if version != damaged]):
+            with contextlib.suppress(MapError):
+                self._load(name, version)
+                return f"version {version} is intact"
+        return "no other version is intact"
+
+    def _names(self) -> tuple[str, ...]:
+        found = (path.name for path in self._root.iterdir()) if self._root.is_dir() else ()
+        return tuple(sorted(name for name in found if self._versions(name)))
+
+    def _versions(self, name: str) -> tuple[int, ...]:
+        place = self._root / name
+        if name.startswith(".") or not place.is_dir():
+            return ()
+        return tuple(sorted(int(path.name) for path in place.iterdir() if _VERSION.fullmatch(path.name)))
+
+    def _leftover(self, name: str, version: int) -> Path:
+        return self._root / f"{_LEFTOVER}{name}-{version}"
+
+    def _remove_leftovers(self) -> None:
+        for path in self._root.glob(f"{_LEFTOVER}*"):
+            remove_leftover(path)
+
+    def _prune(self, name: str) -> None:
+        for version in self._versions(name)[: -self._keep]:
+            if (name, version) != self._loaded:
+                try:
+                    withdraw_directory(self._root / name / str(version), self._leftover(name, version))
+                except OSError as error:
+                    _log.warning("cannot remove map %s version %d: %s", name, version, error)
+
+
+@contextlib.contextmanager
+def _disk_errors(what: str) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise MapError(f"{what}: {error.strerror or error}") from error
+
+
+def _files_of(
+    name: str, version: int, grid: OccupancyGrid, metadata: dict[str, Any], created_unix_ns: int
+) -> tuple[dict[str, bytes], Manifest]:
+    spec = grid.spec
+    yaml = MapYaml(IMAGE, spec.resolution_m, spec.origin_x_m, spec.origin_y_m)
+    files = {
+        CELLS: grid.cells.tobytes(),
+        IMAGE: encode_pgm(trinary_from_cells(grid.cells)),
+        YAML: yaml.text().encode(),
+    }
+    sums = {file: FileSum.of(data) for file, data in files.items()}
+    manifest = Manifest(name, version, created_unix_ns, grid.digest(), spec, sums, metadata)
+    return {**files, MANIFEST: manifest.encode()}, manifest
+
+
+def _entry_of(manifest: Manifest, path: Path) -> MapEntry:
+    return MapEntry(manifest.name, manifest.version, manifest.digest, manifest.created_unix_ns, manifest.metadata, path)
+
+
+def _read_manifest(path: Path) -> Manifest:
+    return decode_manifest(_read(path / MANIFEST, _MANIFEST_MAX_BYTES))
+
+
+def _read_checked(path: Path, expected: FileSum | None) -> bytes:
+    if expected is None:
+        raise MapError(f"{MANIFEST} does not list {path.name}")
+    data = _read(path, expected.size_bytes)
+    if len(data) != expected.size_bytes:
+        raise MapError(f"{path.name} has {len(data)} bytes, expected {expected.size_bytes}")
+    if FileSum.of(data) != expected:
+        raise MapError(f"{path.name} was altered: its checksum is wrong")
+    return data
+
+
+def _read(path: Path, max_bytes: int) -> bytes:
+    try:
+        with path.open("rb") as file:
+            data = file.read(max_bytes + 1)
+    except FileNotFoundError as error:
+        raise MapError(f"{path.name} is missing") from error
+    except OSError as error:
+        raise MapError(f"{path.name} cannot be read: {error.strerror}") from error
+    if len(data) > max_bytes:
+        raise MapError(f"{path.name} is longer than {max_bytes} bytes")
+    return data
+
+
+def _grid_of(manifest: Manifest, data: bytes, settings: GridSettings | None) -> OccupancyGrid:
+    rows, cols = manifest.spec.shape
+    if len(data) != rows * cols:
+        raise MapError(f"{CELLS} has {len(data)} bytes for {rows} x {cols} cells")
+    grid = OccupancyGrid(manifest.spec, np.frombuffer(data, np.uint8).reshape(rows, cols), settings)
+    if grid.digest() != manifest.digest:
+        raise MapError(f"{MANIFEST} has another digest than the map")
+    return grid
