@@ -15,42 +15,60 @@ class BoardKind(enum.IntEnum):
     """Which device a board drives; the dictionary names it."""
 
     DRIVE = 1
+    """The synchro-drive base."""
     PANTILT = 2
+    """The pan/tilt head."""
     RANGEFINDER = 3
+    """The laser rangefinder."""
 
 
 class BoardState(enum.IntEnum):
-    """Life of a board: ``BOOT`` -> HELLO -> ``IDENTIFIED`` -> CONFIGURE -> ``CONFIGURED`` -> ARM -> ``ARMED``."""
+    """Life of a board: ``BOOT``, Hello, ``IDENTIFIED``, Configure, ``CONFIGURED``, Arm, ``ARMED``."""
 
     BOOT = 0
+    """No session since power came."""
     IDENTIFIED = 1
+    """A session is open; no telemetry yet."""
     CONFIGURED = 2
+    """Everything but motion."""
     ARMED = 3
+    """May move."""
     FAULT = 4
-    """Latched: only CLEAR leads out, to ``CONFIGURED``."""
+    """Latched: only Clear leads out, to ``CONFIGURED``."""
 
 
 class Result(enum.IntEnum):
     """Outcome of a request, in its reply or in a NACK."""
 
     OK = 0
+    """Done, or begun."""
     UNKNOWN_TYPE = 1
+    """This board knows no such request."""
     BAD_LENGTH = 2
+    """The payload has not the size of its type."""
     WRONG_STATE = 3
+    """Not allowed in the present state."""
     BAD_VALUE = 4
+    """A value is impossible; nothing was changed."""
     BUSY = 5
+    """Still at work on the one before; ask again later."""
 
 
 class Fault(enum.IntFlag):
     """Why a board is in ``FAULT``."""
 
     NONE = 0
+    """All is well."""
     DEADMAN = 1
     """A motion outlived its ``ttl_ms``."""
     BUMPER = 2
+    """A bumper was pressed while the base moved."""
     BATTERY = 4
+    """Too low to move safely."""
     MOTOR = 8
+    """A motor or its driver failed or stalled."""
     KILLED = 16
+    """Kill was received."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +108,8 @@ class Pong(Message):
     """The board's time beside the host's."""
 
     TYPE: ClassVar[int] = 0x02 | REPLY
-    host_us: Annotated[int, u64("us", "The time in the PING.")]
-    board_us: Annotated[int, u64("us", "The board's time when the PING arrived.")]
+    host_us: Annotated[int, u64("us", "The time in the Ping.")]
+    board_us: Annotated[int, u64("us", "The board's time when the Ping arrived.")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +144,7 @@ class ConfigureReply(Message):
 
     TYPE: ClassVar[int] = 0x04 | REPLY
     result: Annotated[int, u8("Result", "OK, or why not.")]
-    config_crc32: Annotated[int, u32("", "CRC-32 of the CONFIGURE payload taken over.")]
+    config_crc32: Annotated[int, u32("", "CRC-32 of the Configure payload taken over.")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,9 +190,9 @@ class BoardStatus(Message):
     board_us: Annotated[int, u64("us", "The board's time.")]
     state: Annotated[int, u8("BoardState", "Where in its life the board is.")]
     faults: Annotated[int, u16("Fault", "Latched faults.")]
-    crc_errors: Annotated[int, u16("", "Frames refused by CRC, modulo 65536.")]
-    cobs_errors: Annotated[int, u16("", "Frames refused by COBS, modulo 65536.")]
-    length_errors: Annotated[int, u16("", "Frames of a wrong length for their type, modulo 65536.")]
+    crc_errors: Annotated[int, u16("", "Packets refused by CRC, modulo 65536.")]
+    cobs_errors: Annotated[int, u16("", "Packets refused by COBS, modulo 65536.")]
+    length_errors: Annotated[int, u16("", "Packets or payloads of a wrong length, modulo 65536.")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,5 +214,5 @@ class Nack(Message):
 
 MESSAGES: tuple[type[Message], ...] = (
     Hello, HelloReply, Ping, Pong, Identify, IdentifyReply, Configure, ConfigureReply,
-    Arm, Disarm, Clear, Stop, Kill, BoardStatus, Nack,
+    Arm, Disarm, Clear, Stop, Kill, BoardStatus, Ack, Nack,
 )  # fmt: skip

@@ -37,7 +37,7 @@ _SIZE_MAX = 256 * 1024
 
 def messages_for(kind: BoardKind) -> tuple[type[Message], ...]:
     """Return every message that a board of this kind speaks, both ways."""
-    return (*common.MESSAGES, Ack, *_OF_KIND[kind])
+    return (*common.MESSAGES, *_OF_KIND[kind])
 
 
 def requests_for(kind: BoardKind) -> dict[int, type[Message]]:

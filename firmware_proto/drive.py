@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 from firmware_proto.schema import Message, i16, i32, u16, u64
 
 TTL_LIMIT_MS = 1000
-"""A drive board never grants a longer ``ttl_ms``, whatever CONFIGURE allows."""
+"""A drive board never grants a longer ``ttl_ms``, whatever Configure allows."""
 
 
 @dataclass(frozen=True, slots=True)

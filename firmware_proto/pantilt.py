@@ -8,13 +8,14 @@ from firmware_proto.schema import REPLY, Message, i32, u8, u16, u64
 
 
 class Motion(enum.IntEnum):
-    """What became of the newest AIM."""
+    """What became of the newest Aim."""
 
     DONE = 0
     """Reached, and nothing stopped the head since."""
     TURNING = 1
+    """Under way."""
     HALTED = 2
-    """Not turning, and not there on its account: something stopped the head, or this session saw no AIM yet."""
+    """Not turning, and not there on its account: something stopped the head, or this session saw no Aim yet."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +43,7 @@ class AimReadback(Message):
     board_us: Annotated[int, u64("us", "The board's time.")]
     pan_tenth_mrad: Annotated[int, i32("0.1 mrad", "Measured pan.")]
     tilt_tenth_mrad: Annotated[int, i32("0.1 mrad", "Measured tilt.")]
-    aim_seq: Annotated[int, u16("", "seq of the newest AIM.")]
+    aim_seq: Annotated[int, u16("", "seq of the newest Aim.")]
     moving: Annotated[int, u8("Motion", "Whether it is there, turns, or was halted.")]
 
 
@@ -58,10 +59,10 @@ class Limits(Message):
     """The mechanical limits; a pan range of a full turn or more is endless."""
 
     TYPE: ClassVar[int] = 0x22 | REPLY
-    pan_min_tenth_mrad: Annotated[int, i32("0.1 mrad", "")]
-    pan_max_tenth_mrad: Annotated[int, i32("0.1 mrad", "")]
-    tilt_min_tenth_mrad: Annotated[int, i32("0.1 mrad", "")]
-    tilt_max_tenth_mrad: Annotated[int, i32("0.1 mrad", "")]
+    pan_min_tenth_mrad: Annotated[int, i32("0.1 mrad", "Lowest pan.")]
+    pan_max_tenth_mrad: Annotated[int, i32("0.1 mrad", "Highest pan.")]
+    tilt_min_tenth_mrad: Annotated[int, i32("0.1 mrad", "Lowest tilt.")]
+    tilt_max_tenth_mrad: Annotated[int, i32("0.1 mrad", "Highest tilt.")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +73,8 @@ class AimReport(Message):
     board_us: Annotated[int, u64("us", "The board's time.")]
     pan_tenth_mrad: Annotated[int, i32("0.1 mrad", "Measured pan.")]
     tilt_tenth_mrad: Annotated[int, i32("0.1 mrad", "Measured tilt.")]
-    aim_seq: Annotated[int, u16("", "seq of the newest AIM.")]
-    moving: Annotated[int, u8("Motion", "DONE with the aim_seq of an AIM is *motion done*.")]
+    aim_seq: Annotated[int, u16("", "seq of the newest Aim.")]
+    moving: Annotated[int, u8("Motion", "DONE with the aim_seq of an Aim is *motion done*.")]
 
 
 MESSAGES: tuple[type[Message], ...] = (Aim, ReadAim, AimReadback, ReadLimits, Limits, AimReport)

@@ -11,21 +11,28 @@ class ShotStatus(enum.IntEnum):
     """What became of a shot."""
 
     OK = 0
+    """A distance was measured."""
     OVER_RANGE = 1
     """Nothing came back from within the instrument's reach."""
     TOO_NEAR = 2
+    """Below the instrument's least distance."""
     WEAK = 3
+    """Too little light came back."""
     SATURATED = 4
+    """Too much light came back."""
     AMBIENT = 5
+    """Other light drowned the answer."""
     NOT_MEASURED = 6
     """The instrument cannot see in this direction."""
     LASER_OFF = 7
+    """The light was off, or went off before the answer came."""
     DEVICE_ERROR = 8
+    """The instrument failed, or took longer than ``timeout_ms``."""
 
 
 @dataclass(frozen=True, slots=True)
 class SetLaser(Message):
-    """Switch the laser. Only in ``CONFIGURED`` and ``ARMED``; STOP and DISARM switch it off."""
+    """Switch the laser. Only in ``CONFIGURED`` and ``ARMED``; Stop and Disarm switch it off."""
 
     TYPE: ClassVar[int] = 0x30
     on: Annotated[int, u8("bool", "1 on, 0 off.")]

@@ -74,7 +74,7 @@ class Board(ABC):
         self._wrong_sizes = 0
         self._beneath = BoardState.BOOT
         self._faults = Fault.NONE
-        self._told = (BoardState.BOOT, Fault.NONE)
+        self._told: tuple[BoardState, Fault] | None = None
         self._outbox = Outbox()
         self._period_us = 0
         self._telemetry_us: int | None = None
@@ -169,7 +169,7 @@ class Board(ABC):
         self._deadline_us = self._now_us + min(ttl_ms, self._ttl_max_ms) * 1000
 
     def _tell_change(self) -> None:
-        if (self.state, self._faults) != self._told:
+        if self._outbox.telling and (self.state, self._faults) != self._told:
             self._outbox.tell(self._status())
 
     def _status(self) -> BoardStatus:
@@ -232,6 +232,7 @@ class Board(ABC):
         self._period_us = configure.telemetry_ms * 1000
         self._telemetry_us = self._now_us + self._period_us
         self._outbox.telling = True
+        self._told = None
         self._ttl_max_ms = configure.ttl_max_ms
         return ConfigureReply(Result.OK, zlib.crc32(configure.to_payload()))
 
