@@ -1,0 +1,88 @@
+"""Lets one emulated board live on the loop's clock, with a line to the daemon or without."""
+
+import asyncio
+import contextlib
+from collections.abc import Callable, Coroutine
+from typing import Any, TypeVar
+
+from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.errors import TransportError
+from robotd.hardware.transport.transport import Transport
+from robotd.sim.board_clock import BoardClock
+from robotd.sim.boards.board import Board
+
+T = TypeVar("T")
+
+_NS_PER_US = 1000
+
+
+async def serve(
+    board: Board, clock: BoardClock, lines: "asyncio.Queue[Transport]", *, on_step: Callable[[], None] = lambda: None
+) -> None:
+    """Run a board until cancelled, on one line after the other as they come; in between it is unplugged.
+
+    The board wakes when bytes arrive and when something falls due (deadman, telemetry, an answer). What it
+    says while nobody listens is lost, as on a real line.
+
+    Args:
+        board: the board, which is nobody else's.
+        clock: the board's own clock.
+        lines: where new lines come from; a line is closed here once its other end is gone.
+        on_step: called after the board did something.
+    """
+    life = _Life(board, clock, on_step)
+    while True:
+        life.line = None
+        line = await life.meanwhile(lines.get())
+        life.line = line
+        try:
+            with contextlib.suppress(TransportError):
+                while True:
+                    life.hear(await life.meanwhile(line.read()))
+        finally:
+            line.close()
+
+
+class _Life:
+    """A board, its clock and its present line."""
+
+    def __init__(self, board: Board, clock: BoardClock, on_step: Callable[[], None]) -> None:
+        self._board = board
+        self._clock = clock
+        self._on_step = on_step
+        self.line: Transport | None = None
+
+    async def meanwhile(self, wanted: Coroutine[Any, Any, T]) -> T:
+        """Wait for something while the board does what falls due."""
+        task = asyncio.ensure_future(wanted)
+        try:
+            while not task.done():
+                await asyncio.wait({task}, timeout=self._pass_time())
+        finally:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+        return task.result()
+
+    def hear(self, data: bytes) -> None:
+        """Hand bytes to the board."""
+        self._board.receive(data, self._now_us())
+        self._speak()
+
+    def _pass_time(self) -> float | None:
+        """Let the board catch up and return how long it may sleep [s]; None: until it hears something."""
+        self._board.advance(self._now_us())
+        self._speak()
+        due_us = self._board.next_event_us
+        if due_us is None:
+            return None
+        return max(0, self._clock.true_us(due_us) * _NS_PER_US - now_ns()) / NS_PER_S
+
+    def _speak(self) -> None:
+        said = self._board.take_output()
+        if said and self.line is not None:
+            with contextlib.suppress(TransportError):  # full: lost, as on a real line; gone: reading will tell
+                self.line.write(said)
+        self._on_step()
+
+    def _now_us(self) -> int:
+        return self._clock.board_us(now_ns() // _NS_PER_US)

@@ -1,0 +1,107 @@
+"""A whole robot behind three boards: the simulated one, and what every emulated one offers."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from robotd.core.errors import ConfigError
+from robotd.core.pose import Pose2
+from robotd.sim.board_clock import BoardClock, DriveOnClock, HeadOnClock, LaserOnClock
+from robotd.sim.boards.board import Board
+from robotd.sim.boards.drive import DriveBoard
+from robotd.sim.boards.pantilt import PanTiltBoard
+from robotd.sim.boards.rangefinder import RangefinderBoard
+from robotd.sim.body import Body, BodySettings
+from robotd.sim.head import Head, HeadSettings
+from robotd.sim.laser import Laser, LaserSettings
+from robotd.sim.noise import NoiseSettings, stream
+from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant
+from robotd.sim.walls import Point, clearance_m
+from robotd.sim.world import World
+
+DEVICES = ("drive", "pantilt", "rangefinder")
+
+
+class EmulatedRobot(Protocol):
+    """Three boards, the place they believe to be in, and the truth about it."""
+
+    boards: Mapping[str, Board]
+    """By device name."""
+    clocks: Mapping[str, BoardClock]
+    """The boards' own clocks, by device name."""
+    start: Pose2
+    """Where the robot stands at first; it ties the frame of ``stops_m`` to odometry."""
+    stops_m: tuple[Point, ...]
+    """Where to stop for a map, after the start."""
+    probes_m: tuple[Point, ...]
+    """Where to localize afterwards."""
+
+    @property
+    def truth(self) -> Pose2:
+        """Where it really is, as of the last advance of a board."""
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether it stands, and nobody asks it to move."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimSettings:
+    """Everything about the simulated hardware."""
+
+    noise: NoiseSettings = field(default_factory=NoiseSettings)
+    body: BodySettings = field(default_factory=BodySettings)
+    head: HeadSettings = field(default_factory=HeadSettings)
+    laser: LaserSettings = field(default_factory=LaserSettings)
+
+
+class SimulatedRobot:
+    """Physics in a world. The same seed gives the same robot, noise and clocks, whoever asks what when.
+
+    Raises:
+        ConfigError: the robot does not fit where the world wants it to start.
+    """
+
+    def __init__(self, world: World, seed: int = 0, settings: SimSettings | None = None, *, boot: int = 0) -> None:
+        """Put the robot at the start; ``boot`` counts how often its boards were powered up before."""
+        settings = settings or SimSettings()
+        noise = settings.noise
+        self.start = world.start_pose
+        self.stops_m = world.stops_m
+        self.probes_m = world.probes_m
+        if clearance_m(world.walls, (self.start.x_m, self.start.y_m)) < settings.body.radius_m:
+            raise ConfigError(f"a robot of radius {settings.body.radius_m} m does not fit there", key="start")
+        self._body = Body(world.walls, self.start, settings.body, noise, stream(seed, "drive"))
+        head = Head(settings.head)
+        laser = Laser(
+            world.walls, self._body, head, settings=settings.laser, noise=noise, randomness=stream(seed, "rangefinder")
+        )
+        self.clocks = clocks_of_seed(seed, noise.clock_skew_ppm)
+        self.boards = board_by_device(self._body, head, laser, clocks=self.clocks, seed=seed, boot=boot)
+
+    @property
+    def truth(self) -> Pose2:
+        """Where it really is, as of the last advance of a board."""
+        return self._body.true_pose
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether it stands, and nobody asks it to move."""
+        return self._body.at_rest
+
+
+def clocks_of_seed(seed: int, skew_ppm: float) -> dict[str, BoardClock]:
+    """Draw a clock for each device."""
+    return {device: BoardClock.of_seed(seed, device, skew_ppm) for device in DEVICES}
+
+
+def board_by_device(
+    drive: DrivePlant, head: HeadPlant, laser: LaserPlant, *, clocks: Mapping[str, BoardClock], seed: int, boot: int
+) -> dict[str, Board]:
+    """Put a board on top of each plant, each with a clock and a boot id of its own."""
+    boot_ids = {device: stream(seed, f"{device}/boot {boot}").getrandbits(32) for device in DEVICES}
+    return {
+        "drive": DriveBoard(DriveOnClock(drive, clocks["drive"]), boot_id=boot_ids["drive"]),
+        "pantilt": PanTiltBoard(HeadOnClock(head, clocks["pantilt"]), boot_id=boot_ids["pantilt"]),
+        "rangefinder": RangefinderBoard(LaserOnClock(laser, clocks["rangefinder"]), boot_id=boot_ids["rangefinder"]),
+    }

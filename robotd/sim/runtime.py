@@ -1,0 +1,114 @@
+"""An emulated robot on lines: pseudo-terminals for programs, memory for the same process."""
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator, Callable, Iterator
+from pathlib import Path
+
+from robotd.core.errors import TransportError
+from robotd.hardware.transport.memory import memory_pair
+from robotd.hardware.transport.pty import open_pty
+from robotd.hardware.transport.transport import Connect, Transport
+from robotd.sim.host import serve
+from robotd.sim.robot import EmulatedRobot
+from robotd.sim.truth import truth_log
+
+Lines = dict[str, "asyncio.Queue[Transport]"]
+
+
+async def run_on_ptys(
+    robot: EmulatedRobot,
+    *,
+    announce: Callable[[dict[str, str]], None],
+    directory: Path | None = None,
+    truth_path: Path | None = None,
+) -> None:
+    """Serve the boards on three pseudo-terminals until cancelled.
+
+    Args:
+        robot: the robot.
+        announce: told the path to open for each device, once all are ready.
+        directory: if given, links named after the devices are kept there, so that the paths are always the same.
+        truth_path: if given, a JSON line ``{t_ns, x_m, y_m, heading_rad}`` is added whenever the robot comes to rest.
+
+    Raises:
+        TransportError: the links cannot be made.
+    """
+    with contextlib.ExitStack() as stack:
+        ptys = {device: stack.enter_context(contextlib.closing(open_pty())) for device in robot.boards}
+        paths = {device: end.path for device, end in ptys.items()}
+        if directory is not None:
+            paths = stack.enter_context(_links(directory, paths))
+        lines: Lines = {device: asyncio.Queue() for device in robot.boards}
+        for device, end in ptys.items():
+            lines[device].put_nowait(end)
+        note = stack.enter_context(truth_log(robot, truth_path)).note if truth_path else _nothing
+        async with _served(robot, lines, note) as tasks:
+            announce(paths)
+            await asyncio.gather(*tasks)
+
+
+@contextlib.asynccontextmanager
+async def connectors(robot: EmulatedRobot, *, truth_path: Path | None = None) -> AsyncIterator[dict[str, Connect]]:
+    """Serve the boards in memory and yield how to connect to each device.
+
+    Each connection is a new line, which the board answers once the one before is closed. The boards live, and
+    time passes for them, from here to the end of the block.
+    """
+    lines: Lines = {device: asyncio.Queue() for device in robot.boards}
+    with contextlib.ExitStack() as stack:
+        note = stack.enter_context(truth_log(robot, truth_path)).note if truth_path else _nothing
+        async with _served(robot, lines, note):
+            yield {device: _memory_connect(device, lines[device]) for device in robot.boards}
+
+
+def _memory_connect(device: str, lines: "asyncio.Queue[Transport]") -> Connect:
+    async def connect() -> Transport:
+        near, far = memory_pair(device)
+        lines.put_nowait(far)
+        return near
+
+    return connect
+
+
+@contextlib.asynccontextmanager
+async def _served(
+    robot: EmulatedRobot, lines: Lines, note: Callable[[], None]
+) -> AsyncIterator[tuple["asyncio.Task[None]", ...]]:
+    tasks = tuple(
+        asyncio.create_task(serve(board, robot.clocks[device], lines[device], on_step=note), name=f"board {device}")
+        for device, board in robot.boards.items()
+    )
+    try:
+        yield tasks
+    finally:
+        for task in tasks:
+            task.cancel()
+        outcomes = await asyncio.gather(*tasks, return_exceptions=True)
+    for outcome in outcomes:
+        if isinstance(outcome, Exception):
+            raise outcome
+
+
+@contextlib.contextmanager
+def _links(directory: Path, paths: dict[str, str]) -> Iterator[dict[str, str]]:
+    """Keep links ``directory/device`` to the paths; links of an earlier run are replaced."""
+    links = {device: directory / device for device in paths}
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        for device, link in links.items():
+            if link.is_symlink():
+                link.unlink()
+            link.symlink_to(paths[device])
+    except OSError as error:
+        raise TransportError(f"{directory}: cannot link the devices: {error.strerror}") from error
+    try:
+        yield {device: str(link) for device, link in links.items()}
+    finally:
+        for device, link in links.items():
+            if link.is_symlink() and str(link.readlink()) == paths[device]:
+                link.unlink()
+
+
+def _nothing() -> None:
+    """Note nothing."""
