@@ -1,0 +1,172 @@
+"""Requests and replies as bytes, both ways, pure.
+
+A request is the msgpack map ``{v, id, cmd, args}``; a reply is ``{v, id, ok: true, result}`` or
+``{v, id, ok: false, error: {code, message}}``. What comes from a client is never trusted: size, nesting, duplicate
+keys, types, ranges and finiteness are checked before anything sees it, and what fails is answered, not raised.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import msgpack
+import msgspec
+import numpy as np
+
+from robotd.core.errors import RemoteProtocolError, ServerError
+from robotd.server.api import COMMANDS, VERSION, Command, ErrorCode
+
+_MAX_DEPTH = 6
+_MAX_ITEMS = 2048
+_MAX_KEYS = 64
+_MAX_ID = 2**63 - 1
+_KEYS = {"v", "id", "cmd", "args"}
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A request that says what it wants."""
+
+    id: int
+    command: Command[Any]
+
+
+@dataclass(frozen=True, slots=True)
+class BadRequest:
+    """A request that does not; the error is the answer."""
+
+    id: int | None
+    """Its number, if at least that could be read."""
+    error: ServerError
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """An answer, as the client sees it."""
+
+    id: int | None
+    result: dict[str, Any] | ServerError
+
+
+def decode_request(data: bytes, max_bytes: int) -> Request | BadRequest:
+    """Return what a client asks. Never raises; time and memory are bounded by ``max_bytes``."""
+    request_id = None
+    try:
+        fields = _unpack(data, max_bytes)
+        request_id = _id_of(fields)
+        _check(fields, _MAX_DEPTH)
+        command = _command_of(fields)
+    except ServerError as error:
+        return BadRequest(request_id, error)
+    if request_id is None:
+        return BadRequest(None, ServerError(ErrorCode.MALFORMED, "id must be a whole number from 0 to 2^63 - 1"))
+    return Request(request_id, command)
+
+
+def encode_request(request_id: int, command: Command[Any]) -> bytes:
+    """Return a request."""
+    return _pack({"v": VERSION, "id": request_id, "cmd": command.cmd, "args": to_plain(command)})
+
+
+def encode_result(request_id: int, result: object) -> bytes:
+    """Return the reply to a request that was carried out."""
+    return _pack({"v": VERSION, "id": request_id, "ok": True, "result": to_plain(result)})
+
+
+def encode_error(request_id: int | None, error: ServerError) -> bytes:
+    """Return the reply to a request that was not."""
+    problem = {"code": error.code, "message": error.message}
+    return _pack({"v": VERSION, "id": request_id, "ok": False, "error": problem})
+
+
+def decode_reply(data: bytes) -> Reply:
+    """Return a server's answer.
+
+    Raises:
+        RemoteProtocolError: it is none.
+    """
+    try:
+        fields = msgpack.unpackb(data)
+        if fields["v"] != VERSION:
+            raise RemoteProtocolError(f"the server speaks version {fields['v']}, this client {VERSION}")
+        if fields["ok"]:
+            return Reply(fields["id"], dict(fields["result"]))
+        return Reply(fields["id"], ServerError(str(fields["error"]["code"]), str(fields["error"]["message"])))
+    except (ValueError, KeyError, TypeError) as error:
+        raise RemoteProtocolError(f"not a reply: {error!r}") from error
+
+
+def to_plain(value: object) -> Any:
+    """Return a struct or dataclass as maps, lists and numbers; ``bytes`` stay what they are."""
+    return msgspec.to_builtins(value, builtin_types=(bytes,), enc_hook=_number)
+
+
+def _number(value: object) -> Any:
+    if isinstance(value, np.generic):
+        return value.item()
+    raise NotImplementedError(f"{type(value).__name__} has no place on the wire")
+
+
+def _pack(fields: dict[str, Any]) -> bytes:
+    packed: bytes = msgpack.packb(fields)
+    return packed
+
+
+def _unpack(data: bytes, max_bytes: int) -> dict[str, Any]:
+    if len(data) > max_bytes:
+        raise ServerError(ErrorCode.TOO_LARGE, f"a request may have {max_bytes} bytes, this one has {len(data)}")
+    try:
+        fields = msgpack.unpackb(
+            data,
+            object_pairs_hook=_without_duplicates,
+            max_str_len=max_bytes,
+            max_bin_len=0,
+            max_ext_len=0,
+            max_array_len=_MAX_ITEMS,
+            max_map_len=_MAX_KEYS,
+        )
+    except ValueError as error:
+        raise ServerError(ErrorCode.MALFORMED, f"not msgpack: {str(error) or type(error).__name__}") from error
+    if not isinstance(fields, dict):
+        raise ServerError(ErrorCode.MALFORMED, "a request is a map of v, id, cmd and args")
+    return fields
+
+
+def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        raise ValueError("a key stands there twice")
+    return found
+
+
+def _check(value: object, depth: int) -> None:
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ServerError(ErrorCode.BAD_ARGUMENT, f"numbers must be finite, got {value}")
+    if not isinstance(value, dict | list):
+        return
+    if depth == 0:
+        raise ServerError(ErrorCode.MALFORMED, f"nested more than {_MAX_DEPTH} deep")
+    for item in value.values() if isinstance(value, dict) else value:
+        _check(item, depth - 1)
+
+
+def _id_of(fields: dict[str, Any]) -> int | None:
+    request_id = fields.get("id")
+    return request_id if type(request_id) is int and 0 <= request_id <= _MAX_ID else None
+
+
+def _command_of(fields: dict[str, Any]) -> Command[Any]:
+    version = fields.get("v")
+    if type(version) is not int or version != VERSION:
+        raise ServerError(ErrorCode.UNSUPPORTED_VERSION, f"this server speaks version {VERSION}, got {version!r:.50}")
+    if unknown := fields.keys() - _KEYS:
+        raise ServerError(ErrorCode.MALFORMED, f"unknown key {min(unknown)!r:.50}: a request has v, id, cmd and args")
+    name = fields.get("cmd")
+    kind = COMMANDS.get(name) if isinstance(name, str) else None
+    if kind is None:
+        raise ServerError(ErrorCode.UNKNOWN_COMMAND, f"no command {name!r:.50}; there are {', '.join(COMMANDS)}")
+    try:
+        command: Command[Any] = msgspec.convert(fields.get("args", {}), kind, strict=True)
+    except msgspec.ValidationError as error:
+        raise ServerError(ErrorCode.BAD_ARGUMENT, f"{name}: {error}") from error
+    return command

@@ -1,0 +1,87 @@
+"""A map as bytes: changed cells as they are, a whole map compressed."""
+
+import zlib
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.errors import RemoteProtocolError
+from robotd.grid.spec import GridSpec
+from robotd.mission.events import MapChanged
+
+_INDEX = np.dtype("<u4")
+_QUICK = 1
+
+
+class MapPayload(msgspec.Struct, frozen=True):
+    """A :class:`MapChanged` on the wire."""
+
+    time_ns: int
+    map_id: str
+    generation: int
+    whole: bool
+    resolution_m: float
+    origin_x_m: float
+    origin_y_m: float
+    rows: int
+    cols: int
+    cells_zlib: bytes = b""
+    """The whole grid, zlib of one byte per cell, row by row from the lower left corner; empty unless ``whole``."""
+    indices_u32le: bytes = b""
+    """Changed cells, ``row * cols + col`` in four bytes each, little-endian."""
+    values_u8: bytes = b""
+    """Their values, one byte each."""
+
+
+def pack_map(change: MapChanged) -> MapPayload:
+    """Return a map for the wire. A whole one is compressed, which takes milliseconds: do it off the loop."""
+    values = np.ascontiguousarray(change.values, dtype=np.uint8).tobytes()
+    spec = change.spec
+    return MapPayload(
+        time_ns=change.time_ns,
+        map_id=change.map_id,
+        generation=change.generation,
+        whole=change.whole,
+        resolution_m=float(spec.resolution_m),
+        origin_x_m=float(spec.origin_x_m),
+        origin_y_m=float(spec.origin_y_m),
+        rows=int(spec.rows),
+        cols=int(spec.cols),
+        cells_zlib=zlib.compress(values, _QUICK) if change.whole else b"",
+        indices_u32le=b"" if change.whole else change.cells.astype(_INDEX).tobytes(),
+        values_u8=b"" if change.whole else values,
+    )
+
+
+def unpack_map(payload: MapPayload) -> MapChanged:
+    """Return the map that was sent.
+
+    Raises:
+        RemoteProtocolError: it contradicts itself.
+    """
+    try:
+        spec = GridSpec(payload.resolution_m, payload.origin_x_m, payload.origin_y_m, (payload.rows, payload.cols))
+        cells, values = _unpack_whole(payload, spec) if payload.whole else _unpack_changes(payload, spec)
+    except (ValueError, zlib.error) as error:
+        raise RemoteProtocolError(f"map payload: {error}") from error
+    return MapChanged(payload.time_ns, payload.map_id, payload.generation, spec, payload.whole, cells, values)
+
+
+def _unpack_whole(payload: MapPayload, spec: GridSpec) -> tuple[NDArray[np.intp], NDArray[np.uint8]]:
+    size = spec.rows * spec.cols
+    inflate = zlib.decompressobj()
+    data = inflate.decompress(payload.cells_zlib, size + 1)
+    if len(data) != size or not inflate.eof:
+        raise ValueError(f"expected {size} cells, got {'more' if len(data) > size else len(data)}")
+    return np.empty(0, dtype=np.intp), np.frombuffer(data, dtype=np.uint8).reshape(spec.shape)
+
+
+def _unpack_changes(payload: MapPayload, spec: GridSpec) -> tuple[NDArray[np.intp], NDArray[np.uint8]]:
+    cells = np.frombuffer(payload.indices_u32le, dtype=_INDEX).astype(np.intp)
+    values = np.frombuffer(payload.values_u8, dtype=np.uint8)
+    if len(cells) != len(values):
+        raise ValueError(f"{len(cells)} indices with {len(values)} values")
+    if len(cells) and int(cells.max()) >= spec.rows * spec.cols:
+        raise ValueError(f"index {int(cells.max())} lies outside of {spec.rows} x {spec.cols} cells")
+    return cells, values

@@ -1,0 +1,58 @@
+"""One XPUB socket: numbers what goes out, and tells who joins late what was said last."""
+
+import asyncio
+import contextlib
+
+import zmq
+import zmq.asyncio
+
+from robotd.server.topics import Topic, encode_frame
+
+_JOIN = b"\x01"
+_BETWEEN_JOINS_S = 0.02
+_MOST_JOINS = 1000
+
+
+class Outlet:
+    """Publishes single frames and hears who subscribes."""
+
+    def __init__(self, socket: zmq.asyncio.Socket, session: str) -> None:
+        self._socket = socket
+        self._session = session
+        self._seq: dict[Topic, int] = {}
+        self._last: dict[Topic, bytes] = {}
+
+    async def send(self, topic: Topic, fields: dict[str, object]) -> None:
+        """Publish; a reader that is too slow misses it and sees the gap. Never waits."""
+        seq = self._seq.get(topic, 0)
+        self._seq[topic] = seq + 1
+        frame = encode_frame(topic, self._session, seq, fields)
+        self._last[topic] = frame
+        await self._socket.send(frame)
+
+    async def repeat_last(self, topic: Topic) -> None:
+        """Publish the last message of a topic again, under its old number."""
+        if topic in self._last:
+            await self._socket.send(self._last[topic])
+
+    async def joined(self) -> set[Topic]:
+        """Wait until somebody subscribes, and return to which topics.
+
+        XPUB cannot answer one subscriber alone: a repeat reaches all. So repeats are kept rare, and readers
+        ignore a number they have seen.
+        """
+        topics: set[Topic] = set()
+        while not topics:
+            topics |= _topics_of(await self._socket.recv())
+        await asyncio.sleep(_BETWEEN_JOINS_S)
+        with contextlib.suppress(zmq.Again):
+            for _ in range(_MOST_JOINS):
+                topics |= _topics_of(await self._socket.recv(zmq.NOBLOCK))
+        return topics
+
+
+def _topics_of(message: bytes) -> set[Topic]:
+    """Return the topics a subscription begins to match; none if it is something else."""
+    if not message.startswith(_JOIN):
+        return set()
+    return {topic for topic in Topic if topic.prefix.startswith(message[1:])}

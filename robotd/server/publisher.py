@@ -1,0 +1,80 @@
+"""Everything that happens, to whoever listens; maps on a socket of their own, so that they never crowd out a pose."""
+
+import asyncio
+from typing import NoReturn
+
+from robotd.core.errors import RobotdError
+from robotd.mission.events import Event, MapChanged
+from robotd.server.control import Control
+from robotd.server.decimation import Decimator
+from robotd.server.log_relay import relay_log
+from robotd.server.map_queue import MapQueue
+from robotd.server.outlet import Outlet
+from robotd.server.topics import LogEntry, Published, Topic, to_wire
+
+_DEPTH = 4096
+
+
+class Publisher:
+    """Publishes the events of the mission, and the log."""
+
+    def __init__(self, control: Control, state: Outlet, maps: Outlet, *, routine_hz: float) -> None:
+        self._control = control
+        self._state = state
+        self._maps = maps
+        self._routine_hz = routine_hz
+        self._map_queue = MapQueue()
+
+    async def run(self) -> None:
+        """Publish until cancelled."""
+        lines: asyncio.Queue[LogEntry] = asyncio.Queue(_DEPTH)
+        with relay_log(lambda line: None if lines.full() else lines.put_nowait(line)):
+            async with asyncio.TaskGroup() as group:
+                group.create_task(self._follow_events())
+                group.create_task(self._follow_log(lines))
+                group.create_task(self._greet())
+                group.create_task(self._follow_maps())
+                group.create_task(self._greet_map_readers())
+
+    async def _follow_events(self) -> NoReturn:
+        decimator = Decimator(self._routine_hz)
+        with self._control.events.subscribe(_DEPTH) as events:
+            await self._publish(self._control.status)
+            while True:
+                event: Event = await events.get()
+                if isinstance(event, MapChanged):
+                    self._map_queue.put(event)
+                elif decimator.passes(event):
+                    await self._publish(event)
+
+    async def _follow_log(self, lines: asyncio.Queue[LogEntry]) -> NoReturn:
+        while True:
+            await self._publish(await lines.get())
+
+    async def _publish(self, event: Published) -> None:
+        topic, fields = to_wire(event)
+        await self._state.send(topic, fields)
+
+    async def _greet(self) -> NoReturn:
+        while True:
+            for topic in sorted(await self._state.joined()):
+                await self._state.repeat_last(topic)
+
+    async def _greet_map_readers(self) -> NoReturn:
+        while True:
+            if Topic.MAP in await self._maps.joined():
+                self._map_queue.ask_for_whole()
+
+    async def _follow_maps(self) -> NoReturn:
+        while True:
+            change = await self._map_queue.get()
+            change = self._whole() if change is None else change
+            if change is not None:
+                topic, fields = await asyncio.to_thread(to_wire, change)
+                await self._maps.send(topic, fields)
+
+    def _whole(self) -> MapChanged | None:
+        try:
+            return self._control.whole_map()
+        except RobotdError:  # no map in use: whoever joined hears of the first one when it comes
+            return None

@@ -1,0 +1,151 @@
+"""The server whole: lock, sockets, commands and publisher."""
+
+import asyncio
+import contextlib
+import secrets
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import zmq
+import zmq.asyncio
+
+from robotd.core.errors import TransportError
+from robotd.server.commands import Commands
+from robotd.server.control import Control
+from robotd.server.endpoints import DEFAULT_RUNTIME_DIR, Endpoints
+from robotd.server.handlers import Handlers
+from robotd.server.lock import lock_directory
+from robotd.server.outcomes import Outcomes
+from robotd.server.outlet import Outlet
+from robotd.server.publisher import Publisher
+
+_SOCKET_MODE = 0o770
+_ROOM_TO_REFUSE = 4
+"""A request up to this many times too large is answered with ``too_large``; beyond, libzmq hangs up on the client."""
+_LONGEST_SUBSCRIPTION = 256
+_LINGER_MS = 100
+"""How long the last replies may take to leave when the server ends."""
+
+
+@dataclass(frozen=True, slots=True)
+class ServerSettings:
+    """Where and how clients are served."""
+
+    runtime_dir: str = DEFAULT_RUNTIME_DIR
+    """Directory of the sockets and of the lock that keeps a second daemon out."""
+    lease_s: float = 0.5
+    """How long a mission may go without ``renew`` from its client, unless the client asks for another lease [s]."""
+    routine_hz: float = 20.0
+    """Odometry, predicted poses and sweep progress are published at most this often [Hz]."""
+    max_request_bytes: int = 65536
+    """Largest request that is read; larger ones are refused."""
+    max_pending_requests: int = 32
+    """Requests carried out at a time; more are refused as ``busy``. Stops are counted apart."""
+    remembered_replies: int = 256
+    """Replies kept so that a repeated request is not carried out twice."""
+    state_queue: int = 256
+    """Messages that wait for a slow reader before it misses some."""
+    map_queue: int = 8
+    """Map messages that wait for a slow reader before it misses some."""
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot work."""
+        if not self.runtime_dir:
+            raise ValueError("runtime_dir must not be empty")
+        if not 0.1 <= self.lease_s <= 10.0:
+            raise ValueError(f"lease_s must lie between 0.1 and 10, got {self.lease_s}")
+        if not 0.1 <= self.routine_hz <= 1000.0:
+            raise ValueError(f"routine_hz must lie between 0.1 and 1000, got {self.routine_hz}")
+        if not 1024 <= self.max_request_bytes <= 2**24:
+            raise ValueError(f"max_request_bytes must lie between 1024 and {2**24}, got {self.max_request_bytes}")
+        for name in ("max_pending_requests", "remembered_replies", "state_queue", "map_queue"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")
+
+
+class Server:
+    """Serves one daemon to its clients."""
+
+    def __init__(self, settings: ServerSettings, control: Control) -> None:
+        """Prepare; nothing is opened yet.
+
+        Raises:
+            TransportError: the runtime directory's path is too long for a Unix socket.
+        """
+        self._settings = settings
+        self._control = control
+        self._endpoints = Endpoints(Path(settings.runtime_dir))
+        self.session = secrets.token_hex(8)
+        """Changes with every start, so that clients notice one."""
+        self.serving = asyncio.Event()
+        """Set while clients can connect."""
+
+    async def run(self) -> None:
+        """Serve until cancelled.
+
+        Raises:
+            TransportError: another daemon serves from this directory, or the sockets cannot be had.
+        """
+        with lock_directory(self._endpoints.runtime_dir):
+            async with self._sockets() as (commands, state, maps):
+                self.serving.set()
+                try:
+                    await self._serve(commands, Outlet(state, self.session), Outlet(maps, self.session))
+                finally:
+                    self.serving.clear()
+
+    async def _serve(self, router: zmq.asyncio.Socket, state: Outlet, maps: Outlet) -> None:
+        settings = self._settings
+        outcomes = Outcomes()
+        commands = Commands(
+            router,
+            Handlers(self._control, outcomes, self.session, settings.lease_s),
+            max_bytes=settings.max_request_bytes,
+            max_pending=settings.max_pending_requests,
+            remembered=settings.remembered_replies,
+        )
+        publisher = Publisher(self._control, state, maps, routine_hz=settings.routine_hz)
+        async with asyncio.TaskGroup() as group:
+            group.create_task(outcomes.follow(self._control.events), name="outcomes")
+            group.create_task(publisher.run(), name="publisher")
+            group.create_task(commands.run(), name="commands")
+
+    @contextlib.asynccontextmanager
+    async def _sockets(self) -> AsyncIterator[tuple[zmq.asyncio.Socket, zmq.asyncio.Socket, zmq.asyncio.Socket]]:
+        context = zmq.asyncio.Context()
+        sockets = context.socket(zmq.ROUTER), context.socket(zmq.XPUB), context.socket(zmq.XPUB)
+        try:
+            self._remove_sockets()
+            self._set_up(*sockets)
+            for socket, path in zip(sockets, self._endpoints.paths, strict=True):
+                _bind(socket, path)
+            yield sockets
+        finally:
+            for socket in sockets:
+                socket.close(_LINGER_MS)
+            await asyncio.to_thread(context.term)  # waits for the lingering, which the loop must not
+            self._remove_sockets()
+
+    def _set_up(self, commands: zmq.asyncio.Socket, state: zmq.asyncio.Socket, maps: zmq.asyncio.Socket) -> None:
+        settings = self._settings
+        commands.setsockopt(zmq.MAXMSGSIZE, _ROOM_TO_REFUSE * settings.max_request_bytes)
+        commands.setsockopt(zmq.SNDHWM, settings.max_pending_requests)
+        commands.setsockopt(zmq.RCVHWM, settings.max_pending_requests)
+        commands.setsockopt(zmq.ROUTER_HANDOVER, 1)  # a client that reconnects keeps its identity
+        for socket, queue in ((state, settings.state_queue), (maps, settings.map_queue)):
+            socket.setsockopt(zmq.XPUB_VERBOSE, 1)
+            socket.setsockopt(zmq.MAXMSGSIZE, _LONGEST_SUBSCRIPTION)
+            socket.setsockopt(zmq.SNDHWM, queue)
+
+    def _remove_sockets(self) -> None:
+        for path in self._endpoints.paths:
+            path.unlink(missing_ok=True)
+
+
+def _bind(socket: zmq.asyncio.Socket, path: Path) -> None:
+    try:
+        socket.bind(f"ipc://{path}")
+        path.chmod(_SOCKET_MODE)
+    except (zmq.ZMQError, OSError) as error:
+        raise TransportError(f"socket {path}: {error.strerror}") from error

@@ -1,0 +1,126 @@
+r"""What is published: events of the mission and lines of the log, as single frames ``topic\0msgpack``.
+
+The payload is one flat map: ``v``, ``session``, ``seq`` (counts the messages of its topic since the daemon started),
+``event`` (which type of event), and the event's own fields, whose names carry their units. A subscription is a prefix:
+``pose\0`` is one topic, the empty string is all.
+"""
+
+import enum
+from dataclasses import dataclass
+from typing import Any
+
+import msgpack
+import msgspec
+
+from robotd.core.errors import RemoteProtocolError
+from robotd.core.pose import Odometry
+from robotd.localization.estimate import PoseEstimate
+from robotd.mission.events import Event, MapChanged, MissionProgress, Status, SweepDone, SweepProgress
+from robotd.server.api import VERSION
+from robotd.server.envelope import to_plain
+from robotd.server.map_wire import MapPayload, pack_map, unpack_map
+
+_END_OF_TOPIC = b"\0"
+
+
+class Topic(enum.StrEnum):
+    """Where an event is published."""
+
+    POSE = "pose"
+    ODOMETRY = "odometry"
+    SWEEP = "sweep"
+    MAP = "map"
+    MISSION = "mission"
+    STATUS = "status"
+    LOG = "log"
+
+    @property
+    def prefix(self) -> bytes:
+        """What to subscribe to for this topic and no other."""
+        return self.encode() + _END_OF_TOPIC
+
+
+@dataclass(frozen=True, slots=True)
+class LogEntry:
+    """A line of the daemon's log."""
+
+    time_ns: int
+    level: str
+    """``INFO``, ``WARNING``, ``ERROR`` or ``CRITICAL``."""
+    logger: str
+    message: str
+
+
+Published = Event | LogEntry
+
+EVENTS: dict[type[Published], tuple[Topic, str]] = {
+    PoseEstimate: (Topic.POSE, "pose_estimate"),
+    Odometry: (Topic.ODOMETRY, "odometry"),
+    SweepProgress: (Topic.SWEEP, "sweep_progress"),
+    SweepDone: (Topic.SWEEP, "sweep_done"),
+    MapChanged: (Topic.MAP, "map_changed"),
+    MissionProgress: (Topic.MISSION, "mission_progress"),
+    Status: (Topic.STATUS, "status"),
+    LogEntry: (Topic.LOG, "log"),
+}
+"""Every type of event, with its topic and its name on the wire."""
+
+_KINDS = {name: kind for kind, (_, name) in EVENTS.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """A published message, decoded."""
+
+    topic: str
+    session: str
+    seq: int
+    event: Published | None
+    """None for a type of event that this version does not know."""
+
+
+def to_wire(event: Published) -> tuple[Topic, dict[str, Any]]:
+    """Return the topic of an event and its fields."""
+    topic, name = EVENTS[type(event)]
+    fields = to_plain(pack_map(event) if isinstance(event, MapChanged) else event)
+    return topic, {"event": name, **fields}
+
+
+def from_wire(fields: dict[str, Any]) -> Published | None:
+    """Return the event of a payload, or None if this version does not know its type.
+
+    Raises:
+        RemoteProtocolError: it is not what its name promises.
+    """
+    kind = _KINDS.get(fields.get("event", ""))
+    if kind is None:
+        return None
+    try:
+        if kind is MapChanged:
+            return unpack_map(msgspec.convert(fields, MapPayload, strict=True))
+        event: Published = msgspec.convert(fields, kind, strict=True)
+    except (msgspec.ValidationError, ValueError) as error:
+        raise RemoteProtocolError(f"{fields['event']}: {error}") from error
+    return event
+
+
+def encode_frame(topic: Topic, session: str, seq: int, fields: dict[str, Any]) -> bytes:
+    """Return the one frame of a message."""
+    packed: bytes = msgpack.packb({"v": VERSION, "session": session, "seq": seq, **fields})
+    return topic.prefix + packed
+
+
+def decode_frame(frame: bytes) -> Message:
+    """Return the message of a frame.
+
+    Raises:
+        RemoteProtocolError: it is none, or of another version.
+    """
+    topic, _, packed = frame.partition(_END_OF_TOPIC)
+    try:
+        fields = msgpack.unpackb(packed)
+        if fields["v"] != VERSION:
+            raise RemoteProtocolError(f"the server speaks version {fields['v']}, this client {VERSION}")
+        return Message(topic.decode(), fields["session"], fields["seq"], from_wire(fields))
+    except (ValueError, KeyError, TypeError) as error:
+        raise RemoteProtocolError(f"not a message: {error!r}") from error
