@@ -1,0 +1,117 @@
+"""The board's clock as seen from ours: offset and drift from pings.
+
+A ping that left at ``sent`` and was answered at ``received`` met the board's clock somewhere between; the
+middle is wrong by half the round trip at most. So samples with short round trips count most, and once
+they span enough time a weighted line through them gives the drift too.
+"""
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+_NS_PER_US = 1000
+_SAMPLES = 32
+_DRIFT_SPAN_NS = 5_000_000_000
+_DRIFT_MAX = 1e-3
+_JITTER_NS = 50_000
+_ROUND_TRIP_MAX_NS = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class ClockSample:
+    """One answered ping."""
+
+    board_ns: int
+    host_ns: int
+    """The middle between sending and receiving."""
+    round_trip_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class ClockFit:
+    """``host = host_ns + (board - board_ns) * rate``."""
+
+    board_ns: int
+    host_ns: int
+    rate: float
+    """Host nanoseconds per board nanosecond."""
+
+    def at(self, board_us: int) -> int:
+        """Return the host's time at a time of the board [ns]."""
+        elapsed_ns = board_us * _NS_PER_US - self.board_ns
+        return self.host_ns + elapsed_ns + round(elapsed_ns * (self.rate - 1.0))
+
+
+def fit(samples: tuple[ClockSample, ...]) -> ClockFit:
+    """Fit a line through samples in the order of time, each weighted by how near its round trip is to the shortest.
+
+    O(n). Until the samples span five seconds the clocks are taken to run alike.
+
+    Raises:
+        ValueError: there is no sample.
+    """
+    if not samples:
+        raise ValueError("the board's clock was never seen")
+    first = samples[0]
+    shortest_ns = min(sample.round_trip_ns for sample in samples)
+    weights = [(sample.round_trip_ns - shortest_ns + _JITTER_NS) ** -2.0 for sample in samples]
+    elapsed = [sample.board_ns - first.board_ns for sample in samples]
+    gained = [sample.host_ns - first.host_ns - since for sample, since in zip(samples, elapsed, strict=True)]
+    middle = _mean(weights, elapsed)
+    drift = _drift(weights, elapsed, gained) if elapsed[-1] >= _DRIFT_SPAN_NS else 0.0
+    return ClockFit(
+        board_ns=first.board_ns + round(middle),
+        host_ns=first.host_ns + round(middle) + round(_mean(weights, gained)),
+        rate=1.0 + drift,
+    )
+
+
+def _mean(weights: list[float], values: Sequence[float]) -> float:
+    return sum(weight * value for weight, value in zip(weights, values, strict=True)) / sum(weights)
+
+
+def _drift(weights: list[float], elapsed: list[int], gained: list[int]) -> float:
+    middle = _mean(weights, elapsed)
+    arms = [since - middle for since in elapsed]
+    slope = _mean(weights, [arm * gain for arm, gain in zip(arms, gained, strict=True)])
+    return max(-_DRIFT_MAX, min(slope / _mean(weights, [arm * arm for arm in arms]), _DRIFT_MAX))
+
+
+class ClockSync:
+    """Learns from pings; translates times of the board, never backwards."""
+
+    def __init__(self) -> None:
+        self._samples: deque[ClockSample] = deque(maxlen=_SAMPLES)
+        self._fit: ClockFit | None = None
+        self._last: tuple[int, int] | None = None
+
+    @property
+    def best(self) -> ClockFit | None:
+        """The present fit; None until the first sample."""
+        return self._fit
+
+    def add(self, sent_us: int, board_us: int, received_ns: int) -> None:
+        """Learn from an answered ping; one that took a second, or none, is no evidence."""
+        sent_ns = sent_us * _NS_PER_US
+        round_trip_ns = received_ns - sent_ns
+        if 0 <= round_trip_ns <= _ROUND_TRIP_MAX_NS:
+            self._samples.append(ClockSample(board_us * _NS_PER_US, sent_ns + round_trip_ns // 2, round_trip_ns))
+            self._fit = fit(tuple(self._samples))
+
+    def host_ns(self, board_us: int) -> int:
+        """Return the host's time at a time of the board [ns].
+
+        A better fit never turns the order of two events round: a later time of the board than the last one
+        asked for gets no earlier time of the host, and the other way about.
+
+        Raises:
+            ValueError: no ping was answered yet.
+        """
+        if self._fit is None:
+            raise ValueError("the board's clock was never seen")
+        host_ns = self._fit.at(board_us)
+        if self._last is not None:
+            last_board_us, last_host_ns = self._last
+            host_ns = max(host_ns, last_host_ns) if board_us >= last_board_us else min(host_ns, last_host_ns)
+        self._last = (board_us, host_ns)
+        return host_ns

@@ -1,0 +1,249 @@
+"""One conversation with one board: requests, retries, set-points, telemetry, clock.
+
+Theory of operation. A reader task takes every frame. Telemetry goes to the one who asked for it; a reply
+settles the request under way if type and seq fit, and is otherwise only counted. One request is under way at a time,
+repeated with the same seq until it is answered, so a board executes it once. What happens is caused by
+messages alone; timers only bound silence: of a request, and of the line.
+"""
+
+import asyncio
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import TracebackType
+from typing import NoReturn, Self, TypeVar
+
+from firmware_proto.common import Arm, BoardState, BoardStatus, Ping, Pong, Result
+from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START
+from firmware_proto.schema import Message
+from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError, RobotdError, TransportError
+from robotd.hardware.link.clock_sync import ClockSync
+from robotd.hardware.link.request import Request, answered_type, result_of
+from robotd.hardware.link.round_trip import RoundTrip
+from robotd.hardware.link.tapped import TappedLine
+from robotd.hardware.wire.board import EMERGENCY_SEQ, STOP_BYTES, BoardWire, Received
+
+TRIES = 3
+_PING_EVERY_S = 1.0
+_NS_PER_US = 1000
+
+Answer = TypeVar("Answer", bound=Message)
+TelemetryHandler = Callable[[Message], None]
+
+
+@dataclass(slots=True)
+class LinkCounters:
+    """What the link counted since start, beside what the wire counts."""
+
+    sessions: int = 0
+    retries: int = 0
+    timeouts: int = 0
+    """Requests that no try got answered."""
+    refused: int = 0
+    """Set-points that the board would not take."""
+    unmatched: int = 0
+    """Replies to nothing that was asked: repeats, mostly."""
+
+
+class Session:
+    """A conversation over an open line, as a context manager; it ends when the line is lost or the block is left."""
+
+    def __init__(
+        self,
+        device: str,
+        line: TappedLine,
+        wire: BoardWire,
+        *,
+        counters: LinkCounters,
+        on_telemetry: TelemetryHandler,
+        silence_s: float,
+    ) -> None:
+        self.device = device
+        self.clock = ClockSync()
+        self.boot_id = 0
+        """Told by the handshake."""
+        self.heard_ns = now_ns()
+        """When the last frame came."""
+        self._line = line
+        self._wire = wire
+        self._counters = counters
+        self._on_telemetry = on_telemetry
+        self._silence_s = silence_s
+        self._seqs: Counter[type[Message]] = Counter()
+        self._round_trips: dict[type[Message], RoundTrip] = {}
+        self._one_at_a_time = asyncio.Lock()
+        self._request: Request | None = None
+        self._posted: set[int] = set()
+        self._serving = False
+        self._board_us = 0
+        self._lost: RobotdError | None = None
+
+    async def __aenter__(self) -> Self:
+        self._reader = asyncio.create_task(self._read(), name=f"{self.device} reader")
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._reader.cancel()
+        await asyncio.wait({self._reader})
+        if not self._reader.cancelled():
+            self._reader.exception()  # known already, or of no interest any more
+        self._lose(TransportError(f"{self.device}: the session is over"))
+
+    # What a device may do
+
+    async def ask(self, message: Message, answer: type[Answer], *, takes_s: float = 0.0) -> Answer:
+        """Send a request and return its reply; ``takes_s`` is how long the board may need to find it.
+
+        Raises:
+            DeviceError: the board refused; the code is its result in lower case.
+            LinkTimeout: no answer to any try.
+            TransportError: the line is lost, or was lost meanwhile.
+        """
+        reply = (await self._exchange(message, takes_s)).message
+        if not isinstance(reply, answer):
+            raise RemoteProtocolError(f"{self.device}: answered {message} with {reply}")
+        return reply
+
+    async def command(self, message: Message) -> int:
+        """Send a request that is only acknowledged, and return its seq; same errors as :meth:`ask`."""
+        return (await self._exchange(message, 0.0)).seq
+
+    def post(self, message: Message) -> None:
+        """Send a set-point: new seq each time, never repeated, its reply only counted.
+
+        Raises:
+            TransportError: the line is lost, or stuck.
+        """
+        self._check()
+        self._posted.add(message.TYPE)
+        self._line.write(self._wire.encode(message, self._next_seq(message)))
+
+    def stop_now(self) -> None:
+        """Put the preformatted stop ahead of everything not yet written; never raises.
+
+        An ARM that waits for its answer is given up: its repeat must not come after the stop.
+        """
+        if self._request is not None and isinstance(self._request.message, Arm):
+            self._request.fail(DeviceError(self.device, "stopped", "while arming"))
+        try:
+            self._line.write_urgent(STOP_BYTES)
+        except TransportError:
+            return  # the board's own deadman stops it
+
+    async def ping(self) -> None:
+        """Ask for the board's time and learn from the answer; same errors as :meth:`ask`."""
+        await self.ask(_ping(), Pong)
+
+    async def serve(self) -> NoReturn:
+        """Hand telemetry on and keep the clock until the session is void; raise why.
+
+        Raises:
+            TransportError: the line is lost.
+            LinkTimeout: no telemetry came for ``silence_s``.
+            RemoteProtocolError: the board restarted, or somebody else opened a session with it.
+        """
+        self._serving = True
+        while not self._reader.done():
+            self.post(_ping())
+            await asyncio.wait({self._reader}, timeout=_PING_EVERY_S)
+        self._reader.result()
+        raise AssertionError("the reader only ends with an error")
+
+    # Requests
+
+    async def _exchange(self, message: Message, takes_s: float) -> Received:
+        async with self._one_at_a_time:
+            self._check()
+            request = self._request = Request(self.device, message, self._next_seq(message))
+            began_ns = now_ns()
+            try:
+                reply = await self._repeat_until_answered(request, takes_s)
+            finally:
+                self._request = None
+            self._round_trip(message).add((now_ns() - began_ns) / NS_PER_S)
+            return reply
+
+    async def _repeat_until_answered(self, request: Request, takes_s: float) -> Received:
+        data = self._wire.encode(request.message, request.seq)
+        for attempt in range(TRIES):
+            self._counters.retries += attempt > 0
+            self._line.write(data)
+            patience_s = takes_s if attempt == TRIES - 1 else 0.0
+            reply = await request.wait(self._round_trip(request.message).timeout_s(attempt) + patience_s)
+            if reply is not None:
+                return reply
+        self._counters.timeouts += 1
+        raise LinkTimeout(f"{self.device}: no answer to {type(request.message).__name__} in {TRIES} tries")
+
+    def _round_trip(self, message: Message) -> RoundTrip:
+        return self._round_trips.setdefault(type(message), RoundTrip())
+
+    def _next_seq(self, message: Message) -> int:
+        seq = self._seqs[type(message)] % EMERGENCY_SEQ
+        self._seqs[type(message)] += 1
+        return seq
+
+    # Frames
+
+    async def _read(self) -> NoReturn:
+        try:
+            async with asyncio.timeout(None) as silence:
+                while True:
+                    chunk = await self._line.read()
+                    for received in self._wire.feed(chunk.data):
+                        if self._take(received, chunk.time_ns):
+                            silence.reschedule(asyncio.get_running_loop().time() + self._silence_s)
+        except TimeoutError:
+            raise self._lose(LinkTimeout(f"{self.device}: silent for {self._silence_s:g} s")) from None
+        except RobotdError as error:
+            raise self._lose(error) from error.__cause__
+
+    def _take(self, received: Received, time_ns: int) -> bool:
+        """Treat a frame; return whether it shows that the session lives.
+
+        Once telemetry should come, replies do not: a board that restarted still answers pings.
+        """
+        self.heard_ns = time_ns
+        message = received.message
+        if isinstance(message, Pong):
+            self.clock.add(message.host_us, message.board_us, time_ns)
+        if not TELEMETRY_START <= received.type < TELEMETRY_END:
+            self._settle(received)
+            return not self._serving
+        if self._serving:
+            self._check_ours(message)
+            self._on_telemetry(message)
+        return True
+
+    def _settle(self, received: Received) -> None:
+        if self._request is not None and self._request.is_answered_by(received):
+            self._request.settle(received)
+        elif answered_type(received) in self._posted or received.seq == EMERGENCY_SEQ:
+            self._counters.refused += result_of(received.message) != Result.OK
+        else:
+            self._counters.unmatched += 1
+
+    def _check_ours(self, message: Message) -> None:
+        if not isinstance(message, BoardStatus):
+            return
+        if message.board_us < self._board_us or message.state < BoardState.CONFIGURED:
+            raise RemoteProtocolError(f"{self.device}: the board restarted, or serves somebody else")
+        self._board_us = message.board_us
+
+    def _check(self) -> None:
+        if self._lost is not None:
+            raise TransportError(str(self._lost))
+
+    def _lose(self, error: RobotdError) -> RobotdError:
+        if self._lost is None:
+            self._lost = error
+        if self._request is not None:
+            self._request.fail(TransportError(str(self._lost)))
+        return error
+
+
+def _ping() -> Ping:
+    return Ping(now_ns() // _NS_PER_US)

@@ -1,0 +1,55 @@
+"""A line with a tap on it: every byte, both ways, with its time."""
+
+from dataclasses import dataclass
+
+from robotd.core.clock import now_ns
+from robotd.hardware.link.tap import Direction, Tap
+from robotd.hardware.transport.transport import Transport
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """Bytes as they came, and when.
+
+    Whoever needs the time of a message takes it from here, never from the clock: it is the time that the
+    tap saw, so a recording gives the same times back.
+    """
+
+    time_ns: int
+    data: bytes
+
+
+class TappedLine:
+    """An open transport whose traffic the tap sees."""
+
+    def __init__(self, device: str, transport: Transport, tap: Tap) -> None:
+        """Take over an open transport; the tap is told that the line is up."""
+        self._device = device
+        self._transport = transport
+        self._tap = tap
+        self._is_open = True
+        tap.line_changed(device, now_ns(), up=True)
+
+    async def read(self) -> Chunk:
+        """Return the next bytes; TransportError when the line is gone."""
+        data = await self._transport.read()
+        chunk = Chunk(now_ns(), data)
+        self._tap.bytes_passed(self._device, Direction.FROM_BOARD, chunk.time_ns, data)
+        return chunk
+
+    def write(self, data: bytes) -> None:
+        """Queue bytes; TransportError when the line is gone or its buffer is full."""
+        self._transport.write(data)
+        self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
+
+    def write_urgent(self, data: bytes) -> None:
+        """Queue bytes ahead of everything not yet written; TransportError when the line is gone."""
+        self._transport.write_urgent(data)
+        self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
+
+    def close(self) -> None:
+        """Give the line up; the tap is told once."""
+        self._transport.close()
+        if self._is_open:
+            self._is_open = False
+            self._tap.line_changed(self._device, now_ns(), up=False)
