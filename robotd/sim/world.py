@@ -150,15 +150,14 @@ def _path_of(place: str) -> tuple[str, ...]:
 
 
 def _line_of(text: str, path: tuple[str, ...]) -> int | None:
-    """Return the line of a key: the first that begins with it after the header of the table it is in."""
+    """Return the line of a key, or of the nearest table around it that begins a line."""
     lines = text.splitlines()
-    first = 0
+    found: int | None = None
     for part in path:
         name, _, index = part.rstrip("]").partition("[")
-        headers = re.compile(rf"\s*(\[+\s*)?{re.escape(name)}\s*(=|\])")
-        matches = [number for number in range(first, len(lines)) if headers.match(lines[number])]
-        wanted = int(index) if index.isdigit() and len(matches) > int(index) else 0
+        header = re.compile(rf"\s*(\[+\s*)?{re.escape(name)}\s*(=|\])")
+        matches = [number for number in range(found or 0, len(lines)) if header.match(lines[number])]
         if not matches:
-            return first or None
-        first = matches[wanted]
-    return first + 1 if path else None
+            break
+        found = matches[int(index)] if index.isdigit() and len(matches) > int(index) else matches[0]
+    return None if found is None else found + 1
