@@ -1,0 +1,197 @@
+"""Plays a recording to the daemon, in its process and on the virtual clock.
+
+One task walks through the entries in file order and lets each take effect at its recorded time: bytes arrive,
+lines come and go, clients ask, array work is handed back. What the daemon writes goes nowhere; its journal
+sees it, and :func:`robotd.recording.comparison.compare` judges it. The loop must start at the recording's first
+moment, so that the daemon's times are the recorded ones::
+
+    playback = Playback(recording, carry_out)
+    links = {name: playback.line(name).connect for name in devices}   # a Connect each
+    run_virtual(daemon_with(links, playback.compute, playback.run), start_ns=recording.header.started_ns)
+"""
+
+import asyncio
+from collections import Counter, defaultdict, deque
+from collections.abc import Callable
+from typing import TypeVar
+
+from robotd.core.clock import NS_PER_S
+from robotd.core.errors import TransportError
+from robotd.hardware.link.tap import Direction
+from robotd.recording.entries import BytesEntry, CommandEntry, ComputedEntry, Entry, LineEntry
+from robotd.recording.reader import Recording
+
+SETTLE_S = 0.001
+"""How long after the last entry its effects are waited for."""
+
+T = TypeVar("T")
+
+
+class Playback:
+    """The outside world of a recording: lines, clients, and the time that computing took."""
+
+    def __init__(self, recording: Recording, carry_out: Callable[[CommandEntry], None]) -> None:
+        """Prepare to play.
+
+        Args:
+            recording: what to play.
+            carry_out: called with each command at its time; must not block (start a task for what takes long).
+        """
+        self._recording = recording
+        self._carry_out = carry_out
+        self._lines = {device: ReplayLine(device) for device in recording.devices}
+        self.compute = RecordedCompute(recording)
+
+    def line(self, device: str) -> "ReplayLine":
+        """Return the line of a device; one that was never recorded never comes up."""
+        return self._lines.setdefault(device, ReplayLine(device))
+
+    async def run(self) -> None:
+        """Let every entry take effect at its time, and end when the last has."""
+        for entry in self._recording.entries:
+            await _until(entry.time_ns)
+            self._play(entry)
+        await asyncio.sleep(SETTLE_S)
+        self.compute.release_all()
+
+    def _play(self, entry: Entry) -> None:
+        match entry:
+            case BytesEntry(direction=Direction.FROM_BOARD):
+                self.line(entry.device).deliver(entry.data)
+            case LineEntry():
+                self.line(entry.device).change(up=entry.up)
+            case CommandEntry():
+                self._carry_out(entry)
+            case ComputedEntry():
+                self.compute.release(entry)
+            case _:
+                """What the daemon wrote, and the results that it came to, are for the comparison."""
+
+
+async def _until(time_ns: int) -> None:
+    loop = asyncio.get_running_loop()
+    left_s = time_ns / NS_PER_S - loop.time()
+    if left_s > 0:
+        await asyncio.sleep(left_s)
+
+
+class ReplayLine:
+    """One device's line through all its ups and downs."""
+
+    def __init__(self, device: str) -> None:
+        self._device = device
+        self._current: ReplayTransport | None = None
+        self._waiting: asyncio.Future[ReplayTransport] | None = None
+
+    async def connect(self) -> "ReplayTransport":
+        """Return the line as soon as the recording says that it was opened.
+
+        An attempt that failed in the recording waits here instead: what the daemon does while there is no line
+        leaves no trace in a recording.
+        """
+        if self._current is not None and not self._current.taken:
+            self._current.taken = True
+            return self._current
+        self._waiting = asyncio.get_running_loop().create_future()
+        return await self._waiting
+
+    def deliver(self, data: bytes) -> None:
+        """Let bytes arrive from the board; on a line that is down they are lost."""
+        if self._current is not None and data:
+            self._current.deliver(data)
+
+    def change(self, *, up: bool) -> None:
+        """Open the line, or lose it."""
+        if self._current is not None:
+            self._current.lose("the line was lost in the recording")
+        self._current = ReplayTransport(f"replay of {self._device}") if up else None
+        if self._current is not None and self._waiting is not None and not self._waiting.done():
+            self._current.taken = True
+            self._waiting.set_result(self._current)
+
+
+class ReplayTransport:
+    """A :class:`robotd.hardware.transport.transport.Transport` whose other end is a recording.
+
+    Chunks arrive exactly as they were read when they were recorded.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._chunks: deque[bytes] = deque()
+        self._changed = asyncio.Event()
+        self._lost: str | None = None
+        self.taken = False
+        """Whether somebody connected to it."""
+
+    @property
+    def name(self) -> str:
+        """Whose line it was."""
+        return self._name
+
+    async def read(self) -> bytes:
+        """Return the next recorded chunk; TransportError once the line is gone."""
+        while not self._chunks:
+            self._check()
+            self._changed.clear()
+            await self._changed.wait()
+        return self._chunks.popleft()
+
+    def write(self, data: bytes) -> None:
+        """Take bytes for a board that is not there; TransportError if the line is gone."""
+        self._check()
+
+    def write_urgent(self, data: bytes) -> None:
+        """Take bytes for a board that is not there; TransportError if the line is gone."""
+        self._check()
+
+    def close(self) -> None:
+        """Give the line up."""
+        self._chunks.clear()
+        self.lose("closed")
+
+    def deliver(self, data: bytes) -> None:
+        """Let a chunk arrive."""
+        if self._lost is None:
+            self._chunks.append(data)
+            self._changed.set()
+
+    def lose(self, reason: str) -> None:
+        """Let the line go; what has arrived may still be read."""
+        self._lost = self._lost or reason
+        self._changed.set()
+
+    def _check(self) -> None:
+        if self._lost is not None:
+            raise TransportError(f"{self._name}: {self._lost}")
+
+
+class RecordedCompute:
+    """Computes at once, and hands each result back when the recording did: a ``Compute`` of the mission's kind.
+
+    A job that the recording does not see done is handed back after its end.
+    """
+
+    def __init__(self, recording: Recording) -> None:
+        jobs = [(entry.name, entry.index) for entry in recording.entries if isinstance(entry, ComputedEntry)]
+        self._released = {job: asyncio.Event() for job in jobs}
+        self._ended = asyncio.Event()
+        self._done: Counter[str] = Counter()
+        self._turns: defaultdict[str, asyncio.Lock] = defaultdict(asyncio.Lock)
+
+    async def run(self, name: str, function: Callable[..., T], *args: object) -> T:
+        """Return ``function(*args)``, no earlier than in the recording; jobs of one name keep their order."""
+        result = function(*args)
+        async with self._turns[name]:
+            await self._released.get((name, self._done[name]), self._ended).wait()
+            self._done[name] += 1
+        return result
+
+    def release(self, entry: ComputedEntry) -> None:
+        """Let a job be handed back."""
+        self._released[entry.name, entry.index].set()
+
+    def release_all(self) -> None:
+        """Let every job be handed back: the recording has ended."""
+        for event in (*self._released.values(), self._ended):
+            event.set()
