@@ -108,7 +108,7 @@ class Renewed(msgspec.Struct, frozen=True):
     """The lease was renewed, or the mission is over."""
 
     mission: MissionProgress | None
-    """The mission's latest progress; once its phase is ``done``, ``stopped`` or ``failed`` there is nothing to renew."""
+    """The mission's latest progress; ``done``, ``stopped`` and ``failed`` need no renewing."""
 
 
 class MapList(msgspec.Struct, frozen=True):

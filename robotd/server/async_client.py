@@ -1,0 +1,283 @@
+"""A client for programs with an event loop.
+
+>>> async def main() -> None:
+...     async with AsyncClient() as robot:
+...         await robot.arm()
+...         print(await robot.localize())
+"""
+
+import asyncio
+import contextlib
+import os
+from collections import deque
+from collections.abc import AsyncGenerator, AsyncIterator
+from pathlib import Path
+from types import TracebackType
+from typing import Self, TypeVar
+
+import zmq
+import zmq.asyncio
+
+from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.errors import RequestTimeout, RobotdError
+from robotd.core.pose import IDENTITY, Pose2
+from robotd.localization.estimate import PoseEstimate
+from robotd.mission.events import MapChanged, Status
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.server import api
+from robotd.server.api import Command, MapEntryInfo
+from robotd.server.endpoints import Endpoints, runtime_dir_of_user
+from robotd.server.exchange import Exchanges
+from robotd.server.feed import Feed, Gap, as_topics
+from robotd.server.map_wire import unpack_map
+from robotd.server.mission_run import MISSION_TOPICS, MissionEvent, MissionRun, final_estimate
+from robotd.server.sockets import connect_dealer, connect_subscriber
+from robotd.server.topics import Published, Topic
+
+R = TypeVar("R")
+
+_LOOK_S = 0.05
+"""How often a mission looks after its lease while nothing happens."""
+
+
+class AsyncSubscription:
+    """Events of some topics; iterate over it, for ever, or ask for the :meth:`next` one."""
+
+    def __init__(self, socket: zmq.asyncio.Socket) -> None:
+        self._socket = socket
+        self._feed = Feed()
+        self._items: deque[Published | Gap] = deque()
+
+    async def next(self, timeout_s: float | None = None) -> Published | Gap | None:
+        """Return the next event, or None if there is none in time."""
+        deadline_s = None if timeout_s is None else _now_s() + timeout_s
+        while not self._items:
+            left_s = None if deadline_s is None else max(0.0, deadline_s - _now_s())
+            if not await self._socket.poll(None if left_s is None else int(left_s * 1000) + 1):
+                return None
+            self._items.extend(self._feed.accept(await self._socket.recv()))
+        return self._items.popleft()
+
+    async def __aiter__(self) -> AsyncIterator[Published | Gap]:
+        """Yield events as they come."""
+        while (event := await self.next()) is not None:
+            yield event
+
+    def close(self) -> None:
+        """Unsubscribe."""
+        self._socket.close(0)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+
+class AsyncClient:
+    """Asks a daemon on this machine, and listens to it; one client serves any number of tasks.
+
+    Use it in an ``async with`` block. Every request raises :class:`ServerError` when the daemon refuses and
+    :class:`RequestTimeout` when it does not answer.
+    """
+
+    def __init__(
+        self, runtime_dir: str | Path | None = None, *, retry_s: float = 0.5, deadline_s: float | None = None
+    ) -> None:
+        """Prepare to connect; see :class:`robotd.server.client.Client`."""
+        self._endpoints = Endpoints(Path(runtime_dir or runtime_dir_of_user()))
+        self._exchanges = Exchanges(retry_s=retry_s, deadline_s=deadline_s)
+        self._retry_s = retry_s
+        self._patience_s = api.GetStatus.deadline_s if deadline_s is None else deadline_s
+        self._waiting: dict[int, asyncio.Future[None]] = {}
+
+    async def __aenter__(self) -> Self:
+        """Connect; the daemon need not run yet."""
+        self._context = zmq.asyncio.Context()
+        self._commands = self._context.socket(zmq.DEALER)
+        connect_dealer(self._commands, self._endpoints, retry_s=self._retry_s)
+        self._reader = asyncio.create_task(self._read_replies(), name="robotd client")
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+    ) -> None:
+        """Disconnect, subscriptions too."""
+        self._reader.cancel()
+        await asyncio.wait((self._reader,))
+        self._context.destroy(linger=0)
+
+    async def hello(self) -> api.HelloResult:
+        """Return who answers."""
+        return await self.call(api.Hello())
+
+    async def status(self) -> Status:
+        """Return the whole robot in one look."""
+        return await self.call(api.GetStatus())
+
+    async def config(self) -> str:
+        """Return the effective configuration, as TOML."""
+        return (await self.call(api.GetConfig())).text
+
+    async def arm(self) -> None:
+        """Allow motion."""
+        await self.call(api.Arm())
+
+    async def disarm(self) -> None:
+        """Stop and forbid motion."""
+        await self.call(api.Disarm())
+
+    async def stop(self, reason: str = "stopped by a client") -> None:
+        """Stop now."""
+        await self.call(api.Stop(reason))
+
+    async def clear(self) -> None:
+        """Acknowledge latched faults."""
+        await self.call(api.Clear())
+
+    async def start(self, mission: Mission, lease_s: float | None = None) -> api.MissionStarted:
+        """Start a mission; it is stopped unless :meth:`renew` comes before the lease runs out, again and again."""
+        return await self.call(api.start_command(mission, lease_s))
+
+    async def renew(self, mission_id: int) -> api.Renewed:
+        """Keep a mission's lease alive, and learn how far it has come."""
+        return await self.call(api.Renew(mission_id))
+
+    async def run_mission(self, mission: Mission, lease_s: float | None = None) -> AsyncGenerator[MissionEvent, None]:
+        """Start a mission, keep it alive, and yield what happens until it is done.
+
+        The lease is renewed by a task of its own for as long as the generator lives. Leaving it early stops the
+        robot; an asynchronous generator notices that at once only inside ``contextlib.aclosing``.
+
+        Raises:
+            MissionError: it was stopped, or it failed.
+        """
+        async with self._follow(MISSION_TOPICS) as events:
+            run = MissionRun(await self.start(mission, lease_s), _now_s())
+            lease = asyncio.create_task(self._keep_lease(run), name=f"lease of mission {run.mission_id}")
+            try:
+                while not run.is_over:
+                    event = await events.next(_LOOK_S)
+                    concerned = run.overdue(_now_s()) if event is None else run.accept(event)
+                    if concerned is not None:
+                        yield concerned
+                    elif lease.done():
+                        lease.result()
+            finally:
+                lease.cancel()
+                await asyncio.gather(lease, return_exceptions=True)
+                if not run.is_over:
+                    await self._abandon()
+        run.check()
+
+    async def make_map(
+        self,
+        name: str,
+        stops_m: tuple[tuple[float, float], ...] = (),
+        start: Pose2 = IDENTITY,
+        legs: Legs = Legs.PLANNED,
+    ) -> list[MissionEvent]:
+        """Make a new map and return what happened; ``MissionError`` if it was not done."""
+        return [event async for event in self.run_mission(MapMission(name, stops_m, start, legs))]
+
+    async def localize(self, heading_rad: float | None = None) -> PoseEstimate:
+        """Sweep here and return where it is; ``MissionError`` if it was not done."""
+        return final_estimate([event async for event in self.run_mission(LocalizeMission(heading_rad))])
+
+    async def drive_to(self, x_m: float, y_m: float, legs: Legs = Legs.PLANNED) -> list[MissionEvent]:
+        """Drive to a place on the map and return what happened; ``MissionError`` if it was not reached."""
+        return [event async for event in self.run_mission(DriveMission(x_m, y_m, legs))]
+
+    async def map_save(self, name: str | None = None) -> MapEntryInfo:
+        """Store the map in use, under its own name or another."""
+        return await self.call(api.MapSave(name))
+
+    async def map_load(self, name: str, version: int | None = None, robot_in_map: Pose2 | None = None) -> MapEntryInfo:
+        """Take a stored map into use, and say where the robot is on it if that is known."""
+        pose = None if robot_in_map is None else api.PoseArgument.of(robot_in_map)
+        return await self.call(api.MapLoad(name, version, pose))
+
+    async def map_list(self) -> tuple[MapEntryInfo, ...]:
+        """Return the stored maps."""
+        return (await self.call(api.ListMaps())).maps
+
+    async def map_show(self, name: str | None = None, version: int | None = None) -> MapChanged:
+        """Return the whole map in use, or a stored one."""
+        return unpack_map(await self.call(api.MapShow(name, version)))
+
+    async def record_start(self, path: str | None = None) -> str | None:
+        """Start recording and return where."""
+        return (await self.call(api.RecordStart(path))).path
+
+    async def record_stop(self) -> str | None:
+        """Close the recording and return where it is, or None if there was none."""
+        return (await self.call(api.RecordStop())).path
+
+    def subscribe(self, *topics: str) -> AsyncSubscription:
+        """Return the events of these topics, of all if none is named, from the last one of each on."""
+        wanted = as_topics(topics)
+        socket = self._context.socket(zmq.SUB)
+        connect_subscriber(socket, self._endpoints, wanted)
+        return AsyncSubscription(socket)
+
+    async def call(self, command: Command[R]) -> R:
+        """Return what a command answers."""
+        exchange = self._exchanges.begin(command, _now_s())
+        answered = self._waiting[exchange.id] = asyncio.get_running_loop().create_future()
+        try:
+            while not exchange.is_answered:
+                if data := exchange.due(_now_s()):
+                    with contextlib.suppress(zmq.Again):  # not connected: the next repeat may be
+                        await self._commands.send(data)
+                await asyncio.wait((answered,), timeout=exchange.wait_s(_now_s()))
+                if answered.done():
+                    answered.result()
+            return exchange.result()
+        finally:
+            self._exchanges.end(exchange)
+            del self._waiting[exchange.id]
+
+    async def _read_replies(self) -> None:
+        while True:
+            frame = await self._commands.recv()
+            try:
+                exchange = self._exchanges.accept(frame)
+            except RobotdError as error:  # nobody can say whose answer this was
+                for waiting in self._waiting.values():
+                    _settle(waiting, error)
+            else:
+                if exchange is not None:
+                    _settle(self._waiting[exchange.id], None)
+
+    async def _keep_lease(self, run: MissionRun) -> None:
+        while not run.is_ending:
+            await asyncio.sleep(run.wait_s(_now_s()))
+            run.renewed(await self.renew(run.mission_id), _now_s())
+
+    @contextlib.asynccontextmanager
+    async def _follow(self, topics: tuple[Topic, ...]) -> AsyncIterator[AsyncSubscription]:
+        """Subscribe, and go on only when it is certain that nothing published from now on is missed."""
+        with self.subscribe(*topics, Topic.STATUS) as events:
+            deadline_s = _now_s() + self._patience_s
+            while not isinstance(event := await events.next(deadline_s - _now_s()), Status):
+                if event is None:
+                    raise RequestTimeout("no status from robotd")
+            yield events
+
+    async def _abandon(self) -> None:
+        """Stop the robot; if even that is not answered, the lease runs out."""
+        with contextlib.suppress(RobotdError):
+            await self.stop(f"client {os.getpid()} left its mission")
+
+
+def _settle(waiting: asyncio.Future[None], error: RobotdError | None) -> None:
+    if waiting.done():
+        return
+    if error is None:
+        waiting.set_result(None)
+    else:
+        waiting.set_exception(error)
+
+
+def _now_s() -> float:
+    return now_ns() / NS_PER_S

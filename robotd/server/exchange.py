@@ -1,0 +1,111 @@
+"""A client's side of requests, without sockets and without a clock of its own.
+
+Both clients do the same with it: send what is :meth:`Exchange.due`, hand every frame that arrives to
+:meth:`Exchanges.accept`, and wait no longer than :meth:`Exchange.wait_s`. A repeat carries the number of the request
+it repeats, so the server carries it out once.
+"""
+
+from typing import Any, Generic, TypeVar
+
+import msgspec
+
+from robotd.core.errors import RemoteProtocolError, RequestTimeout, ServerError
+from robotd.server.api import Command
+from robotd.server.envelope import Reply, decode_reply, encode_request
+
+R = TypeVar("R")
+
+
+class Exchange(Generic[R]):
+    """One request and its answer."""
+
+    def __init__(
+        self, request_id: int, command: Command[R], *, now_s: float, retry_s: float, deadline_s: float
+    ) -> None:
+        self.id = request_id
+        self._command = command
+        self._data = encode_request(request_id, command)
+        self._retry_s = retry_s
+        self._deadline_s = now_s + deadline_s
+        self._next_s = now_s
+        self._reply: Reply | None = None
+
+    @property
+    def is_answered(self) -> bool:
+        """Whether the answer is there."""
+        return self._reply is not None
+
+    def due(self, now_s: float) -> bytes | None:
+        """Return the request if it is time to send it, for the first time or again.
+
+        Raises:
+            RequestTimeout: there was no answer before the deadline.
+        """
+        if now_s >= self._deadline_s:
+            raise RequestTimeout(f"{self._command.cmd}: no answer from robotd")
+        if now_s < self._next_s:
+            return None
+        self._next_s = now_s + self._retry_s
+        return self._data
+
+    def wait_s(self, now_s: float) -> float:
+        """Return how long to wait for a frame at most."""
+        return max(0.0, min(self._next_s, self._deadline_s) - now_s)
+
+    def answer(self, reply: Reply) -> None:
+        """Take the answer."""
+        self._reply = reply
+
+    def result(self) -> R:
+        """Return what was asked for.
+
+        Raises:
+            ServerError: the server refused.
+            RemoteProtocolError: the answer is not what the command promises.
+        """
+        if self._reply is None:
+            raise RuntimeError("not answered yet")
+        if isinstance(self._reply.result, ServerError):
+            raise self._reply.result
+        try:
+            result: R = msgspec.convert(self._reply.result, self._command.result, strict=True)
+        except (msgspec.ValidationError, ValueError) as error:
+            raise RemoteProtocolError(f"answer to {self._command.cmd}: {error}") from error
+        return result
+
+
+class Exchanges:
+    """The requests of one client, by number."""
+
+    def __init__(self, *, retry_s: float, deadline_s: float | None) -> None:
+        self._retry_s = retry_s
+        self._deadline_s = deadline_s
+        self._number = 0
+        self._open: dict[int, Exchange[Any]] = {}
+
+    def begin(self, command: Command[R], now_s: float) -> Exchange[R]:
+        """Open an exchange."""
+        self._number += 1
+        deadline_s = command.deadline_s if self._deadline_s is None else self._deadline_s
+        exchange = Exchange(self._number, command, now_s=now_s, retry_s=self._retry_s, deadline_s=deadline_s)
+        self._open[exchange.id] = exchange
+        return exchange
+
+    def accept(self, frame: bytes) -> Exchange[Any] | None:
+        """Take a frame and return the exchange it answers; None for the answer to a repeat, or to nobody.
+
+        Raises:
+            RemoteProtocolError: the frame is no reply.
+            ServerError: the server could not read one of our requests, and so cannot say which.
+        """
+        reply = decode_reply(frame)
+        if reply.id is None and isinstance(reply.result, ServerError):
+            raise reply.result
+        exchange = self._open.get(reply.id) if reply.id is not None else None
+        if exchange is not None:
+            exchange.answer(reply)
+        return exchange
+
+    def end(self, exchange: Exchange[Any]) -> None:
+        """Close an exchange, answered or not."""
+        self._open.pop(exchange.id, None)

@@ -1,0 +1,94 @@
+"""A client's side of a mission under way, without sockets: when to renew the lease, what concerns it, how it ended.
+
+Nothing is left to a single message: the end is published, and every renewal is answered with the mission's latest
+progress as well, so a reader that missed the one hears the other.
+"""
+
+from robotd.core.errors import MissionError
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.events import MissionPhase, MissionProgress, SweepDone, SweepProgress
+from robotd.server.api import MissionStarted, Renewed
+from robotd.server.feed import Gap
+from robotd.server.topics import Published, Topic
+
+MISSION_TOPICS = (Topic.MISSION, Topic.SWEEP, Topic.POSE)
+"""What a mission's client listens to."""
+MissionEvent = MissionProgress | SweepProgress | SweepDone | PoseEstimate
+"""What a mission's client is told."""
+
+_RENEWALS_PER_LEASE = 4
+_GRACE_S = 0.2
+"""How long published messages may lag behind the reply that the mission is over."""
+
+
+class MissionRun:
+    """One mission, followed to its end."""
+
+    def __init__(self, started: MissionStarted, now_s: float) -> None:
+        self.mission_id = started.mission_id
+        self.is_over = False
+        self._period_s = started.lease_s / _RENEWALS_PER_LEASE
+        self._next_s = now_s + self._period_s
+        self._end: MissionProgress | None = None
+
+    @property
+    def is_ending(self) -> bool:
+        """Whether the end is known: there is nothing to renew any more, though messages may still come."""
+        return self._end is not None
+
+    def wait_s(self, now_s: float) -> float:
+        """Return how long to wait for a message at most before the next look at :meth:`is_due` or :meth:`overdue`."""
+        return max(0.0, self._next_s - now_s)
+
+    def is_due(self, now_s: float) -> bool:
+        """Return whether to renew the lease now."""
+        return not self.is_ending and now_s >= self._next_s
+
+    def renewed(self, answer: Renewed, now_s: float) -> None:
+        """Take the answer to a renewal."""
+        if answer.mission is not None and answer.mission.is_last:
+            self._end = answer.mission
+            self._next_s = now_s + _GRACE_S
+        else:
+            self._next_s = now_s + self._period_s
+
+    def accept(self, event: Published | Gap) -> MissionEvent | None:
+        """Return a published event if it concerns the mission."""
+        if isinstance(event, MissionProgress):
+            if event.mission_id != self.mission_id:
+                return None
+            self._conclude(event)
+        return event if isinstance(event, MissionEvent) else None
+
+    def overdue(self, now_s: float) -> MissionProgress | None:
+        """Return the end of the mission if it is known from a renewal and its message must have been missed."""
+        if self.is_over or self._end is None or now_s < self._next_s:
+            return None
+        self._conclude(self._end)
+        return self._end
+
+    def check(self) -> None:
+        """Return if the mission was done.
+
+        Raises:
+            MissionError: it was stopped, or it failed; says why.
+        """
+        if self._end is not None and self._end.phase is not MissionPhase.DONE:
+            raise MissionError(f"{self._end.kind} {self._end.phase}: {self._end.message}")
+
+    def _conclude(self, progress: MissionProgress) -> None:
+        if progress.is_last:
+            self._end = progress
+            self.is_over = True
+
+
+def final_estimate(events: list[MissionEvent]) -> PoseEstimate:
+    """Return what a localization found: the last estimate of a whole sweep.
+
+    Raises:
+        MissionError: there is none.
+    """
+    for event in reversed(events):
+        if isinstance(event, PoseEstimate) and event.final and event.state is not PoseState.PREDICTED:
+            return event
+    raise MissionError("the mission ended without an estimate")

@@ -1,0 +1,31 @@
+"""How a client's sockets are set up and connected."""
+
+import secrets
+from typing import Any
+
+import zmq
+
+from robotd.server.endpoints import Endpoints
+from robotd.server.topics import Topic
+
+
+def connect_dealer(socket: "zmq.Socket[Any]", endpoints: Endpoints, *, retry_s: float) -> None:
+    """Connect a DEALER to the commands.
+
+    It keeps one identity over reconnections, so that a repeated request is recognized, and it queues nothing while
+    there is no daemon: an old request must not reach a new daemon.
+    """
+    socket.setsockopt(zmq.IDENTITY, secrets.token_bytes(16))
+    socket.setsockopt(zmq.IMMEDIATE, 1)
+    socket.setsockopt(zmq.SNDTIMEO, max(1, int(retry_s * 1000)))
+    socket.setsockopt(zmq.LINGER, 0)
+    socket.connect(endpoints.commands)
+
+
+def connect_subscriber(socket: "zmq.Socket[Any]", endpoints: Endpoints, topics: tuple[Topic, ...]) -> None:
+    """Connect a SUB to the topics; maps come over a socket of their own."""
+    socket.setsockopt(zmq.LINGER, 0)
+    for topic in topics:
+        socket.subscribe(topic.prefix)
+    for endpoint in {endpoints.maps if topic is Topic.MAP else endpoints.state for topic in topics}:
+        socket.connect(endpoint)
