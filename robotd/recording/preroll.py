@@ -62,10 +62,7 @@ class PrerollJournal(Journal):
                 " the daemon began: restart it, or set recording.from_start = true"
             )
         path.parent.mkdir(parents=True, exist_ok=True)
-        recorder = Recorder(path, self._header)
-        for entry in self._remembered:
-            recorder.note(entry)
-        self._recorder = recorder
+        self._recorder = Recorder(path, self._header, tuple(self._remembered))
 
     def stop(self) -> Callable[[], None]:
         """End the recording; the returned function waits for the file and may block.

@@ -8,6 +8,7 @@ before it carries a CRC. Nothing is compressed: a recording must be readable whe
 import logging
 import os
 import threading
+from collections.abc import Sequence
 from pathlib import Path
 from typing import IO
 
@@ -31,8 +32,16 @@ _Message = tuple[str, int, bytes]
 class Recorder(Journal):
     """Records until :meth:`close`, or until something goes wrong: then ``error`` says what, and the robot goes on."""
 
-    def __init__(self, path: Path, header: RecordingHeader, *, queue_bytes: int = _QUEUE_BYTES) -> None:
+    def __init__(
+        self, path: Path, header: RecordingHeader, earlier: Sequence[Entry] = (), *, queue_bytes: int = _QUEUE_BYTES
+    ) -> None:
         """Begin a new file.
+
+        Args:
+            path: the file; it must not exist yet.
+            header: what comes first.
+            earlier: what happened before now; must not change any more. However long, it holds nobody up.
+            queue_bytes: how far the disk may fall behind.
 
         Raises:
             RecordingError: the file exists already, or cannot be made.
@@ -48,7 +57,9 @@ class Recorder(Journal):
             file = path.open("xb")
         except OSError as error:
             raise RecordingError(f"cannot record to {path}: {error.strerror}") from error
-        self._thread = threading.Thread(target=self._write_all, args=(file, header), name="recorder", daemon=True)
+        self._thread = threading.Thread(
+            target=self._write_all, args=(file, header, earlier), name="recorder", daemon=True
+        )
         self._thread.start()
 
     def note(self, entry: Entry) -> None:
@@ -57,12 +68,12 @@ class Recorder(Journal):
         Raises:
             TypeError: a command or a result holds something that JSON cannot.
         """
-        topic, data = encode(entry)
+        message = _message_of(entry)
         with self._changed:
             if self._closing:
                 return
-            self._queue.append((topic, entry.time_ns, data))
-            self._queued_bytes += len(data) + _ENTRY_OVERHEAD_BYTES
+            self._queue.append(message)
+            self._queued_bytes += len(message[2]) + _ENTRY_OVERHEAD_BYTES
             if self._queued_bytes > self._queue_bytes:
                 self._fail("the disk does not keep up")
             if self._queued_bytes > CHUNK_BYTES or self._closing:
@@ -80,11 +91,12 @@ class Recorder(Journal):
         self._closing = True
         _log.error("recording to %s stopped: %s", self.path, reason)
 
-    def _write_all(self, file: IO[bytes], header: RecordingHeader) -> None:
+    def _write_all(self, file: IO[bytes], header: RecordingHeader, earlier: Sequence[Entry]) -> None:
         try:
             with file:
                 writer = _ChunkedFile(file)
                 writer.write([(HEADER_TOPIC, header.started_ns, encode_header(header))])
+                writer.write([_message_of(entry) for entry in earlier])
                 closing = False
                 while not closing:
                     messages, closing = self._take()
@@ -100,6 +112,11 @@ class Recorder(Journal):
             self._changed.wait_for(lambda: self._closing or self._queued_bytes > CHUNK_BYTES, FLUSH_S)
             messages, self._queue, self._queued_bytes = self._queue, [], 0
             return messages, self._closing
+
+
+def _message_of(entry: Entry) -> _Message:
+    topic, data = encode(entry)
+    return topic, entry.time_ns, data
 
 
 class _ChunkedFile:

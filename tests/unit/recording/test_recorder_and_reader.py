@@ -208,6 +208,15 @@ def test_what_json_cannot_hold_is_refused_at_the_call(tmp_path: Path) -> None:
     assert read(tmp_path / "a.mcap").complete
 
 
+def test_what_happened_earlier_comes_first_however_much_it_is(tmp_path: Path) -> None:
+    earlier = tuple(BytesEntry(n, "drive", Direction.FROM_BOARD, bytes(500)) for n in range(1000))
+    recorder = Recorder(tmp_path / "a.mcap", HEADER, earlier, queue_bytes=1000)
+    recorder.line_changed("drive", 2000, up=False)
+    recorder.close()
+    assert recorder.error is None
+    assert read(tmp_path / "a.mcap").entries == (*earlier, LineEntry(2000, "drive", up=False))
+
+
 def test_closing_drains_and_what_comes_later_is_dropped(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path / "a.mcap", HEADER)
     for number in range(5000):
