@@ -1,0 +1,166 @@
+"""What the adapters of our own three boards share: the link, health, arming."""
+
+from dataclasses import replace
+from typing import ClassVar
+
+from firmware_proto.common import Arm, BoardKind, BoardState, BoardStatus, Clear, Disarm, Fault
+from firmware_proto.schema import Message
+from robotd.core.broadcast import Broadcast
+from robotd.core.errors import DeviceError, TransportError
+from robotd.hardware.devices.device import DeviceStatus, LinkState
+from robotd.hardware.devices.settings import PortSettings
+from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.link.handshake import Terms
+from robotd.hardware.link.reconnect import Link
+from robotd.hardware.link.session import LinkCounters, Session
+from robotd.hardware.wire.board import BoardWire
+
+_FAULT_BITS = 16
+
+
+class BoardDevice:
+    """One of our boards, as a device: a subclass adds what it measures and what it moves."""
+
+    KIND: ClassVar[BoardKind]
+
+    def __init__(self, settings: PortSettings, wiring: Wiring) -> None:
+        """Make the device; nothing happens before :meth:`run`."""
+        self._wire = BoardWire(self.KIND)
+        self._counters = LinkCounters()
+        self._session: Session | None = None
+        self._status = DeviceStatus(self.name, LinkState.ABSENT, armed=False, detail="not started")
+        self._status_changes: Broadcast[DeviceStatus] = Broadcast()
+        self._link = Link(
+            device=self.name,
+            terms=Terms(self.KIND, settings.telemetry_ms, settings.ttl_max_ms),
+            connect=wiring.connect,
+            tap=wiring.tap,
+            rng=wiring.rng,
+            dictionaries={},
+            wire=self._wire,
+            counters=self._counters,
+        )
+
+    @property
+    def name(self) -> str:
+        """``drive``, ``pantilt`` or ``rangefinder``."""
+        return self.KIND.name.lower()
+
+    @property
+    def status(self) -> DeviceStatus:
+        """Its health now."""
+        return replace(self._status, counters=self._counted())
+
+    @property
+    def status_changes(self) -> Broadcast[DeviceStatus]:
+        """Its health, whenever it changes; counters alone are no change."""
+        return self._status_changes
+
+    async def run(self) -> None:
+        """Own the link until cancelled: connect, serve, reconnect with back-off, never arm by itself."""
+        await self._link.run(self)
+
+    async def arm(self) -> None:
+        """Allow motion; see :meth:`robotd.hardware.devices.device.Device.arm`."""
+        if self._status.faults:
+            raise DeviceError(self.name, "fault", f"{', '.join(self._status.faults)} latched: clear first")
+        await self._order(Arm())
+        self._change(armed=True)
+
+    async def disarm(self) -> None:
+        """Stop and forbid motion; same errors as :meth:`arm`."""
+        await self._order(Disarm())
+        self._change(armed=False)
+
+    async def clear_faults(self) -> None:
+        """Acknowledge latched faults; leaves the device disarmed; same errors as :meth:`arm`."""
+        await self._order(Clear())
+        self._change(armed=False, faults=())
+
+    def stop_now(self) -> None:
+        """Put the preformatted stop on the wire ahead of everything else; never blocks, never raises."""
+        if self._session is not None:
+            self._session.stop_now()
+
+    # What the link tells
+
+    def link_opened(self) -> None:
+        """Note that the line is open."""
+        self._change(link=LinkState.CONNECTING, armed=False, faults=(), detail="line open, waiting for the board")
+
+    def link_ready(self, session: Session) -> None:
+        """Note that there is a board to talk to."""
+        self._session = session
+        self._change(link=LinkState.READY, armed=False, detail="")
+
+    def link_lost(self, reason: str) -> None:
+        """Note that there is none, and why."""
+        self._session = None
+        self._change(link=LinkState.ABSENT, armed=False, faults=(), detail=reason)
+
+    def telemetry(self, message: Message) -> None:
+        """Take a message that nobody asked for; a subclass takes its own first."""
+        if isinstance(message, BoardStatus):
+            self._change(armed=message.state == BoardState.ARMED, faults=fault_names(message.faults))
+
+    # What a subclass uses
+
+    def _talk(self) -> Session:
+        """Return the session; TransportError if there is none."""
+        if self._session is None:
+            raise TransportError(f"{self.name} is absent: {self._status.detail}")
+        return self._session
+
+    async def _order(self, message: Message) -> None:
+        session = self._talk()
+        await session.command(message)
+        if self._session is not session:
+            raise TransportError(f"{self.name} was lost: {self._status.detail}")
+
+    def _host_ns(self, board_us: int) -> int:
+        return self._talk().clock.host_ns(board_us)
+
+    def _change(
+        self,
+        *,
+        link: LinkState | None = None,
+        armed: bool | None = None,
+        faults: tuple[str, ...] | None = None,
+        detail: str | None = None,
+    ) -> None:
+        before = self._status
+        self._status = DeviceStatus(
+            self.name,
+            before.link if link is None else link,
+            before.armed if armed is None else armed,
+            before.faults if faults is None else faults,
+            before.detail if detail is None else detail,
+        )
+        if self._status != before:
+            self._status_changes.publish(self.status)
+
+    def _counted(self) -> tuple[tuple[str, int], ...]:
+        wire, link = self._wire.counters, self._counters
+        return (
+            ("frames", wire.frames),
+            ("crc_errors", wire.crc_errors),
+            ("cobs_errors", wire.cobs_errors),
+            ("length_errors", wire.length_errors),
+            ("unknown_types", wire.unknown_types),
+            ("telemetry_gaps", wire.telemetry_gaps),
+            ("sessions", link.sessions),
+            ("retries", link.retries),
+            ("timeouts", link.timeouts),
+            ("refused", link.refused),
+            ("unmatched", link.unmatched),
+        )
+
+
+def fault_names(faults: int) -> tuple[str, ...]:
+    """Return the names of latched faults in lower case; a bit that we do not know is named by its number.
+
+    >>> fault_names(1 | 2 | 1 << 9)
+    ('deadman', 'bumper', 'fault_9')
+    """
+    names = {fault.value: (fault.name or "").lower() for fault in Fault}
+    return tuple(names.get(1 << bit, f"fault_{bit}") for bit in range(_FAULT_BITS) if faults & 1 << bit)

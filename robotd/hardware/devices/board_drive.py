@@ -1,0 +1,77 @@
+"""The synchro-drive on our own board."""
+
+import math
+from typing import ClassVar
+
+from firmware_proto.common import BoardKind
+from firmware_proto.drive import DriveReport, OdometryReport, SetVelocity
+from firmware_proto.schema import Message
+from robotd.core.angles import wrap_rad
+from robotd.core.broadcast import Broadcast
+from robotd.core.pose import Odometry, Twist2
+from robotd.hardware.devices.board_device import BoardDevice
+from robotd.hardware.devices.drive import DriveReadout
+from robotd.hardware.devices.odometer import Odometer
+from robotd.hardware.devices.settings import DriveSettings
+from robotd.hardware.devices.wiring import Wiring
+
+_MILLI = 1000
+_BUMPERS = 16
+_BUMPER_STEP_RAD = math.tau / _BUMPERS
+
+
+class BoardDrive(BoardDevice):
+    """Implements :class:`robotd.hardware.devices.drive.Drive`."""
+
+    KIND: ClassVar[BoardKind] = BoardKind.DRIVE
+
+    def __init__(self, settings: DriveSettings, wiring: Wiring) -> None:
+        """Make the device; its ``odom`` frame begins where the base is first seen."""
+        super().__init__(settings, wiring)
+        self._odometer = Odometer(settings.calibration)
+        self._odometry: Broadcast[Odometry] = Broadcast()
+        self._readouts: Broadcast[DriveReadout] = Broadcast()
+
+    @property
+    def odometry(self) -> Broadcast[Odometry]:
+        """Wheel-derived pose, periodic."""
+        return self._odometry
+
+    @property
+    def readouts(self) -> Broadcast[DriveReadout]:
+        """Battery and bumpers, periodic and on change."""
+        return self._readouts
+
+    def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
+        """Send a set-point that the base may follow for ``ttl_s``; TransportError if it is absent."""
+        self._talk().post(
+            SetVelocity(
+                speed_mmps=round(twist.speed_mps * _MILLI),
+                turn_mradps=round(twist.turn_radps * _MILLI),
+                ttl_ms=max(1, round(ttl_s * _MILLI)),
+            )
+        )
+
+    def telemetry(self, message: Message) -> None:
+        """Take odometry, battery, bumpers, and what every board tells."""
+        if isinstance(message, OdometryReport):
+            self._odometry.publish(self._measured(message))
+        elif isinstance(message, DriveReport):
+            self._readouts.publish(self._read_out(message))
+        else:
+            super().telemetry(message)
+
+    def _measured(self, report: OdometryReport) -> Odometry:
+        return Odometry(
+            time_ns=self._host_ns(report.board_us),
+            in_odom=self._odometer.update(self._talk().boot_id, report.translate_counts, report.rotate_counts),
+            twist=Twist2(report.speed_mmps / _MILLI, report.turn_mradps / _MILLI),
+        )
+
+    def _read_out(self, report: DriveReport) -> DriveReadout:
+        pressed = (bit for bit in range(_BUMPERS) if report.bumpers & 1 << bit)
+        return DriveReadout(
+            time_ns=self._host_ns(report.board_us),
+            battery_v=report.battery_mv / _MILLI,
+            bumpers_rad=tuple(wrap_rad(bit * _BUMPER_STEP_RAD) for bit in pressed),
+        )

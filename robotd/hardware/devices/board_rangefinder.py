@@ -1,0 +1,62 @@
+"""The laser rangefinder on our own board."""
+
+from typing import ClassVar
+
+from firmware_proto import rangefinder as proto
+from firmware_proto.common import BoardKind
+from firmware_proto.rangefinder import ShotStatus
+from robotd.core.errors import DeviceError, LinkTimeout
+from robotd.core.reading import ReadingStatus
+from robotd.hardware.devices.board_device import BoardDevice
+from robotd.hardware.devices.rangefinder import Shot
+from robotd.hardware.devices.settings import RangefinderSettings
+from robotd.hardware.devices.wiring import Wiring
+
+_MM_PER_M = 1000
+_STATUS: dict[int, ReadingStatus] = {
+    ShotStatus.OK: ReadingStatus.OK,
+    ShotStatus.OVER_RANGE: ReadingStatus.MISS,
+    ShotStatus.TOO_NEAR: ReadingStatus.TOO_NEAR,
+    ShotStatus.WEAK: ReadingStatus.WEAK,
+    ShotStatus.SATURATED: ReadingStatus.SATURATED,
+    ShotStatus.AMBIENT: ReadingStatus.AMBIENT,
+    ShotStatus.NOT_MEASURED: ReadingStatus.NOT_MEASURED,
+    ShotStatus.LASER_OFF: ReadingStatus.DEVICE_ERROR,
+    ShotStatus.DEVICE_ERROR: ReadingStatus.DEVICE_ERROR,
+}
+
+
+class BoardRangefinder(BoardDevice):
+    """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`."""
+
+    KIND: ClassVar[BoardKind] = BoardKind.RANGEFINDER
+
+    def __init__(self, settings: RangefinderSettings, wiring: Wiring) -> None:
+        """Make the device; its bias is applied to every range."""
+        super().__init__(settings, wiring)
+        self._bias_m = settings.range_bias_m
+
+    async def switch_laser(self, *, on: bool) -> None:
+        """Switch the light; same errors as :meth:`arm`."""
+        await self._talk().command(proto.SetLaser(int(on)))
+
+    async def shoot(self, *, timeout_s: float) -> Shot:
+        """Take one reading; TransportError if the device is absent, any other failure is a result."""
+        session = self._talk()
+        try:
+            shot = await session.ask(proto.Shoot(max(1, round(timeout_s * 1000))), proto.Shot, takes_s=timeout_s)
+        except LinkTimeout:
+            return Shot(session.heard_ns, ReadingStatus.TIMEOUT, None, None)
+        except DeviceError:
+            return Shot(session.heard_ns, ReadingStatus.DEVICE_ERROR, None, None)
+        return self._measured(shot)
+
+    def _measured(self, shot: proto.Shot) -> Shot:
+        status = _STATUS.get(shot.status, ReadingStatus.DEVICE_ERROR)
+        is_ok = status is ReadingStatus.OK
+        return Shot(
+            time_ns=self._host_ns(shot.board_us),
+            status=status,
+            range_m=shot.range_mm / _MM_PER_M + self._bias_m if is_ok else None,
+            strength=shot.strength,
+        )

@@ -1,0 +1,117 @@
+"""From what the instruments say to metres and radians in the robot frame."""
+
+import math
+from dataclasses import dataclass
+
+from robotd.core.angles import wrap_rad
+from robotd.core.pose import IDENTITY, Pose2
+from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.hardware.devices.pantilt import AimReadback
+from robotd.hardware.devices.rangefinder import Shot
+
+
+@dataclass(frozen=True, slots=True)
+class DriveCalibration:
+    """Scales of the two encoders; a negative one turns the sense of its encoder round."""
+
+    counts_per_m: float
+    """Translation encoder counts per metre along the heading."""
+    counts_per_rad: float
+    """Rotation encoder counts per radian counter-clockwise."""
+
+    def __post_init__(self) -> None:
+        """Refuse scales that say nothing."""
+        for name in ("counts_per_m", "counts_per_rad"):
+            value = getattr(self, name)
+            if not math.isfinite(value) or value == 0.0:
+                raise ValueError(f"{name} must be finite and not zero, got {value}")
+
+
+@dataclass(frozen=True, slots=True)
+class HeadMount:
+    """Where the head sits on the robot, and what it calls straight ahead and level."""
+
+    x_m: float = 0.0
+    """Pan axis in the robot frame, ahead of the centre."""
+    y_m: float = 0.0
+    """Pan axis in the robot frame, to the left of the centre."""
+    pan_zero_rad: float = 0.0
+    """Added to the pan that the head reads back, to get the angle from the robot's heading."""
+    tilt_zero_rad: float = 0.0
+    """Added to the tilt that the head reads back, to get the angle up from level."""
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be a mount."""
+        for name in ("x_m", "y_m"):
+            if not abs(getattr(self, name)) <= 10.0:
+                raise ValueError(f"{name} must be within 10 m of the centre, got {getattr(self, name)}")
+        for name in ("pan_zero_rad", "tilt_zero_rad"):
+            if not abs(getattr(self, name)) <= math.pi:
+                raise ValueError(f"{name} must be within half a turn, got {getattr(self, name)}")
+
+
+@dataclass(frozen=True, slots=True)
+class RangefinderCalibration:
+    """What the instrument can be believed."""
+
+    range_bias_m: float = 0.0
+    """Added to every range along the beam."""
+    range_min_m: float = 0.3
+    """Shortest range along the beam that the instrument measures rightly; LILY's is 0.3 m."""
+    range_max_m: float = 6.0
+    """Cut-off: what is horizontally farther than this counts as not met; LILY's is 6 m."""
+
+    def __post_init__(self) -> None:
+        """Refuse ranges that leave nothing to measure."""
+        if not math.isfinite(self.range_bias_m):
+            raise ValueError(f"range_bias_m must be finite, got {self.range_bias_m}")
+        if not self.range_min_m > 0.0:
+            raise ValueError(f"range_min_m must be positive, got {self.range_min_m}")
+        if not self.range_min_m < self.range_max_m < math.inf:
+            raise ValueError(f"range_max_m must be finite and above range_min_m, got {self.range_max_m}")
+
+
+def reading_in_robot(
+    mount: HeadMount,
+    calibration: RangefinderCalibration,
+    aim: AimReadback,
+    shot: Shot,
+    stop_from_base: Pose2 = IDENTITY,
+) -> RangeReading:
+    """Lay one shot into the robot frame of the stop.
+
+    Args:
+        mount: where the head sits; its zeros are in ``aim`` already.
+        calibration: between which ranges the instrument is believed; its bias is in ``shot`` already.
+        aim: where the head points.
+        shot: what the instrument measured there.
+        stop_from_base: where the base stands now in the robot frame of the stop, if it turned since the sweep began.
+
+    Returns:
+        The reading, its range made horizontal by the tilt: a miss, with the cut-off as its range, if nothing was
+        met up to there, and ``TOO_NEAR`` if it is nearer than the instrument can measure.
+    """
+    origin_x_m, origin_y_m = stop_from_base.transform(mount.x_m, mount.y_m)
+    status, range_m = _horizontal(calibration, shot, aim.tilt_rad)
+    return RangeReading(
+        time_ns=shot.time_ns,
+        bearing_rad=wrap_rad(stop_from_base.heading_rad + aim.pan_rad),
+        status=status,
+        range_m=range_m,
+        strength=shot.strength,
+        origin_x_m=origin_x_m,
+        origin_y_m=origin_y_m,
+    )
+
+
+def _horizontal(calibration: RangefinderCalibration, shot: Shot, tilt_rad: float) -> tuple[ReadingStatus, float | None]:
+    if shot.status is ReadingStatus.MISS:
+        return ReadingStatus.MISS, calibration.range_max_m
+    if shot.status is not ReadingStatus.OK or shot.range_m is None:
+        return shot.status, None
+    if shot.range_m < calibration.range_min_m:
+        return ReadingStatus.TOO_NEAR, None
+    range_m = shot.range_m * math.cos(tilt_rad)
+    if range_m > calibration.range_max_m:
+        return ReadingStatus.MISS, calibration.range_max_m
+    return ReadingStatus.OK, range_m

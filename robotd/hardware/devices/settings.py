@@ -1,0 +1,108 @@
+"""Settings of the three devices, as they stand in the configuration: each is one flat table."""
+
+from dataclasses import dataclass
+
+from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, RangefinderCalibration
+
+_U16_MAX = 0xFFFF
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PortSettings:
+    """How to reach a device, and what is agreed with its board."""
+
+    port: str
+    """A device path, best one under ``/dev/serial/by-id``, or ``tcp://host:port``."""
+    baud: int = 115_200
+    """Speed of a serial line."""
+    dialect: str = "board"
+    """What the device speaks; ``board`` is the protocol of our own boards."""
+    telemetry_ms: int = 40
+    """Period of the telemetry [ms]; set-points follow it."""
+    ttl_max_ms: int = 500
+    """Longest time for which the board may go on with a motion without hearing from us [ms]."""
+
+    def __post_init__(self) -> None:
+        """Refuse what no line and no board can do."""
+        if not self.port:
+            raise ValueError("port must not be empty")
+        if self.baud <= 0:
+            raise ValueError(f"baud must be positive, got {self.baud}")
+        if not 5 <= self.telemetry_ms <= 250:
+            raise ValueError(f"telemetry_ms must be 5 to 250, got {self.telemetry_ms}")
+        if not 1 <= self.ttl_max_ms <= _U16_MAX:
+            raise ValueError(f"ttl_max_ms must be 1 to {_U16_MAX}, got {self.ttl_max_ms}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveSettings(PortSettings):
+    """The synchro-drive base."""
+
+    port: str = "/dev/robotd/drive"
+    """A device path, best one under ``/dev/serial/by-id``, or ``tcp://host:port``."""
+    counts_per_m: float = 27_300.0
+    """Translation encoder counts per metre; negative if it counts backwards."""
+    counts_per_rad: float = 4_096.0
+    """Rotation encoder counts per radian counter-clockwise; negative if it counts clockwise."""
+
+    def __post_init__(self) -> None:
+        """Refuse what the port or the calibration refuses."""
+        PortSettings.__post_init__(self)
+        _ = self.calibration
+
+    @property
+    def calibration(self) -> DriveCalibration:
+        """The scales."""
+        return DriveCalibration(self.counts_per_m, self.counts_per_rad)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanTiltSettings(PortSettings):
+    """The pan/tilt unit."""
+
+    port: str = "/dev/robotd/pantilt"
+    """A device path, best one under ``/dev/serial/by-id``, or ``tcp://host:port``."""
+    ttl_max_ms: int = 30_000
+    """Longest time that one turn of the head may take [ms]."""
+    x_m: float = 0.0
+    """Pan axis in the robot frame, ahead of the centre."""
+    y_m: float = 0.0
+    """Pan axis in the robot frame, to the left of the centre."""
+    pan_zero_rad: float = 0.0
+    """Added to the pan that the head reads back, to get the angle from the robot's heading."""
+    tilt_zero_rad: float = 0.0
+    """Added to the tilt that the head reads back, to get the angle up from level."""
+
+    def __post_init__(self) -> None:
+        """Refuse what the port or the mount refuses."""
+        PortSettings.__post_init__(self)
+        _ = self.mount
+
+    @property
+    def mount(self) -> HeadMount:
+        """Where the head sits."""
+        return HeadMount(self.x_m, self.y_m, self.pan_zero_rad, self.tilt_zero_rad)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RangefinderSettings(PortSettings):
+    """The laser rangefinder."""
+
+    port: str = "/dev/robotd/rangefinder"
+    """A device path, best one under ``/dev/serial/by-id``, or ``tcp://host:port``."""
+    range_bias_m: float = 0.0
+    """Added to every range along the beam."""
+    range_min_m: float = 0.3
+    """Shortest range along the beam that the instrument measures rightly; LILY's is 0.3 m."""
+    range_max_m: float = 6.0
+    """Cut-off: what is horizontally farther than this counts as not met; LILY's is 6 m."""
+
+    def __post_init__(self) -> None:
+        """Refuse what the port or the calibration refuses."""
+        PortSettings.__post_init__(self)
+        _ = self.calibration
+
+    @property
+    def calibration(self) -> RangefinderCalibration:
+        """What the instrument can be believed."""
+        return RangefinderCalibration(self.range_bias_m, self.range_min_m, self.range_max_m)

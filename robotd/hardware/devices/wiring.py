@@ -1,0 +1,19 @@
+"""What a device is built into."""
+
+import random
+from dataclasses import dataclass
+
+from robotd.hardware.link.tap import Tap
+from robotd.hardware.transport.transport import Connect
+
+
+@dataclass(frozen=True, slots=True)
+class Wiring:
+    """The same for hardware, tests and replay; only its parts differ."""
+
+    connect: Connect
+    """Opens the line to the device, anew after each loss."""
+    tap: Tap
+    """Sees every byte."""
+    rng: random.Random
+    """Where the nonces of the handshakes come from."""
