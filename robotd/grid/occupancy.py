@@ -109,10 +109,10 @@ class OccupancyGrid:
             self._insert_one_by_one(beams)
         return np.flatnonzero(self.cells != before)
 
-    def snapshot(self) -> NDArray[np.uint8]:
-        """Return a read-only copy of the cells, ``uint8[rows, cols]``."""
-        copy = self.cells.copy()
-        copy.flags.writeable = False
+    def snapshot(self) -> "OccupancyGrid":
+        """Return a copy that nobody changes any more: its cells are read-only, ``insert`` into it fails."""
+        copy = OccupancyGrid(self.spec, self.cells, self.settings)
+        copy.cells.flags.writeable = False
         return copy
 
     def digest(self) -> str:

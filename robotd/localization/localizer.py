@@ -1,0 +1,116 @@
+"""From readings to a pose estimate: feasible poses counted, the best regions found, their uniqueness judged.
+
+The consistent reading method of [BrownDonald2000]_ sec. 2.2.1: look for the poses that explain the most readings. It
+bears bad readings and obstacles that are not on the map (fig. 6), and it does not hide that several places look alike.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from robotd.core.reading import RangeReading
+from robotd.grid.binary import BinaryMap
+from robotd.localization.estimate import PoseEstimate, PoseState, Region
+from robotd.localization.rank import RankGrid
+from robotd.localization.regions import regions_of
+
+
+@dataclass(frozen=True, slots=True)
+class LocalizationSettings:
+    """What counts as explained, and what as an answer."""
+
+    range_error_m: float = 0.05
+    """The paper's eps: how far an obstacle on the map may lie from the head of a reading."""
+    localized_share: float = 0.6
+    """Share of the readings that the best pose must explain; below it the robot is lost."""
+    rival_share: float = 0.05
+    """A pose that explains this share of the readings fewer than the best is still an answer."""
+    unique_within_m: float = 0.5
+    """The pose is unique if all answers lie this near to the best one."""
+    readings_min: int = 12
+    """With fewer readings than this nothing is said."""
+
+    def __post_init__(self) -> None:
+        """Refuse impossible values."""
+        if not self.range_error_m >= 0.0:
+            raise ValueError(f"range_error_m must not be negative, got {self.range_error_m}")
+        if not 0.0 < self.localized_share <= 1.0:
+            raise ValueError(f"localized_share must lie in (0, 1], got {self.localized_share}")
+        if not 0.0 <= self.rival_share < 1.0:
+            raise ValueError(f"rival_share must lie in [0, 1), got {self.rival_share}")
+        if not self.unique_within_m > 0.0:
+            raise ValueError(f"unique_within_m must be positive, got {self.unique_within_m}")
+        if self.readings_min < 1:
+            raise ValueError(f"readings_min must be at least 1, got {self.readings_min}")
+
+
+class Localizer:
+    """Localizes on one map, stop after stop; an estimate may be asked for after any reading."""
+
+    def __init__(self, binary: BinaryMap, settings: LocalizationSettings, map_id: str) -> None:
+        self._binary = binary
+        self._settings = settings
+        self._map_id = map_id
+        self._ranks = self._blank((0.0,))
+
+    @property
+    def ranks(self) -> RankGrid:
+        """The count so far: for pictures, and for whoever wants more than the estimate."""
+        return self._ranks
+
+    def begin(self, headings_rad: Sequence[float]) -> None:
+        """Forget the readings of the last stop.
+
+        Args:
+            headings_rad: the robot's possible headings in the map frame; one if odometry knows it.
+        """
+        self._ranks = self._blank(headings_rad)
+
+    def add(self, reading: RangeReading) -> None:
+        """Count a measured reading, a hit or a miss.
+
+        Raises:
+            ValueError: the reading measured nothing.
+        """
+        self._ranks.add(reading)
+
+    def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
+        """Return what the readings so far say.
+
+        Args:
+            time_ns: when the robot was there.
+            final: whether the sweep is whole.
+        """
+        state, regions = self._judge()
+        return PoseEstimate(
+            time_ns=time_ns,
+            state=state,
+            best=regions[0].centre if state is PoseState.LOCALIZED else None,
+            regions=regions,
+            best_rank=self._ranks.best_rank,
+            readings=self._ranks.readings,
+            final=final,
+            map_id=self._map_id,
+        )
+
+    def _judge(self) -> tuple[PoseState, tuple[Region, ...]]:
+        settings, best_rank, readings = self._settings, self._ranks.best_rank, self._ranks.readings
+        if readings < settings.readings_min or best_rank < settings.localized_share * readings:
+            return PoseState.LOST, ()
+        slack = math.ceil(settings.rival_share * readings)
+        regions = regions_of(self._ranks, max(1, best_rank - slack))
+        spread_m = max(_farthest_m(region, regions[0]) for region in regions)
+        return (PoseState.LOCALIZED if spread_m <= settings.unique_within_m else PoseState.AMBIGUOUS), regions
+
+    def _blank(self, headings_rad: Sequence[float]) -> RankGrid:
+        error_radius_cells = self._settings.range_error_m / self._binary.spec.resolution_m
+        return RankGrid(self._binary, headings_rad, error_radius_cells)
+
+
+def _farthest_m(region: Region, best: Region) -> float:
+    """Return how far the box round a region reaches from the centre of the best one."""
+    x_m, y_m = best.centre.x_m, best.centre.y_m
+    return math.hypot(
+        max(region.x_max_m - x_m, x_m - region.x_min_m),
+        max(region.y_max_m - y_m, y_m - region.y_min_m),
+    )

@@ -1,0 +1,85 @@
+"""The rank grid: a sum of feasible poses, whatever the order, over free cells only."""
+
+import math
+from random import Random
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from numpy.typing import NDArray
+
+from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.grid.binary import BinaryMap
+from robotd.grid.spec import GridSpec
+from robotd.localization.feasible import Obstacles, feasible_poses
+from robotd.localization.probe import probe_of
+from robotd.localization.rank import RankGrid, even_headings
+
+maps = hnp.arrays(np.bool_, (9, 12), elements=st.sampled_from([False] * 3 + [True]))
+readings = st.builds(
+    RangeReading,
+    st.just(0),
+    st.floats(-4.0, 4.0),
+    st.sampled_from([ReadingStatus.OK, ReadingStatus.OK, ReadingStatus.MISS]),
+    st.floats(0.1, 3.0),
+)
+
+
+def binary_of(occupied: NDArray[np.bool_]) -> BinaryMap:
+    return BinaryMap(GridSpec(0.5, -1.0, 2.0, occupied.shape), occupied)
+
+
+@settings(max_examples=60)
+@given(maps, st.lists(readings, max_size=5), st.lists(st.floats(-4.0, 4.0), min_size=1, max_size=3))
+def test_rank_is_how_many_feasible_pose_sets_hold_a_free_cell(
+    occupied: NDArray[np.bool_], sweep: list[RangeReading], headings: list[float]
+) -> None:
+    ranks = RankGrid(binary_of(occupied), headings, 1.5)
+    expected = np.zeros((len(headings), *occupied.shape), np.uint16)
+    for reading in sweep:
+        ranks.add(reading)
+        for number, heading in enumerate(headings):
+            probe = probe_of(reading, heading, resolution_m=0.5, error_radius_cells=1.5, reach_cells=24)
+            expected[number] += feasible_poses(Obstacles.of(occupied, 1.5), probe) & ~occupied
+    assert ranks.readings == len(sweep)
+    assert ranks.rank.dtype == np.uint16
+    assert np.array_equal(ranks.rank, expected)
+    assert ranks.best_rank == expected.max()
+    free = np.broadcast_to(~occupied, expected.shape)
+    assert np.array_equal(ranks.best_cells, np.argwhere((expected == expected.max()) & free))
+    assert np.array_equal(ranks.rank_at(ranks.best_cells), np.full(len(ranks.best_cells), expected.max()))
+
+
+@settings(max_examples=25)
+@given(maps, st.lists(readings, min_size=2, max_size=5), st.randoms())
+def test_the_order_of_readings_does_not_matter(
+    occupied: NDArray[np.bool_], sweep: list[RangeReading], random: Random
+) -> None:
+    one, other = (RankGrid(binary_of(occupied), [0.2], 1.0) for _ in range(2))
+    for reading in sweep:
+        one.add(reading)
+    random.shuffle(sweep)
+    for reading in sweep:
+        other.add(reading)
+    assert np.array_equal(one.rank, other.rank)
+
+
+def test_a_map_without_free_cells_has_no_poses() -> None:
+    ranks = RankGrid(binary_of(np.ones((4, 5), np.bool_)), [0.0], 1.0)
+    ranks.add(RangeReading(0, 0.0, ReadingStatus.OK, 1.0))
+    assert ranks.best_rank == 0
+    assert ranks.best_cells.shape == (0, 3)
+    assert ranks.rank.shape == (1, 4, 5)
+
+
+def test_theta_slices_go_round_evenly() -> None:
+    assert even_headings(4) == pytest.approx((0.0, math.pi / 2, math.pi, 3 * math.pi / 2))
+
+
+def test_a_reading_that_measured_nothing_is_refused_and_not_counted() -> None:
+    ranks = RankGrid(binary_of(np.zeros((4, 5), np.bool_)), [0.0], 1.0)
+    with pytest.raises(ValueError, match="timeout"):
+        ranks.add(RangeReading(0, 0.0, ReadingStatus.TIMEOUT, None))
+    assert ranks.readings == 0
