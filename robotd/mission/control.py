@@ -113,7 +113,7 @@ class Control:
         place = self._place()
         metadata = {"generation": place.generation, "map_id": place.map_id}
         created_ns = now_ns() + wall_offset_ns()
-        grid = place.grid.snapshot()
+        grid = OccupancyGrid(place.grid.spec, place.grid.cells, place.grid.settings)  # a copy: the map may go on
         return await self._compute.run("save map", self._store.save, name or place.name, grid, metadata, created_ns)
 
     async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:

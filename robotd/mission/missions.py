@@ -71,7 +71,8 @@ def _place(host: Host) -> MapInUse:
 
 
 async def _begin_map(context: MissionContext, mission: MapMission, report: Reporter) -> MapInUse:
-    grid = OccupancyGrid.centred(context.settings.grid, mission.start.x_m, mission.start.y_m)
+    settings = context.settings.grid
+    grid = OccupancyGrid(settings.spec_around(mission.start.x_m, mission.start.y_m), settings=settings)
     here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
     place = MapInUse(f"new-{report.mission_id}", mission.name, grid, None)
     place.tie(mission.start, here)

@@ -265,7 +265,9 @@ class Supervisor:
 
     def _moved(self, odometry: Odometry) -> None:
         self.publish(odometry)
-        estimate = self._predictor.predict(odometry, self.place) if self.place else None
+        if self.place is None or self._mode is Mode.LOCALIZING:
+            return  # while it looks for itself, what it finds is the better word
+        estimate = self._predictor.predict(odometry, self.place)
         if estimate is not None:
             self.publish(estimate)
 

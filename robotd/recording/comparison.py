@@ -72,10 +72,13 @@ def _results(entries: Sequence[Entry]) -> Iterator[_Step]:
 
 
 def _requests(entries: Sequence[Entry], device: str, summarize: Summarize) -> Iterator[_Step]:
+    last = ""
     for entry in entries:
         if isinstance(entry, BytesEntry) and entry.device == device and entry.direction is Direction.TO_BOARD:
             for text in summarize(device, entry.data):
-                yield _Step(entry.time_ns, text)
+                if text != last:  # a request repeated until it was answered is one request
+                    yield _Step(entry.time_ns, text)
+                last = text
 
 
 def _first_difference(

@@ -5,7 +5,7 @@ all of it, up to a bound, and a recording that is started later gets what went b
 it cannot, rather than to record what no replay could use.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from robotd.core.errors import RecordingError
@@ -21,11 +21,16 @@ class PrerollJournal(Journal):
     """Remembers what happened since the daemon started, and hands it to the recorder while there is one."""
 
     def __init__(self, header: RecordingHeader, limit_bytes: int) -> None:
-        self._header = header
+        self.header = header
         self._limit_bytes = limit_bytes
         self._remembered: list[Entry] | None = []
         self._size_bytes = 0
         self._recorder: Recorder | None = None
+
+    @property
+    def remembered(self) -> Sequence[Entry]:
+        """Everything since the start; nothing at all once that was too much."""
+        return self._remembered or ()
 
     @property
     def path(self) -> Path | None:
@@ -62,7 +67,7 @@ class PrerollJournal(Journal):
                 " the daemon began: restart it, or set recording.from_start = true"
             )
         path.parent.mkdir(parents=True, exist_ok=True)
-        self._recorder = Recorder(path, self._header, tuple(self._remembered))
+        self._recorder = Recorder(path, self.header, tuple(self._remembered))
 
     def stop(self) -> Callable[[], None]:
         """End the recording; the returned function waits for the file and may block.

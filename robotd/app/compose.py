@@ -1,0 +1,81 @@
+"""From a configuration to a daemon: which object knows which."""
+
+import random
+from collections.abc import Coroutine, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from robotd.config import Config, effective_text
+from robotd.core.clock import now_ns
+from robotd.hardware.devices.catalogue import drive, pantilt, rangefinder
+from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.transport.address import connector
+from robotd.hardware.transport.transport import Connect
+from robotd.maps.store import MapStore
+from robotd.mission.compute import Compute, NotedCompute
+from robotd.mission.context import MissionContext
+from robotd.mission.control import Control
+from robotd.mission.results import note_result
+from robotd.mission.robot import Robot
+from robotd.mission.settings import MissionSettings
+from robotd.mission.supervisor import Supervisor
+from robotd.recording.preroll import PrerollJournal
+
+
+@dataclass(frozen=True, slots=True)
+class Daemon:
+    """The parts that live as long as the program."""
+
+    robot: Robot
+    supervisor: Supervisor
+    control: Control
+
+    def parts(self) -> dict[str, Coroutine[Any, Any, None]]:
+        """Return what must run, by name; all of it until cancelled."""
+        devices: dict[str, Coroutine[Any, Any, None]] = {device.name: device.run() for device in self.robot.devices}
+        return devices | {"supervisor": self.supervisor.run()}
+
+
+def serial_connectors(config: Config) -> dict[str, Connect]:
+    """Return how to open the three serial lines."""
+    ports = {"drive": config.drive, "pantilt": config.pantilt, "rangefinder": config.rangefinder}
+    return {name: connector(settings.port, settings.baud) for name, settings in ports.items()}
+
+
+def compose(config: Config, connects: Mapping[str, Connect], compute: Compute, journal: PrerollJournal) -> Daemon:
+    """Build the daemon on these lines; nothing is opened yet."""
+    # One stream of nonces per device: who connects first must not change what the others draw.
+    wirings = {
+        name: Wiring(connect, journal, random.Random(f"{journal.header.session_seed}/{name}"))
+        for name, connect in connects.items()
+    }
+    robot = Robot(
+        drive(config.drive, wirings["drive"]),
+        pantilt(config.pantilt, wirings["pantilt"]),
+        rangefinder(config.rangefinder, wirings["rangefinder"]),
+    )
+    noted = NotedCompute(compute, lambda name, index: journal.computed(now_ns(), name, index))
+    settings = mission_settings(config)
+    supervisor = Supervisor(
+        robot,
+        lambda publish: MissionContext(robot, settings, noted, publish),
+        lambda event, place: note_result(journal, event, place),
+    )
+    store = MapStore(Path(config.maps.dir), config.grid, keep=config.maps.keep)
+    recordings_dir = Path(config.recording.dir)
+    control = Control(supervisor, store, journal, noted, recordings_dir, effective_text(config))
+    return Daemon(robot, supervisor, control)
+
+
+def mission_settings(config: Config) -> MissionSettings:
+    """Return what missions need of the configuration."""
+    return MissionSettings(
+        head_mount=config.pantilt.mount,
+        rangefinder=config.rangefinder.calibration,
+        sweep=config.sweep,
+        driving=config.driving,
+        grid=config.grid,
+        localization=config.localization,
+        planning=config.planning,
+    )

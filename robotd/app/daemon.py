@@ -1,0 +1,117 @@
+"""The program ``robotd``."""
+
+import argparse
+import asyncio
+import logging
+import secrets
+import signal
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+
+from robotd import __version__
+from robotd.app.compose import Daemon, compose, serial_connectors
+from robotd.config import Config, default_path, effective_text, load
+from robotd.core.clock import now_ns, wall_offset_ns
+from robotd.core.errors import ConfigError, RobotdError
+from robotd.core.log import configure
+from robotd.mission.compute import ThreadCompute
+from robotd.recording.entries import RecordingHeader
+from robotd.recording.preroll import PrerollJournal
+from robotd.server.health import Notifier, feed_watchdog
+from robotd.server.server import Server
+
+EXIT_USAGE = 2
+EXIT_CONFIG = 78
+
+log = logging.getLogger(__name__)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the daemon until SIGTERM or SIGINT; return the exit code."""
+    arguments = _parser().parse_args(argv)
+    try:
+        config = load(arguments.config or default_path())
+    except ConfigError as error:
+        for problem in error.problems:
+            print(problem, file=sys.stderr)
+        return EXIT_CONFIG
+    configure(arguments.log_level)
+    try:
+        asyncio.run(run(config))
+    except RobotdError as error:
+        log.error("%s", error)  # noqa: TRY400  # a foreseen error needs no traceback
+        return 1
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="robotd",
+        description="Own the robot's serial devices; map, localize, and serve poses over ZeroMQ.",
+        epilog="A missing device is a state, not an error: the daemon waits for it. Ask it with: robotctl status",
+    )
+    parser.add_argument("--config", type=Path, metavar="FILE", help="configuration (default: /etc/robotd/robotd.toml)")
+    parser.add_argument("--log-level", default="info", choices=("debug", "info", "warning", "error"))
+    parser.add_argument("--version", action="version", version=f"robotd {__version__}")
+    return parser
+
+
+async def run(config: Config) -> None:
+    """Serve until told to stop.
+
+    Raises:
+        TransportError: another daemon serves here, or the sockets cannot be had.
+    """
+    stopping = asyncio.Event()
+    with ExitStack() as stack:
+        journal = new_journal(config)
+        compute = ThreadCompute()
+        stack.callback(compute.close)
+        daemon = compose(config, serial_connectors(config), compute, journal)
+        if config.recording.from_start:
+            await daemon.control.start_recording(None)
+        for number in (signal.SIGTERM, signal.SIGINT):
+            asyncio.get_running_loop().add_signal_handler(number, _stop_first, daemon, stopping)
+        await _serve(config, daemon, stopping)
+        if journal.path is not None:
+            await daemon.control.stop_recording()
+
+
+def _stop_first(daemon: Daemon, stopping: asyncio.Event) -> None:
+    daemon.robot.stop_now()
+    stopping.set()
+
+
+async def _serve(config: Config, daemon: Daemon, stopping: asyncio.Event) -> None:
+    server = Server(config.server, daemon.control)
+    notifier = Notifier.from_environment()
+    async with asyncio.TaskGroup() as group:
+        serving = group.create_task(server.run(), name="server")
+        tasks = [serving, group.create_task(feed_watchdog(notifier), name="watchdog")]
+        tasks += [group.create_task(part, name=name) for name, part in daemon.parts().items()]
+        group.create_task(_announce(server, notifier), name="announce")
+        await stopping.wait()
+        log.info("stopping")
+        notifier.stopping()
+        await daemon.control.stop("the daemon is ending")
+        for task in tasks:
+            task.cancel()
+
+
+async def _announce(server: Server, notifier: Notifier) -> None:
+    await server.serving.wait()
+    notifier.ready("serving; disarmed")
+    log.info("robotd %s is ready", __version__)
+
+
+def new_journal(config: Config) -> PrerollJournal:
+    """Begin to remember."""
+    header = RecordingHeader(
+        robotd_version=__version__,
+        config_text=effective_text(config),
+        session_seed=secrets.randbits(63),
+        wall_offset_ns=wall_offset_ns(),
+        started_ns=now_ns(),
+    )
+    return PrerollJournal(header, config.recording.preroll_bytes)

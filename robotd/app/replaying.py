@@ -1,0 +1,81 @@
+"""Replay in process: the whole daemon, on a recording instead of on serial lines, on the virtual clock."""
+
+import asyncio
+from dataclasses import dataclass
+from pathlib import Path
+
+from robotd.app.compose import Daemon, compose
+from robotd.config import loads
+from robotd.core.clock import NS_PER_S, run_virtual
+from robotd.core.errors import RobotdError
+from robotd.hardware.wire.requests import summarize_requests
+from robotd.recording.comparison import Difference, compare, results_digest
+from robotd.recording.entries import CommandEntry, ResultEntry
+from robotd.recording.playback import Playback
+from robotd.recording.preroll import PrerollJournal
+from robotd.recording.reader import Recording, read
+
+_NO_LIMIT = 2**62
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayReport:
+    """What came of a replay."""
+
+    digest: str
+    """Over all results, in order: equal for two replays exactly if all results are."""
+    recorded_digest: str
+    """The same over the results in the recording."""
+    results: int
+    differences: tuple[Difference, ...]
+    complete: bool
+    """Whether the recording was ended properly, rather than cut off."""
+    duration_s: float
+    """How long the recorded robot lived."""
+
+
+def replay_recording(path: Path) -> ReplayReport:
+    """Give the daemon the same bytes and commands at the same times, and compare what comes of it.
+
+    Raises:
+        RecordingError: the file is no recording, or nothing of it can be read.
+        ConfigError: the recording's configuration is not one of this version.
+    """
+    recording = read(path)
+    journal = PrerollJournal(recording.header, _NO_LIMIT)
+    run_virtual(_play(recording, journal), start_ns=recording.header.started_ns)
+    return ReplayReport(
+        digest=results_digest(journal.remembered),
+        recorded_digest=results_digest(recording.entries),
+        results=sum(isinstance(entry, ResultEntry) for entry in journal.remembered),
+        differences=compare(recording, journal.remembered, summarize_requests),
+        complete=recording.complete,
+        duration_s=(recording.end_ns - recording.header.started_ns) / NS_PER_S,
+    )
+
+
+async def _play(recording: Recording, journal: PrerollJournal) -> None:
+    requests: set[asyncio.Task[None]] = set()
+
+    def carry_out(entry: CommandEntry) -> None:
+        task = asyncio.create_task(_repeat(daemon, entry), name=f"repeat {entry.name}")
+        requests.add(task)
+        task.add_done_callback(requests.discard)
+
+    playback = Playback(recording, carry_out)
+    config = loads(recording.header.config_text, file="the recording's configuration")
+    connects = {device: playback.line(device).connect for device in ("drive", "pantilt", "rangefinder")}
+    daemon = compose(config, connects, playback.compute, journal)
+    async with asyncio.TaskGroup() as group:
+        parts = [group.create_task(part, name=name) for name, part in daemon.parts().items()]
+        await playback.run()
+        for task in (*parts, *requests):
+            task.cancel()
+        await daemon.supervisor.stop("the recording ended")
+
+
+async def _repeat(daemon: Daemon, entry: CommandEntry) -> None:
+    try:
+        await daemon.control.repeat(entry.name, entry.arguments)
+    except RobotdError:
+        return  # it was refused, as it was when it was recorded; what differs shows in the comparison
