@@ -21,7 +21,7 @@ _US_PER_S = 1e6
 _US_PER_H = 3.6e9
 _BUMPERS = 16
 _BUMPER_GIVE_M = 0.005
-"""Travel of a bumper: more than the body covers between knots, so that it feels what stops it."""
+"""Travel of a bumper; at least what the body covers between two knots, so that it feels what stops it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +44,11 @@ class BodySettings:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise ValueError(f"{name} must be positive, got {value}")
-        if self.speed_max_mps * _KNOT_US / _US_PER_S >= _BUMPER_GIVE_M:
-            raise ValueError(f"speed_max_mps must be below 1.0, got {self.speed_max_mps}")
+
+    @property
+    def bumper_reach_m(self) -> float:
+        """How near a wall presses a bumper."""
+        return self.radius_m + max(_BUMPER_GIVE_M, 1.1 * self.speed_max_mps * _KNOT_US / _US_PER_S)
 
 
 @dataclass(slots=True)
@@ -148,7 +151,7 @@ class Body:
     @property
     def bumpers(self) -> int:
         """Pressed bumpers: bit i for a wall that touches it at ``i * 22.5`` degrees of the heading."""
-        reach_m = self._settings.radius_m + _BUMPER_GIVE_M
+        reach_m = self._settings.bumper_reach_m
         if self._clearance_m > reach_m:
             return 0
         distances, offsets = nearest_points(self._walls, (self._pose.x_m, self._pose.y_m))
@@ -202,7 +205,7 @@ class Body:
     def _is_blocked(self, pose: Pose2) -> bool:
         """Whether a wall is in the way; walls are looked at only when one may be near enough."""
         nearest_m = self._clearance_m - pose.distance_m(self._pose)
-        if nearest_m > self._settings.radius_m + _BUMPER_GIVE_M:
+        if nearest_m > self._settings.bumper_reach_m:
             self._clearance_m = nearest_m
             return False
         before_m = clearance_m(self._walls, (self._pose.x_m, self._pose.y_m))

@@ -40,8 +40,9 @@ def test_a_head_has_arrived_when_its_board_is_told_so(clock: BoardClock, start_u
     head = HeadOnClock(Head(HeadSettings()), clock)
     head.advance(clock.board_us(start_us))
     head.aim(1.0, 0.0)
-    assert head.arrives_us is not None
-    head.advance(head.arrives_us)
+    arrives_us = head.arrives_us
+    assert arrives_us is not None
+    head.advance(arrives_us)
     assert head.arrives_us is None
 
 

@@ -16,8 +16,9 @@ def test_it_takes_its_time_and_says_beforehand_how_long() -> None:
     assert head.arrives_us == pytest.approx(1_200_000, abs=200)
     head.advance(1_100_000)
     assert head.angles_rad == pytest.approx((0.6, -0.3), abs=STEP_RAD)
-    assert head.arrives_us is not None
-    head.advance(head.arrives_us)
+    arrives_us = head.arrives_us
+    assert arrives_us is not None
+    head.advance(arrives_us)
     assert head.arrives_us is None
     assert head.angles_rad == head.true_angles_rad == pytest.approx((1.2, -0.3), abs=STEP_RAD)
 

@@ -1,0 +1,43 @@
+"""An emulated robot by name: one of the worlds, a world file, or the file of a recorded building."""
+
+from pathlib import Path
+
+from robotd.sim.building import load_recorded_building
+from robotd.sim.recorded_building import OdometrySource, RecordedRobot
+from robotd.sim.robot import EmulatedRobot, SimSettings, SimulatedRobot
+from robotd.sim.world import load_world
+
+_GZIP_MAGIC = b"\x1f\x8b"
+
+
+def load_robot(
+    name_or_path: str,
+    seed: int = 0,
+    *,
+    settings: SimSettings | None = None,
+    odometry: OdometrySource = OdometrySource.CORRECTED,
+    boot: int = 0,
+) -> EmulatedRobot:
+    """Return a robot in a world or in a recorded building.
+
+    Args:
+        name_or_path: name of a world, or a file.
+        seed: of all that is random.
+        settings: of the hardware in a world; a recorded building has none.
+        odometry: what the wheels say in a recorded building; a world has its own physics.
+        boot: how often the boards were powered up before.
+
+    Raises:
+        ConfigError: there is no such world, or it is damaged.
+        RecordingError: the file of a recorded building is damaged.
+    """
+    if _is_building(Path(name_or_path)):
+        return RecordedRobot(load_recorded_building(Path(name_or_path)), seed, odometry=odometry, boot=boot)
+    return SimulatedRobot(load_world(name_or_path), seed, settings, boot=boot)
+
+
+def _is_building(path: Path) -> bool:
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return file.read(len(_GZIP_MAGIC)) == _GZIP_MAGIC
