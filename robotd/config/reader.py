@@ -30,37 +30,36 @@ class Bad(Exception):  # a signal between the readers, never an error that leave
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class _Shape(Generic[T]):
-    """The keys of a table."""
+    """The keys of a table: their types, and what they are if the text leaves them out."""
 
     kind: type[T]
     types: dict[str, Any]
-    required: set[str]
+    defaults: Table
 
     @classmethod
-    def of(cls, kind: type[T]) -> "_Shape[T]":
+    def of(cls, kind: type[T], base: T | None) -> "_Shape[T]":
         fields = dataclasses.fields(cast("Any", kind))
         hints = typing.get_type_hints(kind)
-        required = {
-            item.name
-            for item in fields
-            if item.default is dataclasses.MISSING and item.default_factory is dataclasses.MISSING
-        }
-        return cls(kind, {item.name: hints[item.name] for item in fields}, required)
+        types_of = {item.name: hints[item.name] for item in fields}
+        if base is not None:
+            return cls(kind, types_of, {name: getattr(base, name) for name in types_of})
+        defaults = {item.name: item.default for item in fields if item.default is not dataclasses.MISSING}
+        made = {item.name: item.default_factory() for item in fields if item.default_factory is not dataclasses.MISSING}
+        return cls(kind, types_of, {**defaults, **made})
 
 
-def read_table(kind: type[T], table: Table, path: KeyPath, problems: Problems) -> T:
-    """Return the dataclass ``kind`` filled from a table.
+def read_table(kind: type[T], table: Table, path: KeyPath, problems: Problems, base: T | None = None) -> T:
+    """Return the dataclass ``kind`` filled from a table, and from ``base``, or its defaults, for what is not there.
 
     Raises:
         Bad: it cannot be made; why, and all else that is wrong with the table, was added to ``problems``.
     """
     before = len(problems.found)
-    shape = _Shape.of(kind)
+    shape = _Shape.of(kind, base)
     values = _read_known(shape, table, path, problems)
     for name in table.keys() - shape.types.keys():
         problems.add((*path, name), unknown_name("key" if path else "section", name, shape.types))
-    broken = table.keys() - values.keys()
-    made = None if shape.required - values.keys() else _construct(shape, values, broken, path, problems)
+    made = _construct(shape, values, table.keys() - values.keys(), path, problems)
     if made is None or len(problems.found) > before:
         raise Bad
     return made
@@ -70,13 +69,14 @@ def _read_known(shape: _Shape[T], table: Table, path: KeyPath, problems: Problem
     """Return the values that could be read; a required table that the text leaves out is read as an empty one."""
     values: Table = {}
     for name, kind in shape.types.items():
-        if name not in table and name not in shape.required:
+        default = shape.defaults.get(name)
+        if name not in table and name in shape.defaults:
             continue
         if name not in table and not dataclasses.is_dataclass(kind):
             problems.add((*path, name), "required key is missing")
             continue
         with contextlib.suppress(Bad):
-            values[name] = read_value(kind, table.get(name, {}), (*path, name), problems)
+            values[name] = read_value(kind, table.get(name, {}), (*path, name), problems, default)
     return values
 
 
@@ -86,9 +86,9 @@ def _construct(shape: _Shape[T], values: Table, broken: set[str], path: KeyPath,
     A value refused is put back to its default and the rest is tried again: so one mistake does not hide
     the next. A complaint that speaks of a value already known to be ``broken`` is not repeated.
     """
-    while True:
+    while shape.types.keys() <= (shape.defaults | values).keys():
         try:
-            return shape.kind(**values)
+            return shape.kind(**(shape.defaults | values))
         except ValueError as error:
             message = str(error)
         names = [name for name in _NAMES.findall(message) if name.split(".")[0] in shape.types]
@@ -97,10 +97,11 @@ def _construct(shape: _Shape[T], values: Table, broken: set[str], path: KeyPath,
             return None
         _blame(message, names, path, problems)
         culprit = next((root for root in roots if root in values), None)
-        if culprit is None or culprit in shape.required:
+        if culprit is None:
             return None
         del values[culprit]
         broken.add(culprit)
+    return None
 
 
 def _blame(message: str, names: list[str], path: KeyPath, problems: Problems) -> None:
@@ -113,8 +114,8 @@ def _blame(message: str, names: list[str], path: KeyPath, problems: Problems) ->
     problems.add(key, message)
 
 
-def read_value(kind: Any, value: object, path: KeyPath, problems: Problems) -> Any:
-    """Return a TOML value as ``kind``.
+def read_value(kind: Any, value: object, path: KeyPath, problems: Problems, default: Any = None) -> Any:
+    """Return a TOML value as ``kind``; a table takes from ``default`` what it leaves out.
 
     Raises:
         Bad: it is not one; why was added to ``problems``.
@@ -122,10 +123,10 @@ def read_value(kind: Any, value: object, path: KeyPath, problems: Problems) -> A
     if dataclasses.is_dataclass(kind):
         if not isinstance(value, dict):
             raise _bad(path, problems, f"expected a table, got {_describe(value)}")
-        return read_table(cast("type[Any]", kind), value, path, problems)
+        return read_table(cast("type[Any]", kind), value, path, problems, default)
     if isinstance(kind, types.UnionType) or typing.get_origin(kind) is typing.Union:
         [inner] = [option for option in typing.get_args(kind) if option is not types.NoneType]
-        return read_value(inner, value, path, problems)
+        return read_value(inner, value, path, problems, default)
     if typing.get_origin(kind) is tuple:
         return _read_tuple(typing.get_args(kind), value, path, problems)
     if issubclass(kind, enum.Enum):

@@ -36,6 +36,7 @@ class ConfigError(RobotdError):
         self.file = file
         self.line = line
         self.key = key
+        self.message = message
         self.problems: tuple[ConfigError, ...] = (self,)
         """Everything that is wrong, one line each."""
 

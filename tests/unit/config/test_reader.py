@@ -47,6 +47,7 @@ class Laser:
 class Robot:
     wheel: Wheel
     laser: Laser = field(default_factory=Laser)
+    spare_laser: Laser = field(default_factory=lambda: Laser(range_max_m=4.0))
 
     def __post_init__(self) -> None:
         if self.laser.range_max_m > 100.0 * self.wheel.timeout_s:
@@ -74,6 +75,10 @@ def test_whole_numbers_become_floats_where_a_float_is_due() -> None:
 def test_optional_values_are_none_until_set() -> None:
     assert read(WHEEL).wheel.name is None
     assert read(WHEEL + 'name = "left"').wheel.name == "left"
+
+
+def test_a_section_takes_what_it_leaves_out_from_its_own_default() -> None:
+    assert read(WHEEL + "[spare_laser]\nrange_min_m = 1").spare_laser == Laser(range_min_m=1.0, range_max_m=4.0)
 
 
 BAD = [

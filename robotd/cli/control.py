@@ -1,0 +1,89 @@
+"""``status``, ``arm``, ``disarm``, ``stop``, ``clear``."""
+
+import argparse
+import math
+from collections.abc import Callable
+
+from robotd.cli.connection import connect
+from robotd.cli.terminal import out, print_json, print_pairs, print_table
+from robotd.cli.verb import OK, Verb
+from robotd.cli.wording import as_json
+from robotd.mission.events import Status
+from robotd.server.client import Client
+
+
+def _status(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        status = client.status()
+    if arguments.json:
+        print_json(as_json(status))
+    else:
+        _print_status(status)
+    return OK
+
+
+def _print_status(status: Status) -> None:
+    battery = "unknown" if status.battery_v is None else f"{status.battery_v:.1f} V"
+    pressed = ", ".join(f"{math.degrees(angle):.0f} deg" for angle in status.bumpers_rad) or "none"
+    print_pairs(
+        [
+            ("mode", f"{status.mode} ({status.reason})"),
+            ("battery", battery),
+            ("bumpers pressed", pressed),
+            ("map in use", status.map_name or "none"),
+            ("recording to", status.recording or "nothing"),
+        ]
+    )
+    rows = [
+        (device.name, device.link, "armed" if device.armed else "disarmed", ", ".join(device.faults), device.detail)
+        for device in status.devices
+    ]
+    print_table(("device", "link", "motion", "faults", "detail"), rows)
+
+
+def _telling(ask: Callable[[Client], None], words: str) -> Callable[[argparse.Namespace], int]:
+    """Return a verb that asks for one thing and then says how the robot stands."""
+
+    def run(arguments: argparse.Namespace) -> int:
+        with connect(arguments) as client:
+            ask(client)
+            if arguments.json:
+                print_json(as_json(client.status()))
+            else:
+                out().print(words, markup=False)
+        return OK
+
+    return run
+
+
+VERBS = (
+    Verb("status", "show the whole robot in one look", "robotctl status --json", _status, asks_daemon=True),
+    Verb(
+        "arm",
+        "allow motion",
+        "robotctl arm",
+        _telling(lambda client: client.arm(), "armed: it may move"),
+        asks_daemon=True,
+    ),
+    Verb(
+        "disarm",
+        "stop and forbid motion",
+        "robotctl disarm",
+        _telling(lambda client: client.disarm(), "disarmed"),
+        asks_daemon=True,
+    ),
+    Verb(
+        "stop",
+        "stop now, whatever is under way; it needs arm before it moves again",
+        "robotctl stop",
+        _telling(lambda client: client.stop("stopped at the command line"), "stopped and disarmed"),
+        asks_daemon=True,
+    ),
+    Verb(
+        "clear",
+        "acknowledge latched faults; the robot stays disarmed",
+        "robotctl clear",
+        _telling(lambda client: client.clear(), "faults cleared, disarmed"),
+        asks_daemon=True,
+    ),
+)

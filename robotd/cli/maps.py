@@ -1,0 +1,179 @@
+"""``map start``, ``map save``, ``map load``, ``map list`` and ``map show``."""
+
+import argparse
+import math
+import shutil
+from dataclasses import asdict
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.cli.connection import connect
+from robotd.cli.half_blocks import coloured, plain, shrink
+from robotd.cli.motion import carry_out
+from robotd.cli.terminal import out, print_json, print_table
+from robotd.cli.verb import OK, Verb
+from robotd.cli.where import legs_argument
+from robotd.core.clock import NS_PER_S
+from robotd.core.errors import RobotdError
+from robotd.core.pose import IDENTITY, Pose2
+from robotd.grid.tables import NO_INFORMATION
+from robotd.mission.events import MapChanged
+from robotd.mission.requests import Legs, MapMission
+from robotd.server.api import MapEntryInfo
+from robotd.sim.world import load_world
+
+
+def _start(arguments: argparse.Namespace) -> int:
+    start, stops_m = arguments.start, tuple(map(tuple, arguments.stop))
+    if arguments.world is not None:
+        world = load_world(arguments.world)
+        start, stops_m = start or world.start_pose, stops_m or world.stops_m
+    return carry_out(arguments, MapMission(arguments.name, stops_m, start or IDENTITY, Legs(arguments.legs)))
+
+
+def _start_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", help="what to call the map")
+    parser.add_argument(
+        "--stop",
+        action="append",
+        nargs=2,
+        type=float,
+        default=[],
+        metavar=("X", "Y"),
+        help="where to stop and sweep [m], once for each; the robot's place at the start comes first by itself",
+    )
+    _pose_argument(parser, "--start", "where the robot stands now, which fixes the map's axes (default: 0 0 0)")
+    parser.add_argument("--world", metavar="WORLD", help="take start and stops from a simulated world")
+    legs_argument(parser)
+
+
+class _PoseAction(argparse.Action):
+    """Turns ``X Y DEG`` into a pose."""
+
+    def __call__(self, parser: object, namespace: argparse.Namespace, values: object, _: object = None) -> None:
+        assert isinstance(values, list)
+        x_m, y_m, heading_deg = values
+        setattr(namespace, self.dest, Pose2(x_m, y_m, math.radians(heading_deg)))
+
+
+def _pose_argument(parser: argparse.ArgumentParser, name: str, summary: str) -> None:
+    parser.add_argument(name, action=_PoseAction, nargs=3, type=float, metavar=("X", "Y", "DEG"), help=summary)
+
+
+def _save(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        return _tell(arguments, "saved", client.map_save(arguments.name))
+
+
+def _load(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        return _tell(arguments, "loaded", client.map_load(arguments.name, arguments.version, arguments.robot))
+
+
+def _tell(arguments: argparse.Namespace, what: str, entry: MapEntryInfo) -> int:
+    if arguments.json:
+        print_json(asdict(entry))
+    else:
+        size = f"{entry.cols} x {entry.rows} cells of {entry.resolution_m * 1000:g} mm"
+        out().print(f"{what} {entry.name} version {entry.version}: {size}, digest {entry.digest}", markup=False)
+    return OK
+
+
+def _list(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        entries = client.map_list()
+    if arguments.json:
+        print_json([asdict(entry) for entry in entries])
+        return OK
+    rows = [
+        (entry.name, entry.version, _date(entry.created_unix_ns), f"{entry.cols} x {entry.rows}", entry.digest[:12])
+        for entry in entries
+    ]
+    print_table(("map", "version", "made (UTC)", "cells", "digest"), rows)
+    return OK
+
+
+def _date(unix_ns: int) -> str:
+    return datetime.fromtimestamp(unix_ns // NS_PER_S, UTC).strftime("%Y-%m-%d %H:%M:%S")
+
+
+def _show(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        shown = client.map_show(arguments.name, arguments.version)
+    if arguments.png is not None:
+        _draw(arguments.png, arguments.name or shown.map_id, shown)
+    if arguments.json:
+        print_json(_facts(shown))
+        return OK
+    columns = min(shutil.get_terminal_size().columns, arguments.width or 100)
+    cells = shrink(shown.values, columns)
+    if out().is_terminal and out().color_system:
+        out().print(coloured(cells))
+    else:
+        out().print(plain(cells), markup=False)
+    return OK
+
+
+def _draw(file: Path, title: str, shown: MapChanged) -> None:
+    try:
+        from robotd.cli.pictures import draw_map  # noqa: PLC0415  # only here is the extra needed
+    except ImportError as error:
+        raise RobotdError(f"--png needs matplotlib ({error}): install robotd[plots]") from error
+    draw_map(file, title, shown.spec, shown.values)
+
+
+def _facts(shown: MapChanged) -> dict[str, object]:
+    values: NDArray[np.uint8] = shown.values
+    return {
+        "map_id": shown.map_id,
+        "generation": shown.generation,
+        "spec": asdict(shown.spec),
+        "free_cells": int((values < NO_INFORMATION).sum()),
+        "unknown_cells": int((values == NO_INFORMATION).sum()),
+        "occupied_cells": int((values > NO_INFORMATION).sum()),
+    }
+
+
+def _save_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", nargs="?", help="another name than the one it was made under")
+
+
+def _load_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", help="the map")
+    parser.add_argument("--version", type=int, metavar="N", help="an older version of it (default: the newest)")
+    _pose_argument(parser, "--robot", "where the robot stands on it, if you know")
+
+
+def _show_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", nargs="?", help="a stored map (default: the one in use)")
+    parser.add_argument("--version", type=int, metavar="N", help="an older version of it (default: the newest)")
+    parser.add_argument("--width", type=int, metavar="N", help="widest picture, in characters (default: 100)")
+    parser.add_argument("--png", type=Path, metavar="FILE", help="draw it into a file, too")
+
+
+VERBS = (
+    Verb(
+        "map start",
+        "make a new map, stop by stop",
+        "robotctl map start kitchen --stop 1.5 0 --stop 1.5 2",
+        _start,
+        _start_arguments,
+        asks_daemon=True,
+    ),
+    Verb("map save", "store the map in use", "robotctl map save", _save, _save_arguments, asks_daemon=True),
+    Verb(
+        "map load", "take a stored map into use", "robotctl map load kitchen", _load, _load_arguments, asks_daemon=True
+    ),
+    Verb("map list", "list the stored maps", "robotctl map list", _list, asks_daemon=True),
+    Verb(
+        "map show",
+        "draw a map on the terminal: white free, grey unknown, black occupied",
+        "robotctl map show kitchen --png kitchen.png",
+        _show,
+        _show_arguments,
+        asks_daemon=True,
+    ),
+)

@@ -1,0 +1,68 @@
+"""Missions from the command line. Whatever interrupts one, the robot is stopped first and then people are told."""
+
+import argparse
+from collections.abc import Generator, Iterable
+from contextlib import closing
+from typing import Protocol, cast
+
+from robotd.cli.connection import connect
+from robotd.cli.progress import MissionBars
+from robotd.cli.terminal import complain, out, print_json
+from robotd.cli.verb import FAILED, INTERRUPTED, OK
+from robotd.cli.wording import as_json, estimate_in_words
+from robotd.core.errors import MissionError, RobotdError
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.requests import Mission
+from robotd.server.client import Client
+from robotd.server.mission_run import MissionEvent
+
+
+class _Show(Protocol):
+    def __call__(self, event: MissionEvent, /) -> None: ...
+
+
+def carry_out(arguments: argparse.Namespace, mission: Mission) -> int:
+    """Run a mission to its end, show how it gets on, and return the exit code; Ctrl-C stops the robot."""
+    with connect(arguments) as client:
+        try:
+            return _follow(client, mission, as_lines=arguments.json)
+        except KeyboardInterrupt:
+            return _stop(client)
+
+
+def _follow(client: Client, mission: Mission, *, as_lines: bool) -> int:
+    running = cast("Generator[MissionEvent, None, None]", client.run_mission(mission))
+    with closing(running) as events:
+        try:
+            if as_lines:
+                _show_each(events, lambda event: print_json(as_json(event)))
+                return OK
+            with MissionBars() as bars:
+                found = _show_each(events, bars.show)
+        except MissionError as error:
+            complain(f"robotctl: {error}")
+            return FAILED
+    if found is not None:
+        out().print(estimate_in_words(found), markup=False)
+    return OK
+
+
+def _show_each(events: Iterable[MissionEvent], show: _Show) -> PoseEstimate | None:
+    """Show the events as they come and return what a localization among them found."""
+    found = None
+    for event in events:
+        show(event)
+        if isinstance(event, PoseEstimate) and event.final and event.state is not PoseState.PREDICTED:
+            found = event
+    return found
+
+
+def _stop(client: Client) -> int:
+    """Stop the robot, then say so; if it cannot be told, its lease will stop it, and that is said too."""
+    try:
+        client.stop("interrupted at the command line")
+    except RobotdError as error:
+        complain(f"interrupted, and the robot could not be told to stop: {error}; it stops when its lease runs out")
+    else:
+        complain("interrupted: the robot was stopped and disarmed")
+    return INTERRUPTED

@@ -1,0 +1,65 @@
+"""Bars that grow while a mission is under way, on standard error."""
+
+from types import TracebackType
+from typing import Self
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TaskID, TextColumn, TimeElapsedColumn
+
+from robotd.cli.terminal import err
+from robotd.cli.wording import estimate_in_words, mission_in_words
+from robotd.localization.estimate import PoseEstimate
+from robotd.mission.events import MissionPhase, MissionProgress, SweepProgress
+from robotd.server.topics import Published
+
+
+class MissionBars:
+    """A bar for the stops of the mission, one for the readings of the sweep, and the pose as it firms up."""
+
+    def __init__(self) -> None:
+        self._progress = Progress(
+            SpinnerColumn(),
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TextColumn("{task.fields[note]}"),
+            TimeElapsedColumn(),
+            console=err(),
+        )
+        self._mission: TaskID | None = None
+        self._sweep: TaskID | None = None
+        self._pose = ""
+
+    def __enter__(self) -> Self:
+        self._progress.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._progress.stop()
+
+    def show(self, event: Published) -> None:
+        """Move what the event moves."""
+        match event:
+            case MissionProgress():
+                self._step(event)
+            case SweepProgress():
+                self._reading(event)
+            case PoseEstimate():
+                self._pose = estimate_in_words(event)
+                if self._mission is not None:
+                    self._progress.update(self._mission, note=self._pose)
+
+    def _step(self, step: MissionProgress) -> None:
+        if self._mission is None:
+            self._mission = self._progress.add_task(step.kind, total=step.stops, note="")
+        finished = step.stops if step.phase is MissionPhase.DONE else step.stop
+        self._progress.update(self._mission, completed=finished, description=f"{step.kind}: {step.phase}")
+        if step.message:
+            self._progress.console.print(mission_in_words(step), markup=False)
+
+    def _reading(self, sweep: SweepProgress) -> None:
+        counts = f"{sweep.hits} hits, {sweep.misses} misses, {sweep.rejected} rejected"
+        if self._sweep is None:
+            self._sweep = self._progress.add_task("sweep", total=sweep.total, note="")
+        self._progress.update(
+            self._sweep, description=f"sweep {sweep.number}", total=sweep.total, completed=sweep.taken, note=counts
+        )

@@ -1,0 +1,112 @@
+"""``record start``, ``record stop``, ``record info`` and ``replay``."""
+
+import argparse
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from robotd.cli.connection import connect
+from robotd.cli.terminal import complain, out, print_json, print_pairs
+from robotd.cli.verb import FAILED, OK, Verb
+from robotd.core.clock import NS_PER_S
+from robotd.recording.entries import BytesEntry
+from robotd.recording.reader import Recording, read
+
+
+def _start(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        path = client.record_start(None if arguments.file is None else str(arguments.file.absolute()))
+    return _tell(arguments, f"recording to {path}", {"path": path})
+
+
+def _stop(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        path = client.record_stop()
+    return _tell(arguments, f"recorded {path}" if path else "nothing was being recorded", {"path": path})
+
+
+def _tell(arguments: argparse.Namespace, words: str, document: dict[str, Any]) -> int:
+    if arguments.json:
+        print_json(document)
+    else:
+        out().print(words, markup=False)
+    return OK
+
+
+def _info(arguments: argparse.Namespace) -> int:
+    recording = read(arguments.file)
+    facts = _facts(recording)
+    if arguments.json:
+        print_json({"file": str(arguments.file), **facts})
+    else:
+        print_pairs((name.replace("_", " "), value) for name, value in facts.items() if name != "damage")
+        if recording.damage:
+            complain(f"{arguments.file}: damaged: {recording.damage}")
+    return OK if recording.complete else FAILED
+
+
+def _facts(recording: Recording) -> dict[str, Any]:
+    header = recording.header
+    chunks = [entry for entry in recording.entries if isinstance(entry, BytesEntry)]
+    return {
+        "robotd_version": header.robotd_version,
+        "duration_s": (recording.end_ns - header.started_ns) / NS_PER_S,
+        "started_unix_ns": header.started_ns + header.wall_offset_ns,
+        "entries": len(recording.entries),
+        "devices": list(recording.devices),
+        "line_bytes": sum(len(entry.data) for entry in chunks),
+        "results": len(recording.results),
+        "complete": recording.complete,
+        "damage": recording.damage,
+    }
+
+
+def _replay(arguments: argparse.Namespace) -> int:
+    from robotd.app import replay_recording  # noqa: PLC0415  # no other verb needs a daemon inside
+
+    report = replay_recording(arguments.file)
+    if arguments.json:
+        print_json({**asdict(report), "file": str(arguments.file), "same": not report.differences})
+    else:
+        for difference in report.differences:
+            out().print(str(difference), markup=False)
+        extent = "" if report.complete else ", up to where the recording is damaged"
+        verdict = f"{len(report.differences)} differences" if report.differences else "the same"
+        out().print(f"{report.results} results in {report.duration_s:.1f} s: {verdict}{extent}", markup=False)
+        out().print(f"digest {report.digest}", markup=False)
+    return FAILED if report.differences else OK
+
+
+def _file(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", type=Path, metavar="RECORDING", help="a recording (.mcap)")
+
+
+def _new_file(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", nargs="?", type=Path, help="where to (default: a new file where the daemon keeps them)")
+
+
+VERBS = (
+    Verb(
+        "record start",
+        "record every byte of the serial lines, every command and every result",
+        "robotctl record start",
+        _start,
+        _new_file,
+        asks_daemon=True,
+    ),
+    Verb("record stop", "close the recording", "robotctl record stop", _stop, asks_daemon=True),
+    Verb(
+        "record info",
+        "say what a recording holds, and whether it is whole",
+        "robotctl record info a.mcap",
+        _info,
+        _file,
+    ),
+    Verb(
+        "replay",
+        "run the daemon again on recorded bytes, and compare every result; exit code 1 if one differs",
+        "robotctl replay a.mcap",
+        _replay,
+        _file,
+    ),
+)

@@ -1,0 +1,51 @@
+"""A verb of the command line as data: what it is called, what it takes, what it does."""
+
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+OK: Final = 0
+FAILED: Final = 1
+USAGE: Final = 2
+BAD_CONFIG: Final = 78
+INTERRUPTED: Final = 130
+
+
+def no_arguments(_: argparse.ArgumentParser) -> None:
+    """Take nothing beyond the common options."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verb:
+    """One verb; ``run`` returns the exit code."""
+
+    name: str
+    """As typed: ``status``, or ``map show`` for one of a family."""
+    summary: str
+    example: str
+    """A whole command line that works."""
+    run: Callable[[argparse.Namespace], int]
+    arguments: Callable[[argparse.ArgumentParser], None] = no_arguments
+    asks_daemon: bool = False
+    """Whether it needs a running daemon: such verbs take ``--runtime-dir`` and ``--timeout``."""
+
+    def add_to(self, parser: argparse.ArgumentParser) -> None:
+        """Give a fresh parser the arguments of this verb."""
+        self.arguments(parser)
+        parser.add_argument("--json", action="store_true", help="print JSON instead of text for people")
+        if self.asks_daemon:
+            parser.add_argument("--runtime-dir", type=Path, metavar="DIR", help="where the daemon has its sockets")
+            parser.add_argument(
+                "--timeout", type=seconds, default=5.0, metavar="S", help="longest wait for an answer [s] (default: 5)"
+            )
+        parser.set_defaults(run=self.run)
+
+
+def seconds(text: str) -> float:
+    """Return a positive time [s] from the command line."""
+    value = float(text)
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be a positive time in seconds, got {text}")
+    return value

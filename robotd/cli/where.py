@@ -1,0 +1,113 @@
+"""``localize``, ``pose``, ``watch`` and ``drive-to``."""
+
+import argparse
+import math
+from dataclasses import asdict
+
+from robotd.cli.connection import connect
+from robotd.cli.motion import carry_out
+from robotd.cli.terminal import out, print_json
+from robotd.cli.verb import OK, Verb
+from robotd.cli.wording import as_json, estimate_in_words, in_words, region_in_words
+from robotd.core.errors import RequestTimeout
+from robotd.localization.estimate import PoseEstimate
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission
+from robotd.server.feed import Gap
+from robotd.server.topics import Topic
+
+
+def _localize(arguments: argparse.Namespace) -> int:
+    heading_rad = None if arguments.heading_deg is None else math.radians(arguments.heading_deg)
+    return carry_out(arguments, LocalizeMission(heading_rad))
+
+
+def _heading(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--heading-deg",
+        type=float,
+        metavar="DEG",
+        help="the robot's heading on the map, if you know it better than its odometry",
+    )
+
+
+def _drive_to(arguments: argparse.Namespace) -> int:
+    return carry_out(arguments, DriveMission(arguments.x_m, arguments.y_m, Legs(arguments.legs)))
+
+
+def _goal(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("x_m", type=float, metavar="X", help="map x [m]")
+    parser.add_argument("y_m", type=float, metavar="Y", help="map y [m]")
+    legs_argument(parser)
+
+
+def legs_argument(parser: argparse.ArgumentParser) -> None:
+    """Let the command line choose how the robot gets from place to place."""
+    parser.add_argument(
+        "--legs",
+        choices=[legs.value for legs in Legs],
+        default=Legs.PLANNED.value,
+        help="round the obstacles on the map, or straight, as you know it to be free (default: planned)",
+    )
+
+
+def _pose(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client, client.subscribe(Topic.POSE) as events:
+        while not isinstance(event := events.next(arguments.timeout), PoseEstimate):
+            if event is None:
+                raise RequestTimeout("no pose: the daemon is silent, or it was never localized")
+    if arguments.json:
+        print_json(as_json(event))
+        return OK
+    out().print(estimate_in_words(event), markup=False)
+    for region in event.regions:
+        out().print(f"  {region_in_words(region)}", markup=False)
+    return OK
+
+
+def _watch(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client, client.subscribe(*arguments.topic) as events:
+        for event in events:
+            if arguments.json:
+                print_json({"event": "gap", **asdict(event)} if isinstance(event, Gap) else as_json(event))
+            else:
+                words = _gap_in_words(event) if isinstance(event, Gap) else in_words(event)
+                out().print(words, markup=False)
+    return OK
+
+
+def _gap_in_words(gap: Gap) -> str:
+    return f"{gap.topic}: {'the daemon started anew' if gap.missed is None else f'{gap.missed} messages missed'}"
+
+
+def _topics(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("topic", nargs="*", metavar="TOPIC", type=_topic, help=f"of {', '.join(Topic)} (default: all)")
+
+
+def _topic(text: str) -> Topic:
+    if text not in tuple(Topic):
+        raise argparse.ArgumentTypeError(f"{text!r} is none of {', '.join(Topic)}")
+    return Topic(text)
+
+
+VERBS = (
+    Verb(
+        "localize",
+        "sweep where it stands and say where that is on the map in use",
+        "robotctl localize --heading-deg 90",
+        _localize,
+        _heading,
+        asks_daemon=True,
+    ),
+    Verb("pose", "print the newest pose estimate", "robotctl pose --json", _pose, asks_daemon=True),
+    Verb(
+        "watch", "print what happens, as it happens, until Ctrl-C", "robotctl watch pose sweep", _watch, _topics, True
+    ),
+    Verb(
+        "drive-to",
+        "drive to a place on the map in use, and stand there",
+        "robotctl drive-to 2.5 -0.8",
+        _drive_to,
+        _goal,
+        asks_daemon=True,
+    ),
+)

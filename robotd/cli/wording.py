@@ -1,0 +1,82 @@
+"""Events in words for people, and as plain JSON for programs."""
+
+import dataclasses
+import math
+from collections.abc import Callable
+from typing import Any
+
+from robotd.core.pose import Odometry, Pose2
+from robotd.localization.estimate import PoseEstimate, PoseState, Region
+from robotd.mission.events import MapChanged, MissionProgress, Status, SweepDone, SweepProgress
+from robotd.server.topics import EVENTS, LogEntry, Published
+
+
+def as_json(event: Published) -> dict[str, Any]:
+    """Return an event as one JSON object; of a map only how much of it changed, of its cells none."""
+    name = EVENTS[type(event)][1]
+    if isinstance(event, MapChanged):
+        count = event.values.size
+        spec = dataclasses.asdict(event.spec)
+        plain = {"map_id": event.map_id, "generation": event.generation, "whole": event.whole}
+        return {"event": name, "time_ns": event.time_ns, **plain, "spec": spec, "cells": int(count)}
+    return {"event": name, **dataclasses.asdict(event)}
+
+
+def in_words(event: Published) -> str:
+    """Return an event in one line."""
+    words: Callable[[Any], str] = _WORDS[type(event)]
+    return words(event)
+
+
+def pose_in_words(pose: Pose2) -> str:
+    """Return a pose in metres and degrees.
+
+    >>> pose_in_words(Pose2(1.0, -0.5, math.pi / 2))
+    'x 1.000 m, y -0.500 m, heading 90.0 deg'
+    """
+    return f"x {pose.x_m:.3f} m, y {pose.y_m:.3f} m, heading {math.degrees(pose.heading_rad):.1f} deg"
+
+
+def region_in_words(region: Region) -> str:
+    """Return one candidate region: where, how large, how well explained."""
+    size = f"{region.x_max_m - region.x_min_m:.2f} x {region.y_max_m - region.y_min_m:.2f} m"
+    return f"{pose_in_words(region.centre)}; {size}, {region.cells} cells, {region.best_rank} readings explained"
+
+
+def estimate_in_words(estimate: PoseEstimate) -> str:
+    """Return an estimate: its state first, then what it rests on; never a pose that is not unique."""
+    support = f"{estimate.best_rank} of {estimate.readings} readings explained"
+    so_far = "" if estimate.final else ", so far"
+    if estimate.best is not None:
+        extra = "" if estimate.state is PoseState.PREDICTED else f" ({support}{so_far})"
+        return f"{estimate.state}: {pose_in_words(estimate.best)}{extra}"
+    if estimate.regions:
+        return f"{estimate.state}: {len(estimate.regions)} regions ({support}{so_far})"
+    return f"{estimate.state} ({support}{so_far})"
+
+
+def sweep_in_words(sweep: SweepProgress) -> str:
+    """Return how far a sweep has come."""
+    return (
+        f"{sweep.taken} of {sweep.total} readings: {sweep.hits} hits, {sweep.misses} misses, {sweep.rejected} rejected"
+    )
+
+
+def mission_in_words(step: MissionProgress) -> str:
+    """Return a step of a mission."""
+    where = f" stop {step.stop + 1} of {step.stops}" if step.stops > 1 and not step.is_last else ""
+    return f"{step.kind}{where}: {step.phase}" + (f", {step.message}" if step.message else "")
+
+
+_WORDS: dict[type[Published], Callable[[Any], str]] = {
+    PoseEstimate: estimate_in_words,
+    SweepProgress: sweep_in_words,
+    MissionProgress: mission_in_words,
+    Odometry: lambda event: f"odometry {pose_in_words(event.in_odom)}, {event.twist.speed_mps:.2f} m/s",
+    Status: lambda event: f"{event.mode}: {event.reason}",
+    SweepDone: lambda event: (
+        f"sweep {event.sweep.number} done: {len(event.sweep.measured)} of {len(event.sweep.readings)} measured"
+    ),
+    MapChanged: lambda event: f"map {event.map_id[:12]} generation {event.generation}: {event.values.size} cells",
+    LogEntry: lambda event: f"{event.level.lower()} {event.logger}: {event.message}",
+}

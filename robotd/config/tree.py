@@ -1,0 +1,76 @@
+"""The whole configuration: every room's settings under one roof."""
+
+from dataclasses import dataclass, field
+
+from robotd.config.environment import runtime_dir
+from robotd.config.sections import MapsSettings, RecordingSettings
+from robotd.core.errors import ConfigError
+from robotd.grid.occupancy import GridSettings
+from robotd.hardware.devices.catalogue import DRIVES, PANTILTS, RANGEFINDERS
+from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
+from robotd.hardware.transport.address import connector
+from robotd.localization.localizer import LocalizationSettings
+from robotd.mission.steering import DrivingSettings
+from robotd.mission.stop_and_sweep import SweepSettings
+from robotd.server.server import ServerSettings
+
+_DIALECTS = {"drive": tuple(DRIVES), "pantilt": tuple(PANTILTS), "rangefinder": tuple(RANGEFINDERS)}
+
+
+@dataclass(frozen=True, slots=True)
+class Config:
+    """What ``robotd.toml`` says; each field is a section."""
+
+    server: ServerSettings = field(default_factory=lambda: ServerSettings(runtime_dir=runtime_dir()))
+    drive: DriveSettings = field(default_factory=DriveSettings)
+    pantilt: PanTiltSettings = field(default_factory=PanTiltSettings)
+    rangefinder: RangefinderSettings = field(default_factory=RangefinderSettings)
+    sweep: SweepSettings = field(default_factory=SweepSettings)
+    driving: DrivingSettings = field(default_factory=DrivingSettings)
+    grid: GridSettings = field(default_factory=GridSettings)
+    localization: LocalizationSettings = field(default_factory=LocalizationSettings)
+    maps: MapsSettings = field(default_factory=MapsSettings)
+    recording: RecordingSettings = field(default_factory=RecordingSettings)
+
+    def __post_init__(self) -> None:
+        """Refuse sections that contradict each other."""
+        for device, settings in self.devices.items():
+            _check_device(device, settings)
+        _check_ports_differ(self.devices)
+        _check_motion(self.drive, self.driving)
+
+    @property
+    def devices(self) -> dict[str, PortSettings]:
+        """The three devices by name."""
+        return {"drive": self.drive, "pantilt": self.pantilt, "rangefinder": self.rangefinder}
+
+
+def _check_device(device: str, settings: PortSettings) -> None:
+    if settings.dialect not in _DIALECTS[device]:
+        known = ", ".join(_DIALECTS[device])
+        raise ValueError(f'{device}.dialect must be one of {known}; got "{settings.dialect}"')
+    try:
+        connector(settings.port, settings.baud)
+    except ConfigError as error:
+        raise ValueError(f'{device}.port must be a device path or tcp://host:port, got "{settings.port}"') from error
+
+
+def _check_ports_differ(devices: dict[str, PortSettings]) -> None:
+    owners: dict[str, str] = {}
+    for device, settings in devices.items():
+        owner = owners.setdefault(settings.port, device)
+        if owner != device:
+            raise ValueError(f"{device}.port must not be the port of another device, got that of {owner}")
+
+
+def _check_motion(drive: DriveSettings, driving: DrivingSettings) -> None:
+    if driving.setpoint_ttl_s * 1000.0 > drive.ttl_max_ms:
+        raise ValueError(
+            f"driving.setpoint_ttl_s must be within drive.ttl_max_ms, got {driving.setpoint_ttl_s} s"
+            f" and {drive.ttl_max_ms} ms"
+        )
+    if driving.silence_s * 1000.0 <= drive.telemetry_ms:
+        raise ValueError(
+            f"driving.silence_s must be longer than drive.telemetry_ms, got {driving.silence_s} s"
+            f" and {drive.telemetry_ms} ms"
+        )

@@ -1,0 +1,149 @@
+"""A daemon that is not there, as far as the command line can see."""
+
+from collections.abc import Iterator
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+import pytest
+
+from robotd.core.errors import MissionError
+from robotd.core.pose import Pose2
+from robotd.grid.spec import GridSpec
+from robotd.hardware.devices.device import DeviceStatus, LinkState
+from robotd.localization.estimate import PoseEstimate, PoseState, Region
+from robotd.mission.events import MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
+from robotd.mission.modes import Mode
+from robotd.mission.requests import Mission
+from robotd.server.api import MapEntryInfo
+from robotd.server.feed import Gap
+from robotd.server.mission_run import MissionEvent
+from robotd.server.topics import Published
+
+STATUS = Status(
+    time_ns=1,
+    mode=Mode.IDLE,
+    reason="armed by request",
+    devices=(
+        DeviceStatus("drive", LinkState.READY, armed=True),
+        DeviceStatus("pantilt", LinkState.ABSENT, armed=False),
+    ),
+    battery_v=24.5,
+    bumpers_rad=(),
+    mission_id=None,
+    map_id=None,
+    map_name=None,
+    recording=None,
+)
+REGION = Region(Pose2(1.0, 2.0, 0.0), 0.9, 1.1, 1.9, 2.1, cells=4, best_rank=280)
+ESTIMATE = PoseEstimate(5, PoseState.LOCALIZED, REGION.centre, (REGION,), 280, 300, final=True, map_id="m")
+AMBIGUOUS = PoseEstimate(4, PoseState.AMBIGUOUS, None, (REGION, REGION), 140, 150, final=False, map_id="m")
+ENTRY = MapEntryInfo("lab", 3, "abcdef0123456789", 1_700_000_000_000_000_000, 40, 60, 0.05)
+MISSION_EVENTS: tuple[MissionEvent, ...] = (
+    MissionProgress(1, 7, "localize", MissionPhase.STARTED, 0, 1),
+    SweepProgress(2, 1, 150, 300, 120, 20, 10),
+    AMBIGUOUS,
+    SweepProgress(3, 1, 300, 300, 240, 40, 20),
+    ESTIMATE,
+    MissionProgress(6, 7, "localize", MissionPhase.DONE, 0, 1, "localized"),
+)
+
+
+class FakeSubscription:
+    def __init__(self, events: list[Published | Gap]) -> None:
+        self._events = iter(events)
+
+    def next(self, timeout_s: float | None = None) -> Published | Gap | None:
+        return next(self._events, None)
+
+    def __iter__(self) -> Iterator[Published | Gap]:
+        return self._events
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        return None
+
+
+class FakeClient:
+    """Notes what was asked, answers what it is given."""
+
+    def __init__(self) -> None:
+        self.asked: list[Any] = []
+        self.mission_events: tuple[MissionEvent, ...] = MISSION_EVENTS
+        self.raises: BaseException | None = None
+        self.published: list[Published | Gap] = [ESTIMATE]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.asked.append("close")
+
+    def status(self) -> Status:
+        if isinstance(self.raises, Exception):
+            raise self.raises
+        return STATUS
+
+    def arm(self) -> None:
+        self.asked.append("arm")
+
+    def disarm(self) -> None:
+        self.asked.append("disarm")
+
+    def stop(self, reason: str) -> None:
+        self.asked.append(("stop", reason))
+        if isinstance(self.raises, Exception):
+            raise self.raises
+
+    def clear(self) -> None:
+        self.asked.append("clear")
+
+    def run_mission(self, mission: Mission) -> Iterator[MissionEvent]:
+        self.asked.append(mission)
+        yield from self.mission_events
+        if self.raises is not None:
+            raise self.raises
+        last = self.mission_events[-1]
+        if isinstance(last, MissionProgress) and last.phase is not MissionPhase.DONE:
+            raise MissionError(f"{last.kind} {last.phase}: {last.message}")
+
+    def map_save(self, name: str | None) -> MapEntryInfo:
+        self.asked.append(("map_save", name))
+        return ENTRY
+
+    def map_load(self, name: str, version: int | None, robot: Pose2 | None) -> MapEntryInfo:
+        self.asked.append(("map_load", name, version, robot))
+        return ENTRY
+
+    def map_list(self) -> tuple[MapEntryInfo, ...]:
+        return (ENTRY,)
+
+    def map_show(self, name: str | None, version: int | None) -> MapChanged:
+        self.asked.append(("map_show", name, version))
+        values = np.full((6, 6), 128, np.uint8)
+        values[1:5, 1:5] = 255
+        values[2:4, 2:4] = 0
+        spec = GridSpec(0.1, 0.0, 0.0, (6, 6))
+        return MapChanged(1, "abc", 2, spec, whole=True, cells=np.empty(0, np.intp), values=values)
+
+    def record_start(self, path: str | None) -> str | None:
+        self.asked.append(("record_start", path))
+        return path or "recordings/new.mcap"
+
+    def record_stop(self) -> str | None:
+        return "recordings/new.mcap"
+
+    def subscribe(self, *topics: str) -> FakeSubscription:
+        self.asked.append(("subscribe", *topics))
+        return FakeSubscription(self.published)
+
+
+@pytest.fixture
+def client(monkeypatch: pytest.MonkeyPatch) -> FakeClient:
+    """Every verb meets this client in place of a daemon."""
+    fake = FakeClient()
+    for verbs in ("control", "maps", "motion", "recordings", "where"):
+        monkeypatch.setattr(f"robotd.cli.{verbs}.connect", lambda arguments: fake)
+    return fake

@@ -1,0 +1,122 @@
+"""The command line as such: every verb explains itself, and every failure is one line and an exit code."""
+
+import json
+import shlex
+from typing import Any
+
+import pytest
+
+from robotd import __version__
+from robotd.cli.main import FAMILIES, VERBS, build_parser, main
+from robotd.cli.verb import Verb
+from robotd.core.errors import RequestTimeout, ServerError
+
+
+@pytest.mark.parametrize("verb", VERBS, ids=lambda verb: verb.name)
+def test_every_verb_explains_itself_with_an_example_that_parses(verb: Verb, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main([*verb.name.split(), "--help"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert left.value.code == 0
+    assert f"Example: {verb.example}" in said
+    assert "--json" in said
+    assert ("--runtime-dir" in said) == verb.asks_daemon
+    words = shlex.split(verb.example.partition(" > ")[0])
+    assert words[: 1 + len(verb.name.split())] == ["robotctl", *verb.name.split()]
+    assert build_parser().parse_args(words[1:]).run is verb.run
+
+
+def test_every_family_is_explained_and_used() -> None:
+    assert {verb.name.split()[0] for verb in VERBS if " " in verb.name} == FAMILIES.keys()
+
+
+def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["--version"])
+    assert (left.value.code, capsys.readouterr().out) == (0, f"robotctl {__version__}\n")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        [],
+        ["jump"],
+        ["map"],
+        ["map", "show", "--version", "new"],
+        ["drive-to", "1"],
+        ["drive-to", "1", "x"],
+        ["status", "--timeout", "-1"],
+        ["status", "--timeout", "nan"],
+        ["watch", "moon"],
+        ["map", "start", "a", "--legs", "wiggly"],
+        ["sim"],
+    ],
+)
+def test_wrong_usage_is_exit_code_2(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(words)
+    assert left.value.code == 2
+    assert "usage: robotctl" in capsys.readouterr().err.lower()
+
+
+@pytest.mark.parametrize(
+    ("error", "line"),
+    [
+        (ServerError("refused", "not armed"), "robotctl: refused: not armed"),
+        (RequestTimeout("no answer from robotd"), "robotctl: no answer from robotd"),
+    ],
+)
+def test_a_failure_is_one_line_and_exit_code_1(
+    client: Any, error: Exception, line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    client.raises = error
+    assert main(["status"]) == 1
+    captured = capsys.readouterr()
+    assert (captured.out, captured.err) == ("", line + "\n")
+
+
+def test_the_timeout_and_the_directory_reach_the_client(monkeypatch: pytest.MonkeyPatch, client: Any) -> None:
+    seen: list[Any] = []
+
+    def connect(arguments: Any) -> Any:
+        seen.append((str(arguments.runtime_dir), arguments.timeout))
+        return client
+
+    monkeypatch.setattr("robotd.cli.control.connect", connect)
+    assert main(["arm", "--runtime-dir", "there", "--timeout", "1.5"]) == 0
+    assert seen == [("there", 1.5)]
+
+
+def test_status_for_people_and_for_programs(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["status"]) == 0
+    said = capsys.readouterr().out
+    for part in ("idle (armed by request)", "24.5 V", "pantilt", "absent"):
+        assert part in said
+    assert main(["status", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert (document["event"], document["mode"], document["battery_v"]) == ("status", "idle", 24.5)
+    assert [device["link"] for device in document["devices"]] == ["ready", "absent"]
+
+
+@pytest.mark.parametrize("verb", ["arm", "disarm", "clear"])
+def test_a_switch_is_passed_on(client: Any, verb: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([verb]) == 0
+    assert client.asked == [verb, "close"]
+    assert main([verb, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out.splitlines()[-1])["mode"] == "idle"
+
+
+def test_stop_says_who_stopped_it(client: Any) -> None:
+    assert main(["stop"]) == 0
+    assert client.asked[0] == ("stop", "stopped at the command line")
+
+
+def test_colour_stays_out_of_pipes_and_away_if_unwanted(
+    client: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(["status"])
+    assert "\x1b" not in capsys.readouterr().out
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("NO_COLOR", "1")
+    main(["status"])
+    assert "\x1b[3" not in capsys.readouterr().out

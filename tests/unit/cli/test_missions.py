@@ -1,0 +1,103 @@
+"""Missions from the command line: shown as they go on, and stopped before anything else when interrupted."""
+
+import json
+import math
+from typing import Any
+
+import pytest
+
+from robotd.cli.main import main
+from robotd.core.errors import RequestTimeout
+from robotd.core.pose import IDENTITY, Pose2
+from robotd.mission.events import MissionPhase, MissionProgress
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
+
+
+def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
+    main(["localize"])
+    main(["localize", "--heading-deg", "90"])
+    main(["drive-to", "1.5", "-2", "--legs", "straight"])
+    main(["map", "start", "lab", "--stop", "1", "2", "--stop", "-3", "4", "--start", "1", "0", "180"])
+    main(["map", "start", "lab"])
+    assert [asked for asked in client.asked if asked != "close"] == [
+        LocalizeMission(None),
+        LocalizeMission(math.radians(90)),
+        DriveMission(1.5, -2.0, Legs.STRAIGHT),
+        MapMission("lab", ((1.0, 2.0), (-3.0, 4.0)), Pose2(1.0, 0.0, math.pi), Legs.PLANNED),
+        MapMission("lab", (), IDENTITY, Legs.PLANNED),
+    ]
+
+
+def test_the_stops_of_a_world_need_not_be_typed(client: Any) -> None:
+    main(["map", "start", "o", "--world", "office"])
+    mission = client.asked[0]
+    assert mission.start != IDENTITY
+    assert len(mission.stops_m) > 3
+
+
+def test_a_localization_ends_with_the_pose(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["localize"]) == 0
+    captured = capsys.readouterr()
+    assert captured.out == "localized: x 1.000 m, y 2.000 m, heading 0.0 deg (280 of 300 readings explained)\n"
+    assert "240 hits, 40 misses, 20 rejected" in captured.err
+
+
+def test_a_mission_as_json_is_a_line_for_each_event(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["localize", "--json"]) == 0
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [line["event"] for line in lines] == [
+        "mission_progress",
+        "sweep_progress",
+        "pose_estimate",
+        "sweep_progress",
+        "pose_estimate",
+        "mission_progress",
+    ]
+    assert lines[2]["best"] is None
+    assert lines[4]["best"] == {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.0}
+    assert lines[5]["phase"] == "done"
+
+
+@pytest.mark.parametrize("as_json", [[], ["--json"]])
+def test_a_mission_that_fails_is_exit_code_1(
+    client: Any, as_json: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    client.mission_events = (MissionProgress(1, 7, "drive", MissionPhase.FAILED, 0, 1, "unreachable"),)
+    assert main(["drive-to", "1", "2", *as_json]) == 1
+    assert "robotctl: drive failed: unreachable\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["localize"], ["drive-to", "1", "2"], ["map", "start", "a"], ["localize", "--json"]])
+def test_an_interrupt_stops_the_robot_first_and_then_says_so(
+    client: Any, words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    client.raises = KeyboardInterrupt()
+    monkeypatch.setattr("robotd.cli.motion.complain", lambda message: client.asked.append(("said", message)))
+    assert main(words) == 130
+    assert client.asked[1:] == [
+        ("stop", "interrupted at the command line"),
+        ("said", "interrupted: the robot was stopped and disarmed"),
+        "close",
+    ]
+
+
+def test_an_interrupt_while_an_event_is_shown_stops_the_robot_too(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(document: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("robotd.cli.motion.print_json", interrupt)
+    assert main(["localize", "--json"]) == 130
+    assert client.asked[1] == ("stop", "interrupted at the command line")
+
+
+def test_an_interrupt_that_cannot_stop_the_robot_says_what_will(
+    client: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def silent(reason: str) -> None:
+        raise RequestTimeout("no answer from robotd")
+
+    client.raises = KeyboardInterrupt()
+    monkeypatch.setattr(client, "stop", silent)
+    assert main(["localize"]) == 130
+    said = capsys.readouterr().err
+    assert "could not be told to stop: no answer from robotd; it stops when its lease runs out" in said

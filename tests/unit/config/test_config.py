@@ -1,0 +1,133 @@
+"""The daemon's own configuration: files, directories, what must agree between sections."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robotd.config import Config, default_path, effective_text, load, loads
+from robotd.core.errors import ConfigError
+
+
+@pytest.fixture(autouse=True)
+def _no_directories_of_systemd(monkeypatch: pytest.MonkeyPatch) -> None:
+    for variable in ("ROBOTD_CONFIG", "STATE_DIRECTORY", "RUNTIME_DIRECTORY"):
+        monkeypatch.delenv(variable, raising=False)
+
+
+def complaints(text: str) -> list[str]:
+    with pytest.raises(ConfigError) as caught:
+        loads(text, file="r.toml")
+    return [str(problem) for problem in caught.value.problems]
+
+
+def test_nothing_at_all_is_a_configuration() -> None:
+    assert loads("") == Config()
+
+
+@settings(max_examples=25)
+@given(
+    readings=st.integers(1, 10_000),
+    tilt_rad=st.floats(-1.4, 1.4),
+    port=st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=20),
+    from_start=st.booleans(),
+)
+def test_the_effective_text_loads_to_the_same(readings: int, tilt_rad: float, port: str, from_start: bool) -> None:
+    plain = Config()
+    config = replace(
+        plain,
+        sweep=replace(plain.sweep, readings=readings, tilt_rad=tilt_rad),
+        drive=replace(plain.drive, port="/dev/x" + port),
+        recording=replace(plain.recording, from_start=from_start),
+    )
+    assert loads(effective_text(config)) == config
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("[laser]\nx = 1", "r.toml:1: laser: unknown section"),
+        ("[rangfinder]\nbaud = 1", "r.toml:1: rangfinder: unknown section; did you mean rangefinder?"),
+        ("baud = 9600", "r.toml:1: baud: unknown section"),
+        ("[drive]\nbuad = 9600", "r.toml:2: drive.buad: unknown key; did you mean baud?"),
+        (
+            "[rangefinder]\nrange_max_mm = 6000",
+            "r.toml:2: rangefinder.range_max_mm: wrong unit: expected range_max_m, in metres",
+        ),
+        (
+            "[drive]\ntelemetry_s = 0.04",
+            "r.toml:2: drive.telemetry_s: wrong unit: expected telemetry_ms, in milliseconds",
+        ),
+        ("[driving]\nspeed = 0.4", "r.toml:2: driving.speed: no unit: expected speed_mps, in metres per second"),
+        ("[driving]\nspeed_mps = 0", "r.toml:2: driving.speed_mps: must be positive, got 0.0"),
+        ("[drive]\nport = ''", "r.toml:2: drive.port: must not be empty"),
+        ("[drive]\nport = 'COM3'", 'r.toml:2: drive.port: must be a device path or tcp://host:port, got "COM3"'),
+        ("[pantilt]\ndialect = 'ptu'", 'r.toml:2: pantilt.dialect: must be one of board; got "ptu"'),
+        (
+            "[drive]\nport = '/dev/a'\n[pantilt]\nport = '/dev/a'",
+            "r.toml:4: pantilt.port: must not be the port of another device, got that of drive",
+        ),
+        (
+            "[driving]\nsetpoint_ttl_s = 2",
+            "r.toml:2: driving.setpoint_ttl_s: must be within drive.ttl_max_ms, got 2.0 s and 500 ms",
+        ),
+        (
+            "[drive]\nttl_max_ms = 100",
+            "r.toml:2: drive.ttl_max_ms: driving.setpoint_ttl_s must be within drive.ttl_max_ms, got 0.4 s and 100 ms",
+        ),
+        (
+            "[driving]\nsilence_s = 0.01",
+            "r.toml:2: driving.silence_s: must be longer than drive.telemetry_ms, got 0.01 s and 40 ms",
+        ),
+        (
+            "[grid]\npolicy = 'per_beam'",
+            'r.toml:2: grid.policy: expected one of per_reading, per_sweep; got "per_beam"; did you mean per_reading?',
+        ),
+        ("[maps]\nkeep = 0", "r.toml:2: maps.keep: must be at least 1, got 0"),
+        ("[recording]\npreroll_bytes = -1", "r.toml:2: recording.preroll_bytes: must not be negative, got -1"),
+        ("[server]\nlease_s = 60", "r.toml:2: server.lease_s: must lie between 0.1 and 10, got 60.0"),
+    ],
+)
+def test_a_mistake_is_named_where_it_stands(text: str, complaint: str) -> None:
+    assert complaints(text) == [complaint]
+
+
+def test_mistakes_between_sections_are_all_found() -> None:
+    text = "[driving]\nsetpoint_ttl_s = 2\n[pantilt]\nport = 'COM3'\n[grid]\nrows = 0"
+    assert [line.split(": ")[1] for line in complaints(text)] == ["driving.setpoint_ttl_s", "pantilt.port", "grid.rows"]
+
+
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"none.toml: cannot be read: No such file or directory$"):
+        load(tmp_path / "none.toml")
+    bad = tmp_path / "latin.toml"
+    bad.write_bytes(b"[maps]\n# caf\xe9\n")
+    with pytest.raises(ConfigError, match=r"latin.toml:2: not TOML: not UTF-8$"):
+        load(bad)
+
+
+def test_directories_begin_where_the_file_is(tmp_path: Path) -> None:
+    file = tmp_path / "robotd.toml"
+    file.write_text('[server]\nruntime_dir = "run"\n[maps]\ndir = "maps"\n')
+    config = load(file)
+    assert config.server.runtime_dir == str(tmp_path / "run")
+    assert config.maps.dir == str(tmp_path / "maps")
+    assert config.recording.dir == "/var/lib/robotd/recordings"
+    assert loads(effective_text(config)) == config
+
+
+def test_directories_are_those_that_systemd_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RUNTIME_DIRECTORY", "/run/other")
+    monkeypatch.setenv("STATE_DIRECTORY", "/srv/state:/srv/more")
+    config = loads("[server]\nlease_s = 1\n[maps]\nkeep = 2")
+    assert config.server.runtime_dir == "/run/other"
+    assert (config.maps.dir, config.recording.dir) == ("/srv/state/maps", "/srv/state/recordings")
+    assert loads("[server]\nruntime_dir = '/run/mine'").server.runtime_dir == "/run/mine"
+
+
+def test_the_file_to_read_is_the_one_the_environment_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert default_path() == Path("/etc/robotd/robotd.toml")
+    monkeypatch.setenv("ROBOTD_CONFIG", "/srv/robot.toml")
+    assert default_path() == Path("/srv/robot.toml")
