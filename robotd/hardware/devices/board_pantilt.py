@@ -1,11 +1,13 @@
 """The pan/tilt unit on our own board."""
 
 import asyncio
+import math
 from typing import ClassVar
 
 from firmware_proto import pantilt as proto
 from firmware_proto.common import BoardKind
 from firmware_proto.schema import Message
+from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Broadcast, Subscription
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
 from robotd.hardware.devices.board_device import BoardDevice
@@ -15,6 +17,8 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.session import Session
 
 _PER_RAD = 10_000
+_HALF_TURN = 31_415
+"""Of the head, in wire units, rounded so that a head without end still reaches it."""
 _TTL_MARGIN_MS = 250
 """The board's deadman is for a host that is gone; a slow head is halted by us before."""
 _TTL_LIMIT_MS = 0xFFFF
@@ -39,11 +43,12 @@ class BoardPanTilt(BoardDevice):
         self._one_at_a_time = asyncio.Lock()
 
     async def limits(self) -> PanTiltLimits:
-        """Return the mechanical limits, in the robot frame."""
+        """Return the mechanical limits, in the robot frame; a head without end pans from -pi to pi there."""
         limits = await self._talk().ask(proto.ReadLimits(), proto.Limits)
+        is_endless = limits.pan_max_tenth_mrad - limits.pan_min_tenth_mrad >= 2 * _HALF_TURN
         return PanTiltLimits(
-            self._pan_rad(limits.pan_min_tenth_mrad),
-            self._pan_rad(limits.pan_max_tenth_mrad),
+            -math.pi if is_endless else self._pan_rad(limits.pan_min_tenth_mrad),
+            math.pi if is_endless else self._pan_rad(limits.pan_max_tenth_mrad),
             self._tilt_rad(limits.tilt_min_tenth_mrad),
             self._tilt_rad(limits.tilt_max_tenth_mrad),
         )
@@ -51,7 +56,7 @@ class BoardPanTilt(BoardDevice):
     async def aim(self, pan_rad: float, tilt_rad: float, *, timeout_s: float) -> AimReadback:
         """Turn the head and return where it came to rest; see :meth:`robotd.hardware.devices.pantilt.PanTilt.aim`."""
         aim = proto.Aim(
-            pan_tenth_mrad=round((pan_rad - self._mount.pan_zero_rad) * _PER_RAD),
+            pan_tenth_mrad=_pan_of_head(pan_rad - self._mount.pan_zero_rad),
             tilt_tenth_mrad=round((tilt_rad - self._mount.tilt_zero_rad) * _PER_RAD),
             ttl_ms=min(round(timeout_s * 1000) + _TTL_MARGIN_MS, _TTL_LIMIT_MS),
         )
@@ -109,3 +114,11 @@ class BoardPanTilt(BoardDevice):
 
     def _tilt_rad(self, tenth_mrad: int) -> float:
         return tenth_mrad / _PER_RAD + self._mount.tilt_zero_rad
+
+
+def _pan_of_head(pan_rad: float) -> int:
+    """Return a pan in wire units; beyond a half turn, the same direction from the other side."""
+    tenth_mrad = round(pan_rad * _PER_RAD)
+    if abs(tenth_mrad) <= _HALF_TURN:
+        return tenth_mrad
+    return max(-_HALF_TURN, min(round(wrap_rad(pan_rad) * _PER_RAD), _HALF_TURN))
