@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from rich_argparse import RawDescriptionRichHelpFormatter
 
 from robotd import __version__
-from robotd.cli import configuration, control, maps, recordings, simulate, where
+from robotd.cli import configuration, control, imports, maps, recordings, simulate, where
 from robotd.cli.terminal import complain
 from robotd.cli.verb import BAD_CONFIG, FAILED, INTERRUPTED, Verb
 from robotd.core.errors import ConfigError, RobotdError
@@ -21,12 +21,14 @@ VERBS: tuple[Verb, ...] = (
     *maps.VERBS,
     *where.VERBS,
     *simulate.VERBS,
+    *imports.VERBS,
     *recordings.VERBS,
     *configuration.VERBS,
 )
 
 FAMILIES = {
     "config": "check and show configurations",
+    "import": "make a recorded building of somebody else's log",
     "map": "make, save, load and look at maps",
     "record": "record everything that happens to a file",
 }

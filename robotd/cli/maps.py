@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from robotd.cli.connection import connect
 from robotd.cli.half_blocks import coloured, plain, shrink
 from robotd.cli.motion import carry_out
+from robotd.cli.simulate import odometry_argument
 from robotd.cli.terminal import out, print_json, print_table
 from robotd.cli.verb import OK, Verb
 from robotd.cli.where import legs_argument
@@ -23,14 +24,15 @@ from robotd.grid.tables import NO_INFORMATION
 from robotd.mission.events import MapChanged
 from robotd.mission.requests import Legs, MapMission
 from robotd.server.api import MapEntryInfo
-from robotd.sim.world import load_world
+from robotd.sim.load import load_robot
+from robotd.sim.recorded_building import OdometrySource
 
 
 def _start(arguments: argparse.Namespace) -> int:
     start, stops_m = arguments.start, tuple(map(tuple, arguments.stop))
     if arguments.world is not None:
-        world = load_world(arguments.world)
-        start, stops_m = start or world.start_pose, stops_m or world.stops_m
+        robot = load_robot(arguments.world, odometry=OdometrySource(arguments.odometry))
+        start, stops_m = start or robot.start, stops_m or robot.stops_m
     return carry_out(arguments, MapMission(arguments.name, stops_m, start or IDENTITY, Legs(arguments.legs)))
 
 
@@ -46,7 +48,8 @@ def _start_arguments(parser: argparse.ArgumentParser) -> None:
         help="where to stop and sweep [m], once for each; the robot's place at the start comes first by itself",
     )
     _pose_argument(parser, "--start", "where the robot stands now, which fixes the map's axes (default: 0 0 0)")
-    parser.add_argument("--world", metavar="WORLD", help="take start and stops from a simulated world")
+    parser.add_argument("--world", metavar="WORLD", help="take start and stops from a world of robotctl sim")
+    odometry_argument(parser)
     legs_argument(parser)
 
 

@@ -2,70 +2,80 @@
 
 import argparse
 import asyncio
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Coroutine
 from pathlib import Path
+from typing import Any
 
+from robotd.cli.emulated import GridSize, grid_size, write_config
 from robotd.cli.terminal import err, print_json, print_pairs
 from robotd.cli.verb import OK, Verb
-from robotd.config.writer import write_value
-from robotd.core.errors import RobotdError
-from robotd.sim.robot import EmulatedRobot, SimulatedRobot
+from robotd.sim.load import load_robot
+from robotd.sim.recorded_building import OdometrySource
+from robotd.sim.robot import EmulatedRobot
 from robotd.sim.runtime import run_on_ptys
-from robotd.sim.world import load_world, world_names
-
-Announce = Callable[[dict[str, str]], None]
+from robotd.sim.world import world_names
 
 
 def _sim(arguments: argparse.Namespace) -> int:
-    robot = _robot(arguments.world, arguments.seed)
-    running = run_on_ptys(robot, announce=_announcer(arguments), directory=arguments.links, truth_path=arguments.truth)
+    robot = robot_of(arguments)
+    size = grid_size(arguments.world, robot) if arguments.write_config else None
+    return _until_interrupted(
+        run_on_ptys(
+            robot,
+            announce=lambda ports: _announce(arguments, ports, size),
+            directory=_absolute(arguments.links),
+            truth_path=arguments.truth,
+        )
+    )
+
+
+def _until_interrupted(running: Coroutine[Any, Any, None]) -> int:
     try:
         asyncio.run(running)
     except KeyboardInterrupt:
-        return OK  # this is how it ends
+        return OK  # that is how it ends
     return OK
 
 
-def _robot(world: str, seed: int) -> EmulatedRobot:
-    return SimulatedRobot(load_world(world), seed)
+def _absolute(path: Path | None) -> Path | None:
+    return None if path is None else path.absolute()
 
 
-def _announcer(arguments: argparse.Namespace) -> Announce:
-    return partial(_announce, as_json=arguments.json, config_file=arguments.write_config)
-
-
-def _announce(paths: dict[str, str], *, as_json: bool, config_file: Path | None) -> None:
+def _announce(arguments: argparse.Namespace, ports: dict[str, str], size: GridSize | None) -> None:
     """Say where the devices are, and write a configuration that uses them."""
-    if config_file is not None:
-        _write_config(config_file, paths)
-    if as_json:
-        print_json({"devices": paths, "config": None if config_file is None else str(config_file)})
+    file: Path | None = arguments.write_config
+    if file is not None:
+        write_config(file, ports, size)
+    if arguments.json:
+        print_json({"devices": ports, "config": None if file is None else str(file)})
         return
-    print_pairs(paths.items())
-    if config_file is not None:
-        err().print(f"now: robotd --config {config_file}", markup=False)
-    err().print("Ctrl-C ends it", style="dim")
+    print_pairs(ports.items())
+    if file is not None:
+        err().print(f"now, in another terminal: robotd --config {file}", markup=False)
+    err().print("Ctrl-C ends it")
 
 
-def _write_config(file: Path, paths: dict[str, str]) -> None:
-    """Write a configuration for a robot on these lines, which keeps all that it makes beside itself."""
-    text = "# Made by robotctl for emulated devices; what is not here has its default.\n"
-    text += '[server]\nruntime_dir = "run"\n\n[maps]\ndir = "maps"\n\n[recording]\ndir = "recordings"\n'
-    for device, path in paths.items():
-        text += f"\n[{device}]\nport = {write_value(str(Path(path).absolute()))}\n"
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise RobotdError(f"cannot write {file}: {error.strerror}") from error
+def robot_of(arguments: argparse.Namespace) -> EmulatedRobot:
+    """Return the robot that the options of :func:`world_arguments` describe."""
+    return load_robot(arguments.world, arguments.seed, odometry=OdometrySource(arguments.odometry))
 
 
 def _sim_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("world", metavar="WORLD", help=f"{', '.join(world_names())}, or the file of another")
+    parser.add_argument("world", metavar="WORLD", help=f"{', '.join(world_names())}, or a file of one")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="same seed, same noise (default: 1)")
+    odometry_argument(parser)
     parser.add_argument("--truth", type=Path, metavar="FILE", help="note in it where the robot really came to rest")
     _lines_arguments(parser)
+
+
+def odometry_argument(parser: argparse.ArgumentParser) -> None:
+    """Let the command line choose what the wheels say in a recorded building."""
+    parser.add_argument(
+        "--odometry",
+        choices=[source.value for source in OdometrySource],
+        default=OdometrySource.CORRECTED.value,
+        help="in a recorded building: the log's corrected poses, or what its robot believed (default: corrected)",
+    )
 
 
 def _lines_arguments(parser: argparse.ArgumentParser) -> None:
@@ -76,7 +86,7 @@ def _lines_arguments(parser: argparse.ArgumentParser) -> None:
 VERBS = (
     Verb(
         "sim",
-        "simulate a robot in a room: three boards that speak the real protocol, on pseudo-terminals",
+        "simulate a robot in a room: its three boards, on pseudo-terminals",
         "robotctl sim laboratory --write-config lab/robotd.toml",
         _sim,
         _sim_arguments,

@@ -12,6 +12,7 @@ from robotd.hardware.transport.address import connector
 from robotd.localization.localizer import LocalizationSettings
 from robotd.mission.steering import DrivingSettings
 from robotd.mission.stop_and_sweep import SweepSettings
+from robotd.planning.path import PlanningSettings
 from robotd.server.server import ServerSettings
 
 _DIALECTS = {"drive": tuple(DRIVES), "pantilt": tuple(PANTILTS), "rangefinder": tuple(RANGEFINDERS)}
@@ -29,6 +30,7 @@ class Config:
     driving: DrivingSettings = field(default_factory=DrivingSettings)
     grid: GridSettings = field(default_factory=GridSettings)
     localization: LocalizationSettings = field(default_factory=LocalizationSettings)
+    planning: PlanningSettings = field(default_factory=PlanningSettings)
     maps: MapsSettings = field(default_factory=MapsSettings)
     recording: RecordingSettings = field(default_factory=RecordingSettings)
 

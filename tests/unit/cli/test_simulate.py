@@ -1,0 +1,101 @@
+"""Robots that are not there: where their devices are, and a configuration to run a daemon on them."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robotd.cli.emulated import GridSize, grid_size
+from robotd.cli.main import main
+from robotd.config import load
+from robotd.core.pose import Pose2
+from robotd.sim.load import load_robot
+from robotd.sim.world import load_world, world_names
+
+
+@pytest.fixture
+def interrupted(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
+    """A simulation that says where its devices are, and is then interrupted; returns what it was asked."""
+    asked: list[dict[str, Any]] = []
+
+    async def run(robot: Any, *, announce: Any, **options: Any) -> None:
+        asked.append({"robot": robot, **options})
+        announce({"drive": "/dev/pts/7", "pantilt": "/dev/pts/8", "rangefinder": "/dev/pts/9"})
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("robotd.cli.simulate.run_on_ptys", run)
+    return asked
+
+
+def test_a_simulation_says_where_its_devices_are(
+    interrupted: list[dict[str, Any]], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert main(["sim", "office", "--seed", "3", "--links", "here", "--truth", "t.jsonl"]) == 0
+    assert [line.split() for line in capsys.readouterr().out.splitlines()] == [
+        ["drive", "/dev/pts/7"],
+        ["pantilt", "/dev/pts/8"],
+        ["rangefinder", "/dev/pts/9"],
+    ]
+    assert interrupted[0]["directory"] == Path.cwd() / "here"
+    assert interrupted[0]["truth_path"] == Path("t.jsonl")
+    assert interrupted[0]["robot"].start == load_world("office").start_pose
+
+
+def test_the_configuration_it_writes_is_one_to_run_on(
+    interrupted: list[dict[str, Any]], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "lab" / "robotd.toml"
+    assert main(["sim", "laboratory", "--write-config", str(file), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["config"] == str(file)
+    config = load(file)
+    assert (config.drive.port, config.rangefinder.port) == ("/dev/pts/7", "/dev/pts/9")
+    assert config.server.runtime_dir == str(tmp_path / "lab" / "run")
+    assert config.maps.dir == str(tmp_path / "lab" / "maps")
+
+
+@pytest.mark.parametrize("name", world_names())
+def test_the_map_it_asks_for_holds_the_whole_room(name: str) -> None:
+    from robotd.grid.occupancy import GridSettings
+
+    robot = load_robot(name)
+    size = grid_size(name, robot)
+    spec = GridSettings(rows=size.rows, cols=size.cols).spec_around(robot.start.x_m, robot.start.y_m)
+    corners = [corner for wall in load_world(name).wall for corner in wall.points_m]
+    assert all(spec.contains(*spec.cell_at(*corner)) for corner in corners)
+
+
+def test_a_map_is_no_larger_than_it_must_be() -> None:
+    assert GridSize.around(Pose2(1.0, 1.0, 0.0), [(3.0, 0.0)], 0.05) == GridSize(rows=60, cols=100)
+
+
+def test_a_configuration_that_cannot_be_written_is_a_failure(
+    interrupted: list[dict[str, Any]], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    (tmp_path / "robotd.toml").mkdir()
+    assert main(["sim", "office", "--write-config", str(tmp_path / "robotd.toml")]) == 1
+    assert "robotd.toml: Is a directory" in capsys.readouterr().err
+
+
+def test_a_world_that_there_is_not_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sim", "offise"]) == 78
+    assert capsys.readouterr().err.startswith("offise: no such world; known: corridor, laboratory, office")
+
+
+def test_a_recorded_building_is_made_of_a_log(
+    laser_data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "intel.building"
+    log = laser_data / "intel" / "intel.corrected.log.gz"
+    words = ["import", "carmen", str(log), "--out", str(out), "--limit", "6", "--json"]
+    assert main(words) == 0
+    assert json.loads(capsys.readouterr().out) == {"file": str(out), "stops": 3, "kept_out": 3}
+    robot = load_robot(str(out))
+    size = grid_size(str(out), robot)
+    assert size.rows * 0.05 / 2 > 6.0
+    assert len(robot.probes_m) == 3
+
+
+def test_a_log_that_there_is_not_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["import", "carmen", str(tmp_path / "no.log"), "--out", str(tmp_path / "x")]) == 1
+    assert len(capsys.readouterr().err.splitlines()) == 1
