@@ -5,8 +5,10 @@ Exit codes: 0 done, 1 failed, 2 wrong usage, 78 wrong configuration, 130 interru
 
 import argparse
 import os
+import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
@@ -67,7 +69,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run ``robotctl`` and return its exit code; wrong usage leaves by ``SystemExit(2)``, as argparse does."""
     arguments = build_parser().parse_args(argv)
     try:
-        code: int = arguments.run(arguments)
+        with _ended_like_interrupted():
+            code: int = arguments.run(arguments)
     except ConfigError as error:
         for problem in error.problems:
             complain(str(problem))
@@ -81,6 +84,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     return code
+
+
+@contextmanager
+def _ended_like_interrupted() -> Iterator[None]:
+    """Let SIGTERM do what Ctrl-C does: stop the robot first."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 if __name__ == "__main__":

@@ -52,26 +52,32 @@ def draw_room(
     title: str,
     walls_m: Sequence[Points],
     *,
+    open_walls_m: Sequence[Points] = (),
     stops_m: Sequence[tuple[float, float]] = (),
     path_m: Points | None = None,
     robot_radius_m: float = 0.0,
 ) -> None:
-    """Draw the true room: wall polygons ``float64[n, 2]``, the first of them its outline, and the numbered stops.
+    """Draw the true room: its walls, and the stops with their numbers.
 
-    ``path_m`` is the way the robot went, ``float64[n, 2]``; by default straight from stop to stop.
+    Args:
+        file: the PNG to write.
+        title: what to write above.
+        walls_m: closed polygons ``float64[n, 2]``; the largest is the room, the others stand in it.
+        open_walls_m: walls that enclose nothing, ``float64[n, 2]``.
+        stops_m: where the robot stopped, in order.
+        path_m: the way it went ``float64[n, 2]``; straight from stop to stop if None.
+        robot_radius_m: if given, each stop shows how much room the robot takes.
     """
-    outline = np.asarray(walls_m[0])
-    axes = _paper(title, (*outline.min(axis=0), *outline.max(axis=0)), "the true room, with the stops in their order")
-    axes.add_patch(Polygon(outline, closed=True, facecolor="white", edgecolor=_WALL, linewidth=3.0, zorder=1))
-    for wall in walls_m[1:]:
-        axes.add_patch(Polygon(wall, closed=True, facecolor=_FURNITURE, edgecolor=_WALL, linewidth=1.2, zorder=2))
+    corners = np.concatenate([*walls_m, *open_walls_m])
+    axes = _paper(title, (*corners.min(axis=0), *corners.max(axis=0)), "the true room, with the stops in their order")
+    for number, wall in enumerate(sorted(walls_m, key=_extent_m, reverse=True)):
+        style = {"facecolor": _FURNITURE, "linewidth": 1.2} if number else {"facecolor": "white", "linewidth": 3.0}
+        axes.add_patch(Polygon(wall, closed=True, edgecolor=_WALL, zorder=1 + (number > 0), **style))
+    axes.add_collection(LineCollection(list(open_walls_m), colors=_WALL, linewidths=2.0, zorder=2), autolim=False)
     way = np.array(stops_m, dtype=np.float64).reshape(-1, 2) if path_m is None else path_m
     axes.plot(way[:, 0], way[:, 1], color=_PATH, linewidth=1.6, alpha=0.9, zorder=3, solid_joinstyle="round")
     for number, (x_m, y_m) in enumerate(stops_m):
-        if robot_radius_m:
-            axes.add_patch(Circle((x_m, y_m), robot_radius_m, facecolor=_PATH, alpha=0.16, edgecolor="none", zorder=3))
-        axes.plot(x_m, y_m, "o", markersize=15, color="white", markeredgecolor=_PATH, markeredgewidth=1.8, zorder=4)
-        axes.text(x_m, y_m, str(number), ha="center", va="center_baseline", fontsize=8.5, color=_INK, zorder=5)
+        _stop(axes, number, x_m, y_m, robot_radius_m)
     _save(axes, file)
 
 
@@ -144,6 +150,17 @@ def bar_length_m(width_m: float) -> float:
     decade = 10.0 ** math.floor(math.log10(width_m / 5.0))
     steps = [decade * step for step in (*_NICE_STEPS, 10.0)]
     return min(steps, key=lambda length: abs(length - width_m / 5.0))
+
+
+def _extent_m(wall: Points) -> float:
+    return float(np.ptp(wall, axis=0).max())
+
+
+def _stop(axes: Axes, number: int, x_m: float, y_m: float, robot_radius_m: float) -> None:
+    if robot_radius_m:
+        axes.add_patch(Circle((x_m, y_m), robot_radius_m, facecolor=_PATH, alpha=0.16, edgecolor="none", zorder=3))
+    axes.plot(x_m, y_m, "o", markersize=15, color="white", markeredgecolor=_PATH, markeredgewidth=1.8, zorder=4)
+    axes.text(x_m, y_m, str(number), ha="center", va="center_baseline", fontsize=8.5, color=_INK, zorder=5)
 
 
 def _extent(spec: GridSpec) -> tuple[float, float, float, float]:

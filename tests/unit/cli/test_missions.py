@@ -2,6 +2,8 @@
 
 import json
 import math
+import os
+import signal
 from typing import Any
 
 import pytest
@@ -101,3 +103,11 @@ def test_an_interrupt_that_cannot_stop_the_robot_says_what_will(
     assert main(["localize"]) == 130
     said = capsys.readouterr().err
     assert "could not be told to stop: no answer from robotd; it stops when its lease runs out" in said
+
+
+def test_being_ended_is_being_interrupted(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    monkeypatch.setattr("robotd.cli.motion.print_json", lambda document: os.kill(os.getpid(), signal.SIGTERM))
+    assert main(["localize", "--json"]) == 130
+    assert client.asked[1] == ("stop", "interrupted at the command line")
+    assert signal.getsignal(signal.SIGTERM) is before
