@@ -1,0 +1,34 @@
+"""The configuration that is shipped says everything, and changes nothing."""
+
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+
+from robotd.config import Config, loads
+from robotd.config.lines import key_lines
+from robotd.config.problems import UNITS
+
+FILE = Path(__file__).parents[3] / "systemd" / "robotd.toml"
+
+
+@pytest.fixture(autouse=True)
+def _no_directories_of_systemd(monkeypatch: pytest.MonkeyPatch) -> None:
+    for variable in ("STATE_DIRECTORY", "RUNTIME_DIRECTORY"):
+        monkeypatch.delenv(variable, raising=False)
+
+
+def test_it_has_every_key_with_its_default() -> None:
+    assert loads(FILE.read_text(), file="systemd/robotd.toml") == Config()
+    keys = {path for path in key_lines(FILE.read_text()) if len(path) == 2}
+    every = {(section, key) for section, values in asdict(Config()).items() for key in values}
+    assert keys == every
+
+
+def test_every_key_has_a_sentence_before_it_with_its_unit() -> None:
+    lines = FILE.read_text().splitlines()
+    for path, number in key_lines(FILE.read_text()).items():
+        sentence = lines[number - 2]
+        assert sentence.startswith("# "), path
+        if path[-1].rpartition("_")[2] in UNITS:
+            assert "[" in sentence, path
