@@ -15,7 +15,7 @@ import math
 from firmware_proto.rangefinder import ShotStatus
 from robotd.core.pose import Pose2
 from robotd.sim.body import Body, BodySettings
-from robotd.sim.building import RecordedBuilding, Stop, View, view_from
+from robotd.sim.building import RecordedBuilding, View, view_from
 from robotd.sim.noise import NOISELESS, stream
 from robotd.sim.plant import ShotAnswer
 from robotd.sim.robot import board_by_device, clocks_of_seed
@@ -61,7 +61,8 @@ class Place:
     @property
     def truth(self) -> Pose2:
         """Where the body is in the log's own frame, told from the nearest stop."""
-        return self._stop.pose @ self._in_stop()
+        in_stop = self._in_stop()
+        return self._stop.pose @ in_stop
 
     def view(self) -> View | None:
         """Return what is seen from here; None unless the body rests at a stop."""

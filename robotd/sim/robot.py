@@ -1,6 +1,5 @@
 """A whole robot behind three boards: the simulated one, and what every emulated one offers."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -25,9 +24,9 @@ DEVICES = ("drive", "pantilt", "rangefinder")
 class EmulatedRobot(Protocol):
     """Three boards, the place they believe to be in, and the truth about it."""
 
-    boards: Mapping[str, Board]
+    boards: dict[str, Board]
     """By device name."""
-    clocks: Mapping[str, BoardClock]
+    clocks: dict[str, BoardClock]
     """The boards' own clocks, by device name."""
     start: Pose2
     """Where the robot stands at first; it ties the frame of ``stops_m`` to odometry."""
@@ -96,7 +95,7 @@ def clocks_of_seed(seed: int, skew_ppm: float) -> dict[str, BoardClock]:
 
 
 def board_by_device(
-    drive: DrivePlant, head: HeadPlant, laser: LaserPlant, *, clocks: Mapping[str, BoardClock], seed: int, boot: int
+    drive: DrivePlant, head: HeadPlant, laser: LaserPlant, *, clocks: dict[str, BoardClock], seed: int, boot: int
 ) -> dict[str, Board]:
     """Put a board on top of each plant, each with a clock and a boot id of its own."""
     boot_ids = {device: stream(seed, f"{device}/boot {boot}").getrandbits(32) for device in DEVICES}
