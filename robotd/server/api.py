@@ -56,6 +56,8 @@ class MapEntryInfo:
     rows: int
     cols: int
     resolution_m: float
+    damage: str | None = None
+    """Why this version cannot be read; its other numbers are then zero."""
 
 
 class PoseArgument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -29,6 +29,7 @@ class MissionRun:
         self.is_over = False
         self._period_s = started.lease_s / _RENEWALS_PER_LEASE
         self._next_s = now_s + self._period_s
+        self._has_begun = False
         self._end: MissionProgress | None = None
 
     @property
@@ -53,12 +54,13 @@ class MissionRun:
             self._next_s = now_s + self._period_s
 
     def accept(self, event: Published | Gap) -> MissionEvent | None:
-        """Return a published event if it concerns the mission."""
+        """Return a published event if it concerns the mission; nothing does before the mission's own first word."""
         if isinstance(event, MissionProgress):
             if event.mission_id != self.mission_id:
                 return None
+            self._has_begun = True
             self._conclude(event)
-        return event if isinstance(event, MissionEvent) else None
+        return event if self._has_begun and isinstance(event, MissionEvent) else None
 
     def overdue(self, now_s: float) -> MissionProgress | None:
         """Return the end of the mission if it is known from a renewal and its message must have been missed."""

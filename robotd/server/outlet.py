@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+from typing import NoReturn
 
 import zmq
 import zmq.asyncio
@@ -9,7 +10,7 @@ import zmq.asyncio
 from robotd.server.topics import Topic, encode_frame
 
 _JOIN = b"\x01"
-_BETWEEN_JOINS_S = 0.02
+BETWEEN_GREETINGS_S = 0.02
 _MOST_JOINS = 1000
 
 
@@ -30,21 +31,23 @@ class Outlet:
         self._last[topic] = frame
         await self._socket.send(frame)
 
-    async def repeat_last(self, topic: Topic) -> None:
-        """Publish the last message of a topic again, under its old number."""
-        if topic in self._last:
-            await self._socket.send(self._last[topic])
+    async def greet(self) -> NoReturn:
+        """Tell whoever subscribes the last message of each topic, until cancelled.
+
+        XPUB cannot answer one subscriber alone: a repeat reaches all. So repeats are kept rare, and readers ignore
+        a number they have seen. The status comes last: when it arrives, every subscription made before it is in force.
+        """
+        while True:
+            for topic in sorted(await self.joined(), key=lambda topic: topic is Topic.STATUS):
+                if topic in self._last:
+                    await self._socket.send(self._last[topic])
+            await asyncio.sleep(BETWEEN_GREETINGS_S)
 
     async def joined(self) -> set[Topic]:
-        """Wait until somebody subscribes, and return to which topics.
-
-        XPUB cannot answer one subscriber alone: a repeat reaches all. So repeats are kept rare, and readers
-        ignore a number they have seen.
-        """
+        """Wait until somebody subscribes, and return to which topics."""
         topics: set[Topic] = set()
         while not topics:
             topics |= _topics_of(await self._socket.recv())
-        await asyncio.sleep(_BETWEEN_JOINS_S)
         with contextlib.suppress(zmq.Again):
             for _ in range(_MOST_JOINS):
                 topics |= _topics_of(await self._socket.recv(zmq.NOBLOCK))

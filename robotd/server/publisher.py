@@ -9,7 +9,7 @@ from robotd.server.control import Control
 from robotd.server.decimation import Decimator
 from robotd.server.log_relay import relay_log
 from robotd.server.map_queue import MapQueue
-from robotd.server.outlet import Outlet
+from robotd.server.outlet import BETWEEN_GREETINGS_S, Outlet
 from robotd.server.topics import LogEntry, Published, Topic, to_wire
 
 _DEPTH = 4096
@@ -32,7 +32,7 @@ class Publisher:
             async with asyncio.TaskGroup() as group:
                 group.create_task(self._follow_events())
                 group.create_task(self._follow_log(lines))
-                group.create_task(self._greet())
+                group.create_task(self._state.greet())
                 group.create_task(self._follow_maps())
                 group.create_task(self._greet_map_readers())
 
@@ -55,15 +55,11 @@ class Publisher:
         topic, fields = to_wire(event)
         await self._state.send(topic, fields)
 
-    async def _greet(self) -> NoReturn:
-        while True:
-            for topic in sorted(await self._state.joined()):
-                await self._state.repeat_last(topic)
-
     async def _greet_map_readers(self) -> NoReturn:
         while True:
             if Topic.MAP in await self._maps.joined():
                 self._map_queue.ask_for_whole()
+            await asyncio.sleep(BETWEEN_GREETINGS_S)
 
     async def _follow_maps(self) -> NoReturn:
         while True:

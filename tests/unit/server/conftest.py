@@ -1,0 +1,217 @@
+"""A daemon that is all server: real sockets in a temporary directory, and a fake robot behind them."""
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator, Callable
+from contextlib import AbstractAsyncContextManager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robotd.core.broadcast import Broadcast
+from robotd.core.clock import now_ns
+from robotd.core.errors import MapError, MissionError
+from robotd.core.pose import Pose2
+from robotd.grid.spec import GridSpec
+from robotd.hardware.devices.device import DeviceStatus, LinkState
+from robotd.localization.estimate import PoseEstimate, PoseState, Region
+from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
+from robotd.mission.lease import Lease
+from robotd.mission.modes import Mode
+from robotd.mission.requests import Mission
+from robotd.server.api import MapEntryInfo
+from robotd.server.server import Server, ServerSettings
+
+SPEC = GridSpec(0.05, -1.0, -2.0, (40, 60))
+
+
+class FakeControl:
+    """A robot whose missions are three readings long and wait at the end until ``release`` is set."""
+
+    def __init__(self) -> None:
+        self.events: Broadcast[Event] = Broadcast()
+        self.calls: list[str] = []
+        self.release = asyncio.Event()
+        self.release.set()
+        self.arming = asyncio.Event()
+        self.arming.set()
+        self.begun = asyncio.Event()
+        self.armed = False
+        self.map_in_use: MapChanged | None = None
+        self.config_text = "[server]\nlease_s = 0.5\n"
+        self.mission_id = 0
+        self.leases_s: list[float] = []
+        self.asked: list[Mission] = []
+        self._mission: asyncio.Task[None] | None = None
+        self._lease: Lease | None = None
+        self._recording: str | None = None
+        self._stop_reason = ""
+
+    @property
+    def is_busy(self) -> bool:
+        return self._mission is not None and not self._mission.done()
+
+    @property
+    def status(self) -> Status:
+        return Status(
+            time_ns=now_ns(),
+            mode=Mode.IDLE if self.armed else Mode.DISARMED,
+            reason="fake",
+            devices=(DeviceStatus("drive", LinkState.READY, armed=self.armed, counters=(("frames", 7),)),),
+            battery_v=24.5,
+            bumpers_rad=(0.5,),
+            mission_id=self.mission_id if self.is_busy else None,
+            map_id=None,
+            map_name=None,
+            recording=self._recording,
+        )
+
+    async def arm(self) -> None:
+        self.calls.append("arm")
+        await self.arming.wait()
+        self.armed = True
+
+    async def disarm(self) -> None:
+        self.calls.append("disarm")
+        self.armed = False
+
+    async def stop(self, reason: str) -> None:
+        self.calls.append(f"stop: {reason}")
+        self.armed = False
+        self._stop_reason = reason
+        if self._mission is not None:
+            self._mission.cancel()
+            await asyncio.wait((self._mission,))
+
+    async def clear(self) -> None:
+        raise RuntimeError("a bug in the daemon")
+
+    def start(self, mission: Mission, lease_s: float) -> int:
+        if not self.armed or self.is_busy:
+            raise MissionError("not now")
+        self.calls.append("start")
+        self.asked.append(mission)
+        self.leases_s.append(lease_s)
+        self.mission_id += 1
+        self.begun.set()
+        self._lease = Lease(lease_s, self._lease_expired)
+        self._mission = asyncio.create_task(self._run(self.mission_id))
+        return self.mission_id
+
+    def renew(self, mission_id: int) -> None:
+        if not self.is_busy or mission_id != self.mission_id or self._lease is None:
+            raise MissionError(f"mission {mission_id} is not under way")
+        self._lease.renew()
+
+    def whole_map(self) -> MapChanged:
+        if self.map_in_use is None:
+            raise MapError("no map in use")
+        return self.map_in_use
+
+    async def stored_map(self, name: str, version: int | None) -> MapChanged:
+        if name != "office":
+            raise MapError(f"there is no map {name!r}")
+        return whole_map(generation=0, map_id=f"office-{version or 3}")
+
+    async def save_map(self, name: str | None) -> MapEntryInfo:
+        self.calls.append(f"save {name}")
+        return MapEntryInfo(name or "unnamed", 4, "d1", 5, 40, 60, 0.05)
+
+    async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntryInfo:
+        self.calls.append(f"load {name} {version} {robot_in_map}")
+        return MapEntryInfo(name, version or 3, "d2", 6, 40, 60, 0.05)
+
+    async def list_maps(self) -> tuple[MapEntryInfo, ...]:
+        return (MapEntryInfo("office", 3, "d2", 6, 40, 60, 0.05),)
+
+    async def start_recording(self, path: str | None) -> str:
+        self._recording = path or "robot.mcap"
+        return self._recording
+
+    async def stop_recording(self) -> str | None:
+        path, self._recording = self._recording, None
+        return path
+
+    async def close(self) -> None:
+        if self._mission is not None:
+            self._mission.cancel()
+            await asyncio.wait((self._mission,))
+
+    def _lease_expired(self) -> None:
+        self._stop_reason = "lease expired"
+        if self._mission is not None:
+            self._mission.cancel()
+
+    def _progress(self, mission_id: int, phase: MissionPhase, message: str = "") -> None:
+        self.events.publish(MissionProgress(now_ns(), mission_id, "localize", phase, 0, 1, message))
+
+    async def _run(self, mission_id: int) -> None:
+        try:
+            self._progress(mission_id, MissionPhase.STARTED)
+            for taken in (1, 2, 3):
+                self.events.publish(SweepProgress(now_ns(), 0, taken, 3, taken, 0, 0))
+            await self.release.wait()
+            self.events.publish(an_estimate(PoseState.LOCALIZED))
+            self._progress(mission_id, MissionPhase.DONE, "found")
+        except asyncio.CancelledError:
+            self._progress(mission_id, MissionPhase.STOPPED, self._stop_reason)
+            raise
+        finally:
+            if self._lease is not None:
+                self._lease.end()
+
+
+def an_estimate(state: PoseState, time_ns: int = 9) -> PoseEstimate:
+    """A pose as a robot would publish it."""
+    region = Region(Pose2(1.0, 2.0, 0.25), 0.9, 1.1, 1.9, 2.1, 12, 280)
+    return PoseEstimate(time_ns, state, Pose2(1.0, 2.0, 0.25), (region,), 280, 300, True, "d1")
+
+
+def whole_map(generation: int, map_id: str = "d1", spec: GridSpec = SPEC) -> MapChanged:
+    """A map of noise, which does not compress."""
+    cells = np.random.default_rng(generation).integers(0, 256, spec.shape, dtype=np.uint8)
+    return MapChanged(1, map_id, generation, spec, True, np.empty(0, dtype=np.intp), cells)
+
+
+@pytest.fixture
+def make_map() -> Callable[..., MapChanged]:
+    """The function above, for the tests."""
+    return whole_map
+
+
+@pytest.fixture
+def make_estimate() -> Callable[..., PoseEstimate]:
+    """The function above, for the tests."""
+    return an_estimate
+
+
+@pytest.fixture
+def make_control() -> type[FakeControl]:
+    """The fake, to be made inside a running loop."""
+    return FakeControl
+
+
+Serving = Callable[..., AbstractAsyncContextManager[FakeControl]]
+
+
+@pytest.fixture
+def serving(tmp_path: Path) -> Serving:
+    """``async with serving(lease_s=...) as control``: a server on ``tmp_path`` for the length of the block."""
+
+    @contextlib.asynccontextmanager
+    async def serve(control: FakeControl | None = None, **settings: float) -> AsyncIterator[FakeControl]:
+        control = FakeControl() if control is None else control
+        server = Server(ServerSettings(runtime_dir=str(tmp_path), **settings), control)  # type: ignore[arg-type]  # ints and floats by keyword
+        task = asyncio.create_task(server.run())
+        await asyncio.wait((task, asyncio.create_task(server.serving.wait())), return_when=asyncio.FIRST_COMPLETED)
+        try:
+            if task.done():
+                task.result()
+            yield control
+        finally:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+            await control.close()
+
+    return serve

@@ -1,0 +1,207 @@
+"""The clients' common core, without a socket: repeats, deadlines, gaps, leases."""
+
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robotd.core.errors import MissionError, RemoteProtocolError, RequestTimeout, ServerError
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.events import MissionPhase, MissionProgress, SweepProgress
+from robotd.server import api
+from robotd.server.envelope import Request, decode_request, encode_error, encode_result
+from robotd.server.exchange import Exchanges
+from robotd.server.feed import Feed, Gap, as_topics
+from robotd.server.mission_run import MissionRun, final_estimate
+from robotd.server.topics import LogEntry, Topic, encode_frame, to_wire
+
+
+def exchanges(deadline_s: float | None = None) -> Exchanges:
+    return Exchanges(retry_s=0.5, deadline_s=deadline_s)
+
+
+def test_a_request_is_repeated_under_its_number_until_the_deadline() -> None:
+    exchange = exchanges().begin(api.GetStatus(), 100.0)
+    sent = [(now_s, exchange.due(now_s)) for now_s in (100.0, 100.2, 100.5, 100.9, 101.0)]
+    assert [now_s for now_s, data in sent if data] == [100.0, 100.5, 101.0]
+    assert len({data for _, data in sent if data}) == 1
+    with pytest.raises(RequestTimeout, match="status"):
+        exchange.due(100.0 + api.GetStatus.deadline_s)
+
+
+def test_the_wait_ends_with_the_next_repeat_or_the_deadline() -> None:
+    exchange = exchanges(deadline_s=0.7).begin(api.GetStatus(), 0.0)
+    assert exchange.wait_s(0.0) == 0.0
+    exchange.due(0.0)
+    assert exchange.wait_s(0.1) == pytest.approx(0.4)
+    exchange.due(0.5)
+    assert exchange.wait_s(0.5) == pytest.approx(0.2)
+    assert exchange.wait_s(9.0) == 0.0
+
+
+def test_answers_find_their_requests_in_any_order() -> None:
+    book = exchanges()
+    first, second = book.begin(api.RecordStop(), 0.0), book.begin(api.RecordStop(), 0.0)
+    book.accept(encode_result(second.id, api.RecordingFile("b")))
+    assert (first.is_answered, second.is_answered) == (False, True)
+    book.accept(encode_result(first.id, api.RecordingFile(None)))
+    assert (first.result().path, second.result().path) == (None, "b")
+
+
+def test_the_answer_to_a_repeat_is_let_go() -> None:
+    book = exchanges()
+    exchange = book.begin(api.Arm(), 0.0)
+    book.accept(encode_result(exchange.id, api.Done()))
+    book.end(exchange)
+    assert book.accept(encode_result(exchange.id, api.Done())) is None
+
+
+def test_a_refusal_is_raised_with_its_code() -> None:
+    book = exchanges()
+    exchange = book.begin(api.Arm(), 0.0)
+    book.accept(encode_error(exchange.id, ServerError("refused", "a fault is latched")))
+    with pytest.raises(ServerError, match="a fault is latched") as caught:
+        exchange.result()
+    assert caught.value.code == "refused"
+
+
+def test_a_refusal_without_number_is_raised_at_once() -> None:
+    with pytest.raises(ServerError, match="malformed"):
+        exchanges().accept(encode_error(None, ServerError("malformed", "what?")))
+
+
+def test_an_answer_of_another_shape_is_the_servers_fault() -> None:
+    book = exchanges()
+    exchange = book.begin(api.Hello(), 0.0)
+    book.accept(encode_result(exchange.id, api.Done()))
+    with pytest.raises(RemoteProtocolError, match="hello"):
+        exchange.result()
+
+
+def test_requests_are_numbered_apart() -> None:
+    book = exchanges()
+    sent = [decode_request(book.begin(api.Arm(), 0.0).due(0.0) or b"", 1000) for _ in range(3)]
+    assert len({request.id for request in sent if isinstance(request, Request)}) == 3
+
+
+def frame(seq: int, session: str = "s", topic: Topic = Topic.LOG) -> bytes:
+    return encode_frame(topic, session, seq, to_wire(LogEntry(seq, "INFO", "robotd", ""))[1])
+
+
+def entry(seq: int) -> LogEntry:
+    return LogEntry(seq, "INFO", "robotd", "")
+
+
+def test_a_feed_may_begin_anywhere() -> None:
+    assert Feed().accept(frame(17)) == [entry(17)]
+
+
+def test_a_gap_is_announced_before_what_follows_it() -> None:
+    feed = Feed()
+    feed.accept(frame(1))
+    assert feed.accept(frame(4)) == [Gap("log", 2), entry(4)]
+    assert feed.accept(frame(5)) == [entry(5)]
+
+
+def test_what_was_seen_is_not_told_again() -> None:
+    feed = Feed()
+    feed.accept(frame(3))
+    assert feed.accept(frame(3)) == []
+    assert feed.accept(frame(4)) == [entry(4)]
+
+
+def test_topics_are_counted_apart() -> None:
+    feed = Feed()
+    feed.accept(frame(3))
+    assert feed.accept(frame(9, topic=Topic.STATUS)) == [entry(9)]
+
+
+def test_a_new_daemon_is_a_gap_of_unknown_length() -> None:
+    feed = Feed()
+    feed.accept(frame(30))
+    assert feed.accept(frame(0, "later")) == [Gap("log", None), entry(0)]
+
+
+def test_an_unknown_event_still_counts() -> None:
+    feed = Feed()
+    feed.accept(frame(1))
+    assert feed.accept(encode_frame(Topic.LOG, "s", 2, {"event": "of the future"})) == []
+    assert feed.accept(frame(3)) == [entry(3)]
+
+
+@given(st.lists(st.integers(0, 30), max_size=30))
+@settings(max_examples=60)
+def test_a_feed_is_increasing_and_its_gaps_add_up(numbers: list[int]) -> None:
+    feed = Feed()
+    seen: list[Any] = [item for seq in numbers for item in feed.accept(frame(seq))]
+    told = [item.time_ns for item in seen if isinstance(item, LogEntry)]
+    assert told == sorted(set(told))
+    if told:
+        missed = sum(item.missed or 0 for item in seen if isinstance(item, Gap))
+        assert len(told) + missed == told[-1] - told[0] + 1
+
+
+def test_no_topic_named_means_all() -> None:
+    assert as_topics(()) == tuple(Topic)
+    assert as_topics(("pose", "log")) == (Topic.POSE, Topic.LOG)
+    with pytest.raises(ValueError, match="smell"):
+        as_topics(("smell",))
+
+
+def progress(phase: MissionPhase, mission_id: int = 7) -> MissionProgress:
+    return MissionProgress(1, mission_id, "map", phase, 0, 1, "because")
+
+
+def a_run() -> MissionRun:
+    return MissionRun(api.MissionStarted(7, 0.4), 0.0)
+
+
+def test_a_lease_is_renewed_well_before_it_runs_out() -> None:
+    run, renewals, now_s = a_run(), 0, 0.0
+    while now_s < 4.0:
+        if run.is_due(now_s):
+            run.renewed(api.Renewed(progress(MissionPhase.SWEEPING)), now_s)
+            renewals += 1
+        now_s += max(0.001, run.wait_s(now_s))
+    assert 30 <= renewals <= 41
+
+
+def test_a_mission_ends_with_its_own_message_only() -> None:
+    run = a_run()
+    told = [(run.accept(progress(MissionPhase.DONE, mission_id)), run.is_over) for mission_id in (6, 7)]
+    assert told == [(None, False), (progress(MissionPhase.DONE), True)]
+    run.check()
+
+
+def test_what_was_published_before_the_mission_is_not_told() -> None:
+    run, sweep = a_run(), SweepProgress(1, 0, 1, 3, 1, 0, 0)
+    told = [run.accept(event) for event in (sweep, progress(MissionPhase.STARTED), sweep, entry(1), Gap("pose", 1))]
+    assert told == [None, progress(MissionPhase.STARTED), sweep, None, None]
+
+
+@pytest.mark.parametrize("phase", [MissionPhase.STOPPED, MissionPhase.FAILED])
+def test_a_mission_that_was_not_done_says_why(phase: MissionPhase) -> None:
+    run = a_run()
+    run.accept(progress(phase))
+    with pytest.raises(MissionError, match=f"map {phase}: because"):
+        run.check()
+
+
+def test_an_end_known_from_a_renewal_waits_for_messages_under_way_then_counts() -> None:
+    run = a_run()
+    run.renewed(api.Renewed(progress(MissionPhase.DONE)), 1.0)
+    assert not run.is_due(9.0)
+    told = [(run.overdue(now_s), run.is_over) for now_s in (1.1, 1.3, 1.4)]
+    assert told == [(None, False), (progress(MissionPhase.DONE), True), (None, True)]
+
+
+def test_only_a_final_estimate_is_an_answer() -> None:
+    def estimate(state: PoseState, rank: int, *, final: bool) -> PoseEstimate:
+        return PoseEstimate(1, state, None, (), rank, 300, final, "d")
+
+    answer = estimate(PoseState.LOST, 2, final=True)
+    others = [estimate(PoseState.LOCALIZED, 1, final=False), estimate(PoseState.PREDICTED, 3, final=True)]
+    assert final_estimate([others[0], answer, others[1]]) is answer
+    with pytest.raises(MissionError):
+        final_estimate([*others])

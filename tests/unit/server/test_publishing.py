@@ -1,0 +1,127 @@
+"""What is thinned out, what is kept, and what becomes of maps that come too fast."""
+
+import asyncio
+import logging
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from robotd.core.broadcast import Broadcast
+from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, SweepProgress
+from robotd.server.decimation import Decimator
+from robotd.server.log_relay import relay_log
+from robotd.server.map_queue import MapQueue
+from robotd.server.outcomes import Outcomes
+from robotd.server.replies import Replies
+from robotd.server.topics import LogEntry
+
+MS = 1_000_000
+
+
+def odometry(time_ns: int) -> Odometry:
+    return Odometry(time_ns, IDENTITY, STANDSTILL)
+
+
+def test_odometry_is_thinned_to_the_rate() -> None:
+    decimator = Decimator(20.0)
+    passed = [time_ns for time_ns in range(0, 1000 * MS, 10 * MS) if decimator.passes(odometry(time_ns))]
+    assert passed == list(range(0, 1000 * MS, 50 * MS))
+
+
+def test_time_that_steps_back_starts_anew() -> None:
+    decimator = Decimator(20.0)
+    assert [decimator.passes(odometry(time_ns)) for time_ns in (900 * MS, 0, 10 * MS)] == [True, True, False]
+
+
+def test_the_last_reading_of_a_sweep_is_never_thinned_out() -> None:
+    decimator = Decimator(20.0)
+    passed = [taken for taken in range(1, 301) if decimator.passes(SweepProgress(taken * MS, 0, taken, 300, 0, 0, 0))]
+    assert passed[-1] == 300
+    assert len(passed) == 7
+
+
+def test_estimates_are_thinned_only_while_they_are_predicted(make_estimate: Callable[..., PoseEstimate]) -> None:
+    decimator = Decimator(20.0)
+    for state in PoseState:
+        passed = [decimator.passes(make_estimate(state, time_ns)) for time_ns in (1, 2, 3)]
+        assert passed == ([True, False, False] if state is PoseState.PREDICTED else [True, True, True])
+
+
+def change(generation: int, make_map: Callable[..., MapChanged]) -> MapChanged:
+    part = {"whole": False, "cells": np.array([1], dtype=np.intp), "values": np.array([2], dtype=np.uint8)}
+    return replace(make_map(generation), **part)  # type: ignore[arg-type]  # mypy cannot see through the dict
+
+
+async def test_changes_of_a_map_leave_in_order(make_map: Callable[..., MapChanged]) -> None:
+    queue = MapQueue()
+    changes = [change(generation, make_map) for generation in range(3)]
+    for item in changes:
+        queue.put(item)
+    assert [await queue.get() for _ in range(3)] == changes
+
+
+async def test_too_many_changes_become_one_whole_map(make_map: Callable[..., MapChanged]) -> None:
+    queue = MapQueue()
+    for generation in range(100):
+        queue.put(change(generation, make_map))
+    assert await queue.get() is None
+    waiting = asyncio.create_task(queue.get())
+    await asyncio.sleep(0)
+    later = change(100, make_map)
+    queue.put(later)
+    assert await waiting is later
+
+
+async def test_a_whole_map_replaces_what_waits(make_map: Callable[..., MapChanged]) -> None:
+    queue = MapQueue()
+    whole = make_map(2)
+    queue.put(change(1, make_map))
+    queue.put(whole)
+    assert await queue.get() is whole
+
+
+async def test_the_outcome_of_a_mission_is_remembered() -> None:
+    events: Broadcast[Event] = Broadcast()
+    outcomes = Outcomes()
+    task = asyncio.create_task(outcomes.follow(events))
+    await asyncio.sleep(0)
+    for mission_id in range(1, 31):
+        for phase in (MissionPhase.STARTED, MissionPhase.DONE):
+            events.publish(MissionProgress(1, mission_id, "map", phase, 0, 1))
+    await asyncio.sleep(0)
+    latest = outcomes.latest(30)
+    assert latest is not None
+    assert latest.phase is MissionPhase.DONE
+    assert outcomes.latest(1) is None
+    task.cancel()
+
+
+def test_replies_are_forgotten_oldest_first() -> None:
+    replies = Replies(2)
+    for number in range(3):
+        replies.begin((b"a", number))
+        assert replies.is_under_way((b"a", number))
+        replies.end((b"a", number), b"%d" % number)
+    assert [replies.given((b"a", number)) for number in range(3)] == [None, b"1", b"2"]
+    assert replies.given((b"b", 1)) is None
+
+
+async def test_the_log_is_relayed_from_any_thread() -> None:
+    lines: list[LogEntry] = []
+    logger = logging.getLogger("robotd.somewhere")
+    logger.setLevel(logging.INFO)
+    with relay_log(lines.append):
+        logger.info("number %d", 1)
+        logger.debug("unheard")
+        await asyncio.get_running_loop().run_in_executor(None, logger.warning, "x" * 9000)
+        await asyncio.sleep(0.01)
+    logger.info("too late")
+    await asyncio.sleep(0.01)
+    assert [(line.level, line.logger, line.message[:10]) for line in lines] == [
+        ("INFO", "robotd.somewhere", "number 1"),
+        ("WARNING", "robotd.somewhere", "x" * 10),
+    ]
+    assert len(lines[1].message) == 2000
