@@ -21,8 +21,6 @@ UNITS = {
     "ms": "milliseconds",
     "us": "microseconds",
     "ns": "nanoseconds",
-    "min": "minutes",
-    "h": "hours",
     "hz": "hertz",
     "khz": "kilohertz",
     "mps": "metres per second",
