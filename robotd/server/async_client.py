@@ -1,9 +1,10 @@
 """A client for programs with an event loop.
 
->>> async def main() -> None:
-...     async with AsyncClient() as robot:
-...         await robot.arm()
-...         print(await robot.localize())
+::
+
+    async with AsyncClient() as robot:
+        await robot.arm()
+        print(await robot.localize())
 """
 
 import asyncio
@@ -153,7 +154,7 @@ class AsyncClient:
             MissionError: it was stopped, or it failed.
         """
         async with self._follow(MISSION_TOPICS) as events:
-            run = MissionRun(await self.start(mission, lease_s), _now_s())
+            run = MissionRun(await self._start_or_stop(mission, lease_s), _now_s())
             lease = asyncio.create_task(self._keep_lease(run), name=f"lease of mission {run.mission_id}")
             try:
                 while not run.is_over:
@@ -263,6 +264,15 @@ class AsyncClient:
                 if event is None:
                     raise RequestTimeout("no status from robotd")
             yield events
+
+    async def _start_or_stop(self, mission: Mission, lease_s: float | None) -> api.MissionStarted:
+        try:
+            return await self.start(mission, lease_s)
+        except Exception:
+            raise
+        except BaseException:  # interrupted: the mission may be under way though nobody heard its number
+            await self._abandon()
+            raise
 
     async def _abandon(self) -> None:
         """Stop the robot; if even that is not answered, the lease runs out."""

@@ -1,8 +1,10 @@
 """A client for programs without an event loop.
 
->>> with Client() as robot:                               # doctest: +SKIP
-...     robot.arm()
-...     print(robot.localize())
+::
+
+    with Client() as robot:
+        robot.arm()
+        print(robot.localize())
 """
 
 import contextlib
@@ -153,7 +155,7 @@ class Client:
             MissionError: it was stopped, or it failed.
         """
         with self._follow(MISSION_TOPICS) as events:
-            run = MissionRun(self.start(mission, lease_s), _now_s())
+            run = MissionRun(self._start_or_stop(mission, lease_s), _now_s())
             try:
                 yield from self._follow_run(run, events)
             finally:
@@ -243,6 +245,15 @@ class Client:
                 if event is None:
                     raise RequestTimeout("no status from robotd")
             yield events
+
+    def _start_or_stop(self, mission: Mission, lease_s: float | None) -> api.MissionStarted:
+        try:
+            return self.start(mission, lease_s)
+        except Exception:
+            raise
+        except BaseException:  # interrupted: the mission may be under way though nobody heard its number
+            self._abandon()
+            raise
 
     def _abandon(self) -> None:
         """Stop the robot; if even that is not answered, the lease runs out."""

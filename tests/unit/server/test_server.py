@@ -246,13 +246,21 @@ async def test_a_plain_req_socket_is_served(serving: Serving, tmp_path: Path) ->
 
 async def test_a_second_daemon_is_refused_and_told_who_was_first(serving: Serving, tmp_path: Path) -> None:
     async with serving(), AsyncClient(tmp_path) as client:
-        second = Server(ServerSettings(runtime_dir=str(tmp_path)), await_nothing())
+        second = Server(ServerSettings(runtime_dir=str(tmp_path)), unreached_control())
         with pytest.raises(TransportError, match=rf"another robotd \(process {os.getpid()}\)"):
             await second.run()
         assert (await client.hello()).versions == (1,)
 
 
-def await_nothing() -> Any:
+def names_in(directory: Path) -> list[str]:
+    return sorted(path.name for path in directory.iterdir())
+
+
+def mode_of(path: Path) -> int:
+    return stat.S_IMODE(path.stat().st_mode)
+
+
+def unreached_control() -> Any:
     """Return a control that is never reached."""
     return object()
 
@@ -269,27 +277,27 @@ async def test_the_lock_of_a_killed_daemon_is_free_and_its_sockets_are_replaced(
         "os.kill(os.getpid(), 9)\n"
     )
     await asyncio.to_thread(subprocess.run, [sys.executable, "-c", script, str(tmp_path)], check=False)
-    assert len(os.listdir(tmp_path)) == 4
+    assert names_in(tmp_path) == ["commands.sock", "maps.sock", "robotd.lock", "state.sock"]
     async with serving(), AsyncClient(tmp_path) as client:
         assert (await client.hello()).versions == (1,)
-    assert os.listdir(tmp_path) == ["robotd.lock"]
+    assert names_in(tmp_path) == ["robotd.lock"]
 
 
 async def test_sockets_are_for_the_group_only(serving: Serving, tmp_path: Path) -> None:
     async with serving():
-        modes = [stat.S_IMODE(os.stat(path).st_mode) for path in Endpoints(tmp_path).paths]
+        modes = [mode_of(path) for path in Endpoints(tmp_path).paths]
     assert modes == [0o770] * 3
 
 
 def test_a_path_too_long_for_a_socket_is_refused_at_once(tmp_path: Path) -> None:
     with pytest.raises(TransportError, match="107"):
-        Server(ServerSettings(runtime_dir=str(tmp_path / ("x" * 100))), await_nothing())
+        Server(ServerSettings(runtime_dir=str(tmp_path / ("x" * 100))), unreached_control())
 
 
 async def test_a_runtime_directory_that_cannot_be_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(TransportError, match="file/run"):
-        await Server(ServerSettings(runtime_dir=str(tmp_path / "file" / "run")), await_nothing()).run()
+        await Server(ServerSettings(runtime_dir=str(tmp_path / "file" / "run")), unreached_control()).run()
 
 
 async def test_a_restart_shows_as_a_gap_and_clients_stay(serving: Serving, tmp_path: Path) -> None:
