@@ -10,7 +10,7 @@ _COUNTER_SPAN = 1 << 32
 
 
 class Odometer:
-    """Integrates counts. Each step is taken along the heading in its middle, exact for a constant arc to third order.
+    """Integrates counts: from one report to the next the base is taken to follow an arc.
 
     The pose goes on from where it was when a board restarts and its counts with it: how far the base moved
     unseen cannot be known, and a jump would be worse.
@@ -29,10 +29,11 @@ class Odometer:
             return self.in_odom
         way_m = _gained(seen[1], translate_counts) / self._calibration.counts_per_m
         turn_rad = _gained(seen[2], rotate_counts) / self._calibration.counts_per_rad
-        middle_rad = self.in_odom.heading_rad + turn_rad / 2
+        half_rad = turn_rad / 2
+        chord_m = way_m * math.sin(half_rad) / half_rad if half_rad else way_m
         self.in_odom = Pose2(
-            self.in_odom.x_m + way_m * math.cos(middle_rad),
-            self.in_odom.y_m + way_m * math.sin(middle_rad),
+            self.in_odom.x_m + chord_m * math.cos(self.in_odom.heading_rad + half_rad),
+            self.in_odom.y_m + chord_m * math.sin(self.in_odom.heading_rad + half_rad),
             wrap_rad(self.in_odom.heading_rad + turn_rad),
         )
         return self.in_odom
