@@ -95,14 +95,14 @@ def _links(directory: Path, paths: dict[str, str]) -> Iterator[dict[str, str]]:
     """Keep links ``directory/device`` to the paths; links of an earlier run are replaced."""
     links = {device: directory / device for device in paths}
     try:
-        directory.mkdir(parents=True, exist_ok=True)
-        for device, link in links.items():
-            if link.is_symlink():
-                link.unlink()
-            link.symlink_to(paths[device])
-    except OSError as error:
-        raise TransportError(f"{directory}: cannot link the devices: {error.strerror}") from error
-    try:
+        try:
+            directory.mkdir(parents=True, exist_ok=True)
+            for device, link in links.items():
+                if link.is_symlink():
+                    link.unlink()
+                link.symlink_to(paths[device])
+        except OSError as error:
+            raise TransportError(f"{directory}: cannot link the devices: {error.strerror}") from error
         yield {device: str(link) for device, link in links.items()}
     finally:
         for device, link in links.items():

@@ -56,19 +56,20 @@ def ray_cast(
         distance = (to_start[:, 0] * along[:, 1] - to_start[:, 1] * along[:, 0]) / cross
         share = (to_start[:, 0] * sin - to_start[:, 1] * cos) / cross
     met = (distance >= 0.0) & (share >= -_ON_THE_WALL) & (share <= 1.0 + _ON_THE_WALL)
-    for index in np.flatnonzero(cross == 0.0):
-        met[index], distance[index] = _meet_edge_on(to_start[index], along[index], np.array((cos, sin)))
+    edge_on = cross == 0.0
+    if np.any(edge_on):
+        met[edge_on], distance[edge_on] = _meet_edge_on(to_start[edge_on], along[edge_on], np.array((cos, sin)))
     met &= eye_height_m + climb * np.where(met, distance, 0.0) <= walls.heights_m
     return float(np.min(distance, where=met, initial=np.inf))
 
 
 def _meet_edge_on(
     to_start: NDArray[np.float64], along: NDArray[np.float64], unit: NDArray[np.float64]
-) -> tuple[bool, float]:
-    """Return whether a wall parallel to the ray lies in its line ahead, and how far its nearer end is."""
-    near_m, far_m = sorted((float(to_start @ unit), float((to_start + along) @ unit)))
-    in_line = bool(to_start[0] * along[1] == to_start[1] * along[0])
-    return in_line and far_m >= 0.0, max(0.0, near_m)
+) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Return which walls parallel to the ray lie in its line ahead, and how far their nearer ends are."""
+    one_m, other_m = to_start @ unit, (to_start + along) @ unit
+    in_line = to_start[:, 0] * along[:, 1] == to_start[:, 1] * along[:, 0]
+    return in_line & (np.maximum(one_m, other_m) >= 0.0), np.maximum(0.0, np.minimum(one_m, other_m))
 
 
 def nearest_points(walls: Walls, point_m: Point) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
