@@ -5,8 +5,15 @@ from pathlib import Path
 
 
 def holder_of(path: str) -> str | None:
-    """Return ``pid 123 (name)`` of a process that has ``path`` open, or None if none can be seen."""
-    pid = _locking_pid(path) or _opening_pid(path)
+    """Return ``pid 123 (name)`` of a process that has ``path`` open, or None if none can be seen.
+
+    A sandbox may hide other processes, or the table of locks.
+    """
+    try:
+        pid = _locking_pid(path)
+    except OSError:
+        pid = None
+    pid = pid or _opening_pid(path)
     return None if pid is None else f"pid {pid} ({_name(pid)})"
 
 

@@ -1,13 +1,17 @@
 """What only a real terminal can get wrong."""
 
 import asyncio
+import fcntl
 import os
 import resource
+from array import array
 from pathlib import Path
 
 import pytest
 
 from robotd.core.errors import TransportError
+from robotd.hardware.transport import holder, serial_port
+from robotd.hardware.transport.descriptor import DescriptorTransport
 from robotd.hardware.transport.pty import PtyEnd, open_pty
 from robotd.hardware.transport.serial_port import open_serial
 
@@ -86,6 +90,44 @@ async def test_a_port_in_use_is_refused_and_its_holder_named() -> None:
     first.close()
     await exchange(board)
     board.close()
+
+
+TIOCGEXCL = 0x80045440
+
+
+def is_exclusive(line: DescriptorTransport) -> bool:
+    answer = array("i", [0])
+    fcntl.ioctl(line._descriptor, TIOCGEXCL, answer)
+    return bool(answer[0])
+
+
+async def test_a_real_port_is_closed_to_everybody_and_a_pty_stays_open_after_its_holder_was_killed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    board = open_pty()
+    as_pty = await open_serial(board.path, 115200)
+    assert not is_exclusive(as_pty)
+    as_pty.close()
+    monkeypatch.setattr(serial_port, "_PTY_SLAVE_MAJORS", range(0))
+    as_port = await open_serial(board.path, 115200)
+    assert is_exclusive(as_port)
+    as_port.close()
+    board.close()
+
+
+async def test_without_a_view_of_the_locks_the_holder_is_still_found_by_its_descriptor(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def hidden(path: str) -> int:
+        raise PermissionError(path)
+
+    monkeypatch.setattr(holder, "_locking_pid", hidden)
+    board = open_pty()
+    line = await open_serial(board.path, 115200)
+    assert (holder.holder_of(board.path) or "").startswith(f"pid {os.getpid()} (")
+    line.close()
+    board.close()
+    assert holder.holder_of(board.path) is None
 
 
 async def test_a_missing_port_is_a_transport_error() -> None:
