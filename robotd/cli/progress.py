@@ -3,10 +3,10 @@
 from types import TracebackType
 from typing import Self
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn
 
 from robotd.cli.terminal import err
-from robotd.cli.wording import estimate_in_words, mission_in_words
+from robotd.cli.wording import counts_in_words, estimate_in_short, mission_in_words
 from robotd.localization.estimate import PoseEstimate
 from robotd.mission.events import MissionPhase, MissionProgress, SweepProgress
 from robotd.server.topics import Published
@@ -17,12 +17,10 @@ class MissionBars:
 
     def __init__(self) -> None:
         self._progress = Progress(
-            SpinnerColumn(),
-            TextColumn("{task.description}"),
-            BarColumn(),
+            TextColumn("{task.description}", markup=False),
+            BarColumn(bar_width=14),
             MofNCompleteColumn(),
-            TextColumn("{task.fields[note]}"),
-            TimeElapsedColumn(),
+            TextColumn("{task.fields[note]}", markup=False),
             console=err(),
         )
         self._mission: TaskID | None = None
@@ -44,7 +42,7 @@ class MissionBars:
             case SweepProgress():
                 self._reading(event)
             case PoseEstimate():
-                self._pose = estimate_in_words(event)
+                self._pose = estimate_in_short(event)
                 if self._mission is not None:
                     self._progress.update(self._mission, note=self._pose)
 
@@ -52,14 +50,17 @@ class MissionBars:
         if self._mission is None:
             self._mission = self._progress.add_task(step.kind, total=step.stops, note="")
         finished = step.stops if step.phase is MissionPhase.DONE else step.stop
-        self._progress.update(self._mission, completed=finished, description=f"{step.kind}: {step.phase}")
+        self._progress.update(self._mission, completed=finished, description=f"{step.kind}: {step.phase}".ljust(19))
         if step.message:
             self._progress.console.print(mission_in_words(step), markup=False)
 
     def _reading(self, sweep: SweepProgress) -> None:
-        counts = f"{sweep.hits} hits, {sweep.misses} misses, {sweep.rejected} rejected"
         if self._sweep is None:
             self._sweep = self._progress.add_task("sweep", total=sweep.total, note="")
         self._progress.update(
-            self._sweep, description=f"sweep {sweep.number}", total=sweep.total, completed=sweep.taken, note=counts
+            self._sweep,
+            description=f"sweep {sweep.number}",
+            total=sweep.total,
+            completed=sweep.taken,
+            note=counts_in_words(sweep),
         )

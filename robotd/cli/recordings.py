@@ -2,8 +2,9 @@
 
 import argparse
 from dataclasses import asdict
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from robotd.cli.connection import connect
 from robotd.cli.terminal import complain, out, print_json, print_pairs
@@ -11,6 +12,9 @@ from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.clock import NS_PER_S
 from robotd.recording.entries import BytesEntry
 from robotd.recording.reader import Recording, read
+
+if TYPE_CHECKING:
+    from robotd.app import ReplayReport
 
 
 def _start(arguments: argparse.Namespace) -> int:
@@ -39,10 +43,25 @@ def _info(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json({"file": str(arguments.file), **facts})
     else:
-        print_pairs((name.replace("_", " "), value) for name, value in facts.items() if name != "damage")
+        _print_facts(facts)
         if recording.damage:
             complain(f"{arguments.file}: damaged: {recording.damage}")
     return OK if recording.complete else FAILED
+
+
+def _print_facts(facts: dict[str, Any]) -> None:
+    started = datetime.fromtimestamp(facts["started_unix_ns"] // NS_PER_S, UTC)
+    devices = ", ".join(facts["devices"]) or "no device"
+    print_pairs(
+        [
+            ("made by", f"robotd {facts['robotd_version']}"),
+            ("began", f"{started:%Y-%m-%d %H:%M:%S} UTC"),
+            ("lasts", f"{facts['duration_s']:.1f} s"),
+            ("holds", f"{facts['entries']} entries, {facts['line_bytes']} bytes of {devices}"),
+            ("results", facts["results"]),
+            ("whole", "yes" if facts["complete"] else "no"),
+        ]
+    )
 
 
 def _facts(recording: Recording) -> dict[str, Any]:
@@ -70,11 +89,16 @@ def _replay(arguments: argparse.Namespace) -> int:
     else:
         for difference in report.differences:
             out().print(str(difference), markup=False)
-        extent = "" if report.complete else ", up to where the recording is damaged"
-        verdict = f"{len(report.differences)} differences" if report.differences else "the same"
-        out().print(f"{report.results} results in {report.duration_s:.1f} s: {verdict}{extent}", markup=False)
+        out().print(_verdict(report), markup=False)
         out().print(f"digest {report.digest}", markup=False)
     return FAILED if report.differences else OK
+
+
+def _verdict(report: "ReplayReport") -> str:
+    count = len(report.differences)
+    verdict = "the same" if not count else f"{count} difference{'s' * (count > 1)}"
+    extent = "" if report.complete else ", up to where the recording is damaged"
+    return f"{report.results} results in {report.duration_s:.1f} s of recording: {verdict}{extent}"
 
 
 def _file(parser: argparse.ArgumentParser) -> None:

@@ -55,6 +55,26 @@ def estimate_in_words(estimate: PoseEstimate) -> str:
     return f"{estimate.state} ({support}{so_far})"
 
 
+def estimate_in_short(estimate: PoseEstimate) -> str:
+    """Return an estimate in less than half a line.
+
+    >>> lost = PoseEstimate(0, PoseState.LOST, None, (), 20, 100, final=False, map_id="")
+    >>> estimate_in_short(lost)
+    'lost, 20/100 explained'
+    """
+    support = f"{estimate.best_rank}/{estimate.readings}"
+    if estimate.best is not None:
+        return f"{estimate.state} ({estimate.best.x_m:.2f}, {estimate.best.y_m:.2f}) m"
+    if estimate.regions:
+        return f"{estimate.state}, {len(estimate.regions)} regions, {support}"
+    return f"{estimate.state}, {support} explained"
+
+
+def counts_in_words(sweep: SweepProgress) -> str:
+    """Return what the readings of a sweep came to."""
+    return f"{sweep.hits} hits, {sweep.misses} misses, {sweep.rejected} rejected"
+
+
 def sweep_in_words(sweep: SweepProgress) -> str:
     """Return how far a sweep has come."""
     return (
