@@ -217,6 +217,8 @@ class FakeBoard:
         self._improvised = None
         if isinstance(request, Aim):
             self._aim_seqs[meeting.asked.seq] = seq
+            # Until the next report, whoever asks must not hear what became of the Aim before.
+            self._last[AimReport] = _aimed(request, seq, self._now_us, Motion.TURNING)
         if meeting.asked.answered and not isinstance(request, _MADE_LIVE):
             self._open[meeting.place] = (request, seq, self._now_us)
             self._outbox.remember(request.TYPE, seq, b"")
@@ -227,8 +229,7 @@ class FakeBoard:
         """Answer what the recorded host never asked here, as a board in good health would."""
         self._reply(request, seq, self._plausible(request))
         if isinstance(request, Aim):
-            report = AimReport(self._now_us, request.pan_tenth_mrad, request.tilt_tenth_mrad, seq, Motion.DONE)
-            self._tell(report)
+            self._tell(_aimed(request, seq, self._now_us, Motion.DONE))
         elif isinstance(request, (Configure, *BOOKKEEPING)):
             before, self._improvised = self._improvised, _state_after(request)
             if BoardStatus in self._last and self._improvised != before:
@@ -295,6 +296,10 @@ def _outcome(answer: Message, came_us: int) -> Message | Result:
         case Shot():
             return replace(answer, board_us=came_us)
     return answer
+
+
+def _aimed(aim: Aim, seq: int, now_us: int, motion: Motion) -> AimReport:
+    return AimReport(now_us, aim.pan_tenth_mrad, aim.tilt_tenth_mrad, seq, motion)
 
 
 def _state_after(request: Message) -> tuple[BoardState, Fault]:

@@ -295,6 +295,22 @@ def test_motion_done_carries_the_seq_of_the_living_aim() -> None:
     assert board.finished
 
 
+def test_whoever_asks_during_a_motion_hears_of_this_motion() -> None:
+    tape = Tape("pantilt").opens().says(60, aim_report(0, 0, Motion.HALTED)).arms(600)
+    tape.asks(1000, Aim(100, 0, 900), 0).says(1001, Ack(Result.OK), 0, to=Aim)
+    tape.says(1050, aim_report(100, 0, Motion.DONE))
+    host = Host(tape.board(), BoardKind.PANTILT)
+    host.open()
+    host.ask(Arm())
+    host.wait(100)
+    assert host.ask(ReadAim()) == [AimReadback(host.now_us, 0, 0, 0, Motion.HALTED)]
+    host.ask(Aim(100, 0, 900))
+    host.wait(5)
+    assert host.ask(ReadAim()) == [AimReadback(host.now_us, 100, 0, 0, Motion.TURNING)]
+    host.wait(50)
+    assert host.ask(ReadAim()) == [AimReadback(host.now_us, 100, 0, 0, Motion.DONE)]
+
+
 def test_limits_are_answered_whenever_they_are_asked_for() -> None:
     host = Host(head_tape().board(), BoardKind.PANTILT)
     host.open()
