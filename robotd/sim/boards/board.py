@@ -94,7 +94,7 @@ class Board(ABC):
     def advance(self, now_us: int) -> None:
         """Let time pass; what falls due on the way happens in order, each at its own time."""
         while (due_us := self.next_event_us) is not None and due_us <= now_us:
-            self._pass_time(max(due_us, self._now_us))
+            self._pass_time(due_us)
         if now_us > self._now_us:
             self._pass_time(now_us)
 
@@ -199,7 +199,7 @@ class Board(ABC):
 
     def _answer_once(self, request: Message, seq: int) -> None:
         rule = RULES[type(request)]
-        if rule.deduplicated and self._outbox.repeat(request.TYPE, seq):
+        if self._outbox.repeat(request.TYPE, seq):
             return
         allowed = rule.allows(self._beneath, faulted=bool(self._faults))
         outcome = self._handlers[type(request)](request, seq) if allowed else Result.WRONG_STATE

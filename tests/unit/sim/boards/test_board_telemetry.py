@@ -65,8 +65,19 @@ def test_no_telemetry_before_configure() -> None:
 
 def test_a_new_hello_silences_telemetry() -> None:
     line = _configured()
-    line.send(Hello(1, 0, 2))
+    assert len(line.send(Hello(1, 0, 2))) == 1
+    assert line.board.next_event_us is None
     assert line.wait(9_000_000) == []
+    line.board.receive(KILL_BYTES, 9_000_000)
+    assert [one.message for one in line.heard()] == [Ack(0)]
+
+
+def test_a_new_session_counts_from_zero() -> None:
+    line = _configured()
+    line.wait(START_US + 5 * PERIOD_US)
+    line.send(Hello(1, 0, 2), at_us=START_US + 5 * PERIOD_US)
+    _, status = line.send(Configure(50, 500), at_us=START_US + 5 * PERIOD_US)
+    assert status.seq == 0
 
 
 def test_configure_is_followed_at_once_by_the_status_every_time() -> None:

@@ -191,6 +191,7 @@ def test_a_reboot_cuts_the_motors() -> None:
 def test_a_bumper_pressed_while_moving_cuts_and_latches_within_a_watch() -> None:
     base = Base(hits_at_us=START_US + 33_000)
     host = _drive(base)
+    host.wait(3)  # the watch keeps its own grid
     host.say(SetVelocity(300, 0, 250))
     report, status = host.wait(100)
     assert report == DriveReport(START_US + 40_000, 24_000, 0b100)
@@ -206,8 +207,31 @@ def test_a_bumper_pressed_while_coasting_still_cuts() -> None:
     base.velocity = (0.05, 0.0)
     host.wait(20)
     base.bumpers = 1
+    base.velocity = (0.0, 0.0)  # by the wall
     host.wait(10)
     assert host.board.faults == Fault.BUMPER
+
+
+def test_a_bumper_pressed_before_the_base_has_picked_up_speed_cuts() -> None:
+    base = Base()
+    host = _drive(base)
+    host.say(SetVelocity(300, 0, 250))
+    base.velocity = (0.0, 0.0)
+    host.wait(10)
+    base.bumpers = 1
+    host.wait(10)
+    assert host.board.faults == Fault.BUMPER
+
+
+def test_a_bumper_pressed_after_a_stop_only_reports() -> None:
+    base = Base()
+    host = _drive(base)
+    host.say(SetVelocity(300, 0, 250))
+    host.say(Stop())
+    host.wait(10)
+    base.bumpers = 1
+    assert host.wait(10) == [DriveReport(START_US + 20_000, 24_000, 1)]
+    assert host.state() is BoardState.CONFIGURED
 
 
 def test_a_bumper_pressed_while_standing_only_reports() -> None:
@@ -231,8 +255,16 @@ def test_a_bumper_that_stays_pressed_lets_the_base_back_away() -> None:
     host.say(SetVelocity(-100, 0, 250))
     host.wait(50)
     assert host.state() is BoardState.ARMED
+    base.bumpers = 0b1100
+    host.wait(20)
+    assert host.board.faults == Fault.BUMPER
+    host.say(Clear())
+    host.say(Arm())
+    host.say(SetVelocity(-100, 0, 250))
+    base.bumpers = 0b1000
+    host.wait(20)
     base.bumpers = 0
-    host.wait(50)
+    host.wait(20)
     assert host.state() is BoardState.ARMED
 
 

@@ -239,6 +239,7 @@ def test_a_shot_under_way_makes_the_next_one_busy_but_not_forever() -> None:
     host = _rangefinder(laser)
     host.say(Shoot(100), seq=4)
     assert host.say(Shoot(100), seq=5) == [Nack(Result.BUSY, Shoot.TYPE)]
+    assert host.say(Shoot(100), seq=4) == []  # the refusal did not make it forget the shot under way
     assert len(host.wait(10)) == 1
     assert host.say(Shoot(100), seq=5) == []
     assert len(host.wait(10)) == 1
