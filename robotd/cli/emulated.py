@@ -2,20 +2,22 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from robotd.config import Config
+from robotd.config import Config, effective_text, loads
 from robotd.config.writer import write_value
 from robotd.core.errors import RobotdError
 from robotd.core.pose import Pose2
+from robotd.recording.reader import Recording
 from robotd.sim.recorded_building import RecordedRobot
 from robotd.sim.robot import EmulatedRobot
 from robotd.sim.world import load_world
 
 _MARGIN_M = 0.5
+RUNTIME_DIR, MAPS_DIR, RECORDINGS_DIR = "run", "maps", "recordings"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,25 +47,48 @@ def grid_size(world: str, robot: EmulatedRobot) -> GridSize:
     return GridSize.around(robot.start, points, defaults.grid.resolution_m)
 
 
-def write_config(file: Path, ports: Mapping[str, str], size: GridSize | None = None) -> None:
-    """Write a configuration for devices on these ports, which keeps all that it makes beside itself.
-
-    Raises:
-        RobotdError: the file cannot be written.
-    """
+def config_text(ports: Mapping[str, str], size: GridSize) -> str:
+    """Return a configuration for devices on these ports, which keeps all that it makes beside itself."""
     sections: dict[str, dict[str, object]] = {
-        "server": {"runtime_dir": "run"},
-        "maps": {"dir": "maps"},
-        "recording": {"dir": "recordings"},
+        "server": {"runtime_dir": RUNTIME_DIR},
+        "maps": {"dir": MAPS_DIR},
+        "recording": {"dir": RECORDINGS_DIR},
         **{device: {"port": port} for device, port in ports.items()},
+        "grid": {"rows": size.rows, "cols": size.cols},
     }
-    if size is not None:
-        sections["grid"] = {"rows": size.rows, "cols": size.cols}
     lines = ["# Made by robotctl for emulated devices; what is not here has its default."]
     for section, values in sections.items():
         lines += ["", f"[{section}]", *(f"{key} = {write_value(value)}" for key, value in values.items())]
+    return "\n".join(lines) + "\n"
+
+
+def recorded_config_text(ports: Mapping[str, str], recording: Recording) -> str:
+    """Return the configuration of a recording, for devices on these ports, keeping all that it makes beside itself.
+
+    Raises:
+        ConfigError: it is not one of this version.
+    """
+    config = loads(recording.header.config_text, file="the recording's configuration")
+    wired = replace(
+        config,
+        server=replace(config.server, runtime_dir=RUNTIME_DIR),
+        maps=replace(config.maps, dir=MAPS_DIR),
+        recording=replace(config.recording, dir=RECORDINGS_DIR),
+        drive=replace(config.drive, port=ports["drive"]),
+        pantilt=replace(config.pantilt, port=ports["pantilt"]),
+        rangefinder=replace(config.rangefinder, port=ports["rangefinder"]),
+    )
+    return "# Made by robotctl: the configuration of the recorded robot, for its fake.\n\n" + effective_text(wired)
+
+
+def write_config(file: Path, text: str) -> None:
+    """Write a configuration where there may not even be a directory yet.
+
+    Raises:
+        RobotdError: it cannot be written.
+    """
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        file.write_text(text, encoding="utf-8")
     except OSError as error:
         raise RobotdError(f"cannot write {file}: {error.strerror}") from error

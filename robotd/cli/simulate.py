@@ -2,13 +2,18 @@
 
 import argparse
 import asyncio
-from collections.abc import Coroutine
+import contextlib
+from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import cast
 
-from robotd.cli.emulated import GridSize, grid_size, write_config
-from robotd.cli.terminal import err, print_json, print_pairs
-from robotd.cli.verb import OK, Verb
+from robotd.cli.emulated import config_text, grid_size, recorded_config_text, write_config
+from robotd.cli.terminal import err, out, print_json, print_pairs
+from robotd.cli.verb import FAILED, OK, Verb
+from robotd.core.log import configure
+from robotd.recording.reader import read
+from robotd.sim.fake_robot import FakeRobot
 from robotd.sim.load import load_robot
 from robotd.sim.recorded_building import OdometrySource
 from robotd.sim.robot import EmulatedRobot
@@ -17,36 +22,55 @@ from robotd.sim.world import world_names
 
 
 def _sim(arguments: argparse.Namespace) -> int:
-    robot = robot_of(arguments)
-    size = grid_size(arguments.world, robot) if arguments.write_config else None
-    return _until_interrupted(
-        run_on_ptys(
-            robot,
-            announce=lambda ports: _announce(arguments, ports, size),
-            directory=_absolute(arguments.links),
-            truth_path=arguments.truth,
-        )
-    )
+    robot = load_robot(arguments.world, arguments.seed, odometry=OdometrySource(arguments.odometry))
 
+    def write(file: Path, ports: dict[str, str]) -> None:
+        write_config(file, config_text(ports, grid_size(arguments.world, robot)))
 
-def _until_interrupted(running: Coroutine[Any, Any, None]) -> int:
-    try:
-        asyncio.run(running)
-    except KeyboardInterrupt:
-        return OK  # that is how it ends
+    _serve(arguments, robot, write, truth_path=arguments.truth)
     return OK
 
 
-def _absolute(path: Path | None) -> Path | None:
-    return None if path is None else path.absolute()
+def _fake(arguments: argparse.Namespace) -> int:
+    """Answer as recorded; what the daemon asks otherwise is logged as it happens, and counted at the end."""
+    configure("warning")
+    recording = read(arguments.file)
+    robot = FakeRobot(recording)
 
+    def write(file: Path, ports: dict[str, str]) -> None:
+        write_config(file, recorded_config_text(ports, recording))
 
-def _announce(arguments: argparse.Namespace, ports: dict[str, str], size: GridSize | None) -> None:
-    """Say where the devices are, and write a configuration that uses them."""
-    file: Path | None = arguments.write_config
-    if file is not None:
-        write_config(file, ports, size)
+    # A fake board is hosted as an emulated one is, though it is not of that class.
+    _serve(arguments, cast("EmulatedRobot", robot), write)
     if arguments.json:
+        print_json({"finished": robot.finished, "mismatches": [asdict(found) for found in robot.mismatches]})
+    else:
+        end = "came to the end of the recording" if robot.finished else "did not come to the end of the recording"
+        out().print(f"the daemon {end}; {len(robot.mismatches)} requests were not the recorded ones")
+    return FAILED if robot.mismatches else OK
+
+
+def _serve(
+    arguments: argparse.Namespace,
+    robot: EmulatedRobot,
+    write: Callable[[Path, dict[str, str]], None],
+    truth_path: Path | None = None,
+) -> None:
+    """Serve the boards on pseudo-terminals until Ctrl-C, which is how it ends."""
+    links = None if arguments.links is None else arguments.links.absolute()
+
+    def announce(ports: dict[str, str]) -> None:
+        if arguments.write_config is not None:
+            write(arguments.write_config, ports)
+        _announce(ports, arguments.write_config, as_json=arguments.json)
+
+    with contextlib.suppress(KeyboardInterrupt):
+        asyncio.run(run_on_ptys(robot, announce=announce, directory=links, truth_path=truth_path))
+
+
+def _announce(ports: dict[str, str], file: Path | None, *, as_json: bool) -> None:
+    """Say where the devices are, and how to run a daemon on them."""
+    if as_json:
         print_json({"devices": ports, "config": None if file is None else str(file)})
         return
     print_pairs(ports.items())
@@ -55,16 +79,16 @@ def _announce(arguments: argparse.Namespace, ports: dict[str, str], size: GridSi
     err().print("Ctrl-C ends it")
 
 
-def robot_of(arguments: argparse.Namespace) -> EmulatedRobot:
-    """Return the robot that the options of :func:`world_arguments` describe."""
-    return load_robot(arguments.world, arguments.seed, odometry=OdometrySource(arguments.odometry))
-
-
 def _sim_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("world", metavar="WORLD", help=f"{', '.join(world_names())}, or a file of one")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="same seed, same noise (default: 1)")
     odometry_argument(parser)
     parser.add_argument("--truth", type=Path, metavar="FILE", help="note in it where the robot really came to rest")
+    _lines_arguments(parser)
+
+
+def _fake_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", type=Path, metavar="RECORDING", help="a recording (.mcap)")
     _lines_arguments(parser)
 
 
@@ -90,5 +114,12 @@ VERBS = (
         "robotctl sim laboratory --write-config lab/robotd.toml",
         _sim,
         _sim_arguments,
+    ),
+    Verb(
+        "fake",
+        "answer as the recorded boards did, on pseudo-terminals: run a fresh daemon on them",
+        "robotctl fake a.mcap --write-config again/robotd.toml",
+        _fake,
+        _fake_arguments,
     ),
 )

@@ -10,6 +10,11 @@ from robotd.cli.emulated import GridSize, grid_size
 from robotd.cli.main import main
 from robotd.config import load
 from robotd.core.pose import Pose2
+from robotd.grid.occupancy import GridSettings
+from robotd.hardware.link.tap import Direction
+from robotd.recording.comparison import Difference
+from robotd.recording.entries import BytesEntry, RecordingHeader
+from robotd.recording.recorder import Recorder
 from robotd.sim.load import load_robot
 from robotd.sim.world import load_world, world_names
 
@@ -56,8 +61,6 @@ def test_the_configuration_it_writes_is_one_to_run_on(
 
 @pytest.mark.parametrize("name", world_names())
 def test_the_map_it_asks_for_holds_the_whole_room(name: str) -> None:
-    from robotd.grid.occupancy import GridSettings
-
     robot = load_robot(name)
     size = grid_size(name, robot)
     spec = GridSettings(rows=size.rows, cols=size.cols).spec_around(robot.start.x_m, robot.start.y_m)
@@ -99,3 +102,40 @@ def test_a_recorded_building_is_made_of_a_log(
 def test_a_log_that_there_is_not_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["import", "carmen", str(tmp_path / "no.log"), "--out", str(tmp_path / "x")]) == 1
     assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    file = tmp_path / "a.mcap"
+    recorder = Recorder(file, RecordingHeader("0.1.0", "[sweep]\nreadings = 24\n", 7, 0, 0))
+    recorder.note(BytesEntry(1_000_000_000, "drive", Direction.TO_BOARD, b"abc"))
+    recorder.close()
+    return file
+
+
+def test_a_fake_writes_the_configuration_of_the_recorded_robot(
+    interrupted: list[dict[str, Any]], recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "again" / "robotd.toml"
+    assert main(["fake", str(recording), "--write-config", str(file)]) == 0
+    assert set(interrupted[0]["robot"].boards) == {"drive", "pantilt", "rangefinder"}
+    config = load(file)
+    assert (config.sweep.readings, config.pantilt.port) == (24, "/dev/pts/8")
+    assert config.recording.dir == str(tmp_path / "again" / "recordings")
+    assert "0 requests were not the recorded ones" in capsys.readouterr().out
+
+
+def test_a_fake_that_was_asked_otherwise_is_exit_code_1(
+    interrupted: list[dict[str, Any]],
+    recording: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    different = (Difference(5, "drive", "Arm()", "Stop()"),)
+    monkeypatch.setattr("robotd.cli.simulate.FakeRobot.mismatches", different)
+    assert main(["fake", str(recording), "--json"]) == 1
+    devices, end = map(json.loads, capsys.readouterr().out.splitlines())
+    assert devices["devices"]["drive"] == "/dev/pts/7"
+    assert end["mismatches"] == [{"time_ns": 5, "device": "drive", "expected": "Arm()", "actual": "Stop()"}]
+    assert main(["fake", str(recording)]) == 1
+    assert "1 requests were not the recorded ones" in capsys.readouterr().out
