@@ -151,6 +151,7 @@ class FakeControl:
             self._progress(mission_id, MissionPhase.STARTED)
             for taken in (1, 2, 3):
                 self.events.publish(SweepProgress(now_ns(), 0, taken, 3, taken, 0, 0))
+            self.events.publish(an_estimate(PoseState.AMBIGUOUS))
             await self.release.wait()
             self.events.publish(an_estimate(PoseState.LOCALIZED))
             self._progress(mission_id, MissionPhase.DONE, "found")
