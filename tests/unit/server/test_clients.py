@@ -102,28 +102,28 @@ async def test_a_mission_is_told_from_its_start_to_its_end(serving: Serving, tmp
 async def test_leases_are_kept_alive_by_both_clients(serving: Serving, tmp_path: Path) -> None:
     def use() -> list[str]:
         with Client(tmp_path) as robot:
-            return phases(list(robot.run_mission(LocalizeMission(), lease_s=0.1)))
+            return phases(list(robot.run_mission(LocalizeMission(), lease_s=0.25)))
 
     async with serving() as control, AsyncClient(tmp_path) as robot:
         await robot.arm()
         for run in (asyncio.to_thread(use), robot_phases(robot)):
             control.release.clear()
-            asyncio.get_running_loop().call_later(0.4, control.release.set)
+            asyncio.get_running_loop().call_later(0.6, control.release.set)
             assert await run == ["started", "done"]
-        assert control.leases_s == [0.1, 0.1]
+        assert control.leases_s == [0.25, 0.25]
 
 
 async def robot_phases(robot: AsyncClient) -> list[str]:
-    return phases([event async for event in robot.run_mission(LocalizeMission(), lease_s=0.1)])
+    return phases([event async for event in robot.run_mission(LocalizeMission(), lease_s=0.25)])
 
 
 async def test_an_async_client_that_dawdles_over_an_event_keeps_its_lease(serving: Serving, tmp_path: Path) -> None:
     async with serving() as control, AsyncClient(tmp_path) as robot:
         await robot.arm()
         control.release.clear()
-        async with aclosing(robot.run_mission(LocalizeMission(), lease_s=0.1)) as events:
+        async with aclosing(robot.run_mission(LocalizeMission(), lease_s=0.25)) as events:
             await anext(events)
-            await asyncio.sleep(0.3)
+            await asyncio.sleep(0.6)
             control.release.set()
             assert phases([event async for event in events]) == ["done"]
 
