@@ -2,6 +2,7 @@
 
 import enum
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,10 +62,21 @@ class GridSettings:
             if not 0.0 <= alpha < 1.0:
                 raise ValueError(f"{name} must be at least 0 and less than 1, got {alpha}")
 
-    def spec_around(self, x_m: float, y_m: float) -> GridSpec:
-        """Return the placement of a grid of this size with a map-frame point in its middle."""
-        half_width_m, half_height_m = self.cols * self.resolution_m / 2, self.rows * self.resolution_m / 2
-        return GridSpec(self.resolution_m, x_m - half_width_m, y_m - half_height_m, (self.rows, self.cols))
+    def spec_covering(self, points_m: Sequence[tuple[float, float]], margin_m: float) -> GridSpec:
+        """Return the placement of a grid with map-frame points round its middle.
+
+        It has at least this size, and is larger where that does not leave ``margin_m`` round every point.
+
+        Raises:
+            ValueError: that would be more than ``MAX_SIDE_CELLS`` along a side.
+        """
+        low_m, high_m = np.min(points_m, axis=0), np.max(points_m, axis=0)
+        needed = np.ceil((high_m - low_m + 2 * margin_m) / self.resolution_m).astype(int)
+        cols, rows = np.maximum(needed, (self.cols, self.rows)).tolist()
+        if max(rows, cols) > MAX_SIDE_CELLS:
+            raise ValueError(f"a map of {rows} x {cols} cells is too large; at most {MAX_SIDE_CELLS} along a side")
+        origin_m = (low_m + high_m) / 2 - np.array([cols, rows]) * self.resolution_m / 2
+        return GridSpec(self.resolution_m, float(origin_m[0]), float(origin_m[1]), (rows, cols))
 
 
 MAX_SIDE_CELLS = 8192

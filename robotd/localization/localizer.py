@@ -21,9 +21,13 @@ class LocalizationSettings:
 
     range_error_m: float = 0.05
     """The paper's eps: how far an obstacle on the map may lie from the head of a reading."""
-    localized_share: float = 0.6
+    heading_error_rad: float = 0.0175
+    """How far the heading that odometry gives may be off: headings up to so far away are tried too."""
+    heading_step_rad: float = 0.00875
+    """Step between the headings that are tried."""
+    localized_share: float = 0.5
     """Share of the readings that the best pose must explain; below it the robot is lost."""
-    rival_share: float = 0.05
+    rival_share: float = 0.2
     """A pose that explains this share of the readings fewer than the best is still an answer."""
     unique_within_m: float = 0.5
     """The pose is unique if all answers lie this near to the best one."""
@@ -34,6 +38,10 @@ class LocalizationSettings:
         """Refuse impossible values."""
         if not self.range_error_m >= 0.0:
             raise ValueError(f"range_error_m must not be negative, got {self.range_error_m}")
+        if not self.heading_error_rad >= 0.0:
+            raise ValueError(f"heading_error_rad must not be negative, got {self.heading_error_rad}")
+        if not self.heading_step_rad > 0.0:
+            raise ValueError(f"heading_step_rad must be positive, got {self.heading_step_rad}")
         if not 0.0 < self.localized_share <= 1.0:
             raise ValueError(f"localized_share must lie in (0, 1], got {self.localized_share}")
         if not 0.0 <= self.rival_share < 1.0:
@@ -42,6 +50,15 @@ class LocalizationSettings:
             raise ValueError(f"unique_within_m must be positive, got {self.unique_within_m}")
         if self.readings_min < 1:
             raise ValueError(f"readings_min must be at least 1, got {self.readings_min}")
+
+    def headings_near(self, heading_rad: float) -> tuple[float, ...]:
+        """Return the headings to try when odometry says ``heading_rad``, in ascending order.
+
+        >>> LocalizationSettings(heading_error_rad=0.2, heading_step_rad=0.1).headings_near(1.0)
+        (0.8, 0.9, 1.0, 1.1, 1.2)
+        """
+        steps = math.floor(self.heading_error_rad / self.heading_step_rad + 1e-9)
+        return tuple(heading_rad + step * self.heading_step_rad for step in range(-steps, steps + 1))
 
 
 class Localizer:

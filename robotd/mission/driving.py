@@ -31,7 +31,7 @@ async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: fl
 async def _planned(
     context: MissionContext, place: MapInUse, start: Pose2, goal_m: tuple[float, float]
 ) -> tuple[tuple[float, float], ...]:
-    route = await context.compute.run("plan", plan, place.grid.snapshot(), start, goal_m, context.settings.planning)
+    route = await context.compute.run("plan", plan, place.grid, start, goal_m, context.settings.planning)
     if not isinstance(route, Path):
         raise MissionError(f"({goal_m[0]:.2f}, {goal_m[1]:.2f}) m cannot be reached: {route.reason}")
     return route.waypoints_m

@@ -104,7 +104,7 @@ class Narrowing:
 
 def _prepare(context: MissionContext, place: MapInUse, heading_rad: float) -> Localizer:
     localizer = Localizer(place.binary(), context.settings.localization, place.map_id)
-    localizer.begin((heading_rad,))
+    localizer.begin(context.settings.localization.headings_near(heading_rad))
     return localizer
 
 

@@ -16,6 +16,9 @@ from robotd.mission.modes import Occasion
 from robotd.mission.motion import next_odometry
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission, Mission
 
+_MARGIN_M = 3.0
+"""A map reaches at least this far beyond its stops, and farther unless the stops fill it."""
+
 
 class Host(Protocol):
     """What a mission needs of the one that runs it."""
@@ -72,7 +75,11 @@ def _place(host: Host) -> MapInUse:
 
 async def _begin_map(context: MissionContext, mission: MapMission, report: Reporter) -> MapInUse:
     settings = context.settings.grid
-    grid = OccupancyGrid(settings.spec_around(mission.start.x_m, mission.start.y_m), settings=settings)
+    points_m = ((mission.start.x_m, mission.start.y_m), *mission.stops_m)
+    try:
+        grid = OccupancyGrid(settings.spec_covering(points_m, _MARGIN_M), settings=settings)
+    except ValueError as error:
+        raise MissionError(f"these stops do not fit on one map: {error}") from error
     here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
     place = MapInUse(f"new-{report.mission_id}", mission.name, grid, None)
     place.tie(mission.start, here)

@@ -111,7 +111,9 @@ async def _approach(
                 if remaining < nearest - tolerance / 4.0:
                     nearest, nearest_ns = remaining, now.time_ns
                 elif now.time_ns - nearest_ns > settings.stall_s * NS_PER_S:
-                    raise DeviceError(drive.name, "stalled", f"{what} is no nearer to its end for {settings.stall_s:g} s")
+                    raise DeviceError(
+                        drive.name, "stalled", f"{what} is no nearer to its end for {settings.stall_s:g} s"
+                    )
                 drive.set_velocity(twist(now), settings.setpoint_ttl_s)
     finally:
         drive.set_velocity(STANDSTILL, settings.setpoint_ttl_s)

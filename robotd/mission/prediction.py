@@ -35,4 +35,6 @@ class Predictor:
         if self.said is None:
             return True
         turned_rad = wrap_rad(pose.heading_rad - self.said.heading_rad)
-        return math.hypot(pose.x_m - self.said.x_m, pose.y_m - self.said.y_m) > _MOVED_M or abs(turned_rad) > _TURNED_RAD
+        return (
+            math.hypot(pose.x_m - self.said.x_m, pose.y_m - self.said.y_m) > _MOVED_M or abs(turned_rad) > _TURNED_RAD
+        )

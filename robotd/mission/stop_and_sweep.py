@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from robotd.core.angles import wrap_rad
 from robotd.core.pose import Odometry
 from robotd.core.reading import RangeReading, Sweep
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
@@ -16,7 +17,7 @@ from robotd.mission.robot import Robot
 from robotd.mission.steering import DrivingSettings
 from robotd.mission.sweep_plan import SweepPart, plan_sweep
 
-_LIMIT_MARGIN_RAD = 0.002  # the pan limits come rounded, and the head must not be asked to pass them
+_LIMIT_MARGIN_RAD = 0.03  # the base turns only roughly as far as it should, and the head makes up for it
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +75,9 @@ class Sweeper:
         await self.robot.rangefinder.switch_laser(on=True)
         for part in parts:
             here = await self._turn_base(start, part)
-            for pan_rad in part.pans_rad:
-                reading = await self._read(pan_rad, start, here)
+            turned_rad = wrap_rad(here.in_odom.heading_rad - start.in_odom.heading_rad)
+            for bearing_rad in part.bearings_rad:
+                reading = await self._read(bearing_rad - turned_rad, start, here)
                 readings.append(reading)
                 on_reading(reading)
         await self.robot.rangefinder.switch_laser(on=False)

@@ -15,12 +15,12 @@ class SweepPart:
     base_turn_rad: float
     """Heading of the base for this part, relative to where the sweep began."""
     bearings_rad: tuple[float, ...]
-    """Directions to measure, relative to where the sweep began."""
-    pans_rad: tuple[float, ...]
-    """The same directions as the head sees them, in the order of least travel."""
+    """Directions to measure, relative to where the sweep began, in the order of least travel of the head."""
 
 
-def plan_sweep(readings: int, pan_min_rad: float, pan_max_rad: float, *, clockwise: bool = False) -> tuple[SweepPart, ...]:
+def plan_sweep(
+    readings: int, pan_min_rad: float, pan_max_rad: float, *, clockwise: bool = False
+) -> tuple[SweepPart, ...]:
     """Spread ``readings`` evenly round the robot over as few parts as the pan limits allow.
 
     The base turns as little as will do, counter-clockwise or, mirrored, clockwise: taking turns at that keeps
@@ -45,14 +45,10 @@ def plan_sweep(readings: int, pan_min_rad: float, pan_max_rad: float, *, clockwi
             turn_rad = end_rad - pan_max_rad if end_rad - start_rad <= reach_rad else start_rad - pan_min_rad
         count = min(readings - first, math.floor((pan_max_rad + turn_rad - start_rad) / step_rad + _EDGE_RAD) + 1)
         bearings = tuple(start_rad + index * step_rad for index in range(count))
-        parts.append(SweepPart(turn_rad, bearings, tuple(bearing - turn_rad for bearing in bearings)))
+        parts.append(SweepPart(turn_rad, bearings))
         first += count
     return tuple(parts)
 
 
 def _mirrored(part: SweepPart) -> SweepPart:
-    return SweepPart(
-        -part.base_turn_rad,
-        tuple(-bearing for bearing in part.bearings_rad),
-        tuple(-pan for pan in part.pans_rad),
-    )
+    return SweepPart(-part.base_turn_rad, tuple(-bearing for bearing in part.bearings_rad))

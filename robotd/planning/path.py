@@ -29,7 +29,7 @@ class PlanningSettings:
 
     robot_radius_m: float = 0.3
     """Radius of the disk that the robot fills."""
-    clearance_m: float = 0.05
+    clearance_m: float = 0.1
     """What to keep free round it; covers the rounding to cells and small errors of the drive."""
     gap_cells: int = 2
     """Unknown gaps up to so wide, between cells seen free, are taken for free."""

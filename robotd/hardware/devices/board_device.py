@@ -78,7 +78,7 @@ class BoardDevice:
         self._change(armed=False, faults=())
 
     def stop_now(self) -> None:
-        """Put the preformatted stop on the wire ahead of everything else; never blocks, never raises."""
+        """Put the preformatted stop on the wire in place of all that waits; never blocks, never raises."""
         if self._session is not None:
             self._session.stop_now()
 

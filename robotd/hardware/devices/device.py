@@ -64,4 +64,4 @@ class Device(Protocol):
         """Acknowledge latched faults; leaves the device disarmed; same errors as :meth:`arm`."""
 
     def stop_now(self) -> None:
-        """Put the preformatted stop on the wire ahead of everything else; never blocks, never raises."""
+        """Put the preformatted stop on the wire in place of all that waits; never blocks, never raises."""

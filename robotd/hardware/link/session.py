@@ -122,7 +122,7 @@ class Session:
         self._line.write(self._wire.encode(message, self._next_seq(message)))
 
     def stop_now(self) -> None:
-        """Put the preformatted stop ahead of everything not yet written; never raises.
+        """Put the preformatted stop on the wire in place of everything not yet written; never raises.
 
         An ARM that waits for its answer is given up: its repeat must not come after the stop.
         """

@@ -43,7 +43,7 @@ class TappedLine:
         self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
 
     def write_urgent(self, data: bytes) -> None:
-        """Queue bytes ahead of everything not yet written; TransportError when the line is gone."""
+        """Queue bytes in place of everything not yet written; TransportError when the line is gone."""
         self._transport.write_urgent(data)
         self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
 

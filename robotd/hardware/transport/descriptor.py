@@ -55,7 +55,7 @@ class DescriptorTransport:
         self._check()
 
     def write_urgent(self, data: bytes) -> None:
-        """Queue bytes ahead of everything not yet written; TransportError when the line is gone."""
+        """Queue bytes in place of everything not yet written; TransportError when the line is gone."""
         self._check()
         self._outbox.put_urgent(data)
         self._flush()

@@ -46,7 +46,7 @@ class MemoryEnd:
         self._flush()
 
     def write_urgent(self, data: bytes) -> None:
-        """Queue bytes ahead of everything not yet written; TransportError when the line is gone."""
+        """Queue bytes in place of everything not yet written; TransportError when the line is gone."""
         self._check()
         self._outbox.put_urgent(data)
         self._flush()

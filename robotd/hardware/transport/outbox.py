@@ -1,4 +1,9 @@
-"""Bytes that wait to be written: bounded, with a lane for those that cannot wait."""
+"""Bytes that wait to be written: bounded, with a lane for those that cannot wait.
+
+Urgent bytes are a stop, and a stop is the last word: whatever waited behind it was meant for a robot that may move, an
+ARM among it, and must not come after. So it is thrown away; a frame that is cut in half by this is damaged bytes to the
+board, which is in step again with the stop.
+"""
 
 from robotd.core.errors import TransportError
 
@@ -27,7 +32,8 @@ class Outbox:
         self._waiting += data
 
     def put_urgent(self, data: bytes) -> None:
-        """Queue bytes ahead of all others that wait, behind earlier urgent ones."""
+        """Queue bytes in place of all others that wait, behind earlier urgent ones."""
+        self._waiting.clear()
         self._urgent += data
 
     def head(self) -> bytes:

@@ -26,7 +26,7 @@ class Transport(Protocol):
         """
 
     def write_urgent(self, data: bytes) -> None:
-        """Queue bytes ahead of everything not yet written, whatever the bound.
+        """Queue bytes in place of everything not yet written, whatever the bound.
 
         Raises:
             TransportError: the line is gone.

@@ -175,10 +175,25 @@ def test_cells_of_another_shape_or_type_are_refused() -> None:
         BinaryMap(SPEC, np.zeros((2, 2), np.bool_))
 
 
-def test_the_default_grid_is_lilys_round_the_start() -> None:
-    spec = GridSettings().spec_around(1.0, 2.0)
+def test_the_default_grid_is_lilys_with_the_stops_round_its_middle() -> None:
+    spec = GridSettings().spec_covering(((0.0, 0.0), (2.0, 4.0)), 3.0)
     assert spec.shape == (256, 256)
     assert spec.cell_at(1.0, 2.0) == (128, 128)
+
+
+@given(st.lists(st.tuples(st.floats(-40.0, 40.0), st.floats(-40.0, 40.0)), min_size=1, max_size=5))
+def test_a_new_grid_reaches_beyond_every_stop(stops_m: list[tuple[float, float]]) -> None:
+    spec = GridSettings().spec_covering(stops_m, 3.0)
+    assert spec.rows >= 256
+    assert spec.cols >= 256
+    for x_m, y_m in stops_m:
+        for away_x_m, away_y_m in ((-2.99, -2.99), (2.99, 2.99)):
+            assert spec.contains(*spec.cell_at(x_m + away_x_m, y_m + away_y_m))
+
+
+def test_a_grid_too_large_to_be_a_map_is_refused() -> None:
+    with pytest.raises(ValueError, match="too large"):
+        GridSettings().spec_covering(((0.0, 0.0), (1000.0, 0.0)), 3.0)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,85 @@
+"""Missions of a demonstration: what they say while they run, and what is kept of them."""
+
+import math
+from dataclasses import dataclass
+from statistics import median
+
+from rich.console import Console
+from rich.table import Table
+
+from robotd.cli.progress import MissionBars
+from robotd.core.angles import wrap_rad
+from robotd.core.errors import MissionError
+from robotd.core.pose import Pose2
+from robotd.core.reading import ReadingStatus, Sweep
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.events import SweepDone
+from robotd.mission.requests import Mission
+from robotd.server.client import Client
+from robotd.server.mission_run import final_estimate
+
+LEASE_S = 5.0
+"""Generous: a demonstration shares two cores with its simulated hardware."""
+
+
+def follow(client: Client, mission: Mission) -> tuple[tuple[Sweep, ...], PoseEstimate | None]:
+    """Run a mission to its end and return its sweeps and, of a localization, what it found."""
+    sweeps: list[Sweep] = []
+    events = []
+    with MissionBars() as bars:
+        for event in client.run_mission(mission, LEASE_S):
+            bars.show(event)
+            events.append(event)
+            if isinstance(event, SweepDone):
+                sweeps.append(event.sweep)
+    try:
+        return tuple(sweeps), final_estimate(events)
+    except MissionError:
+        return tuple(sweeps), None
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """One localization, and the truth about it."""
+
+    sweep: Sweep
+    truth: Pose2
+    estimate: PoseEstimate
+
+    @property
+    def error_m(self) -> float | None:
+        """How far the estimate is from the truth; None if there is no unique estimate."""
+        best = self.estimate.best
+        return None if best is None else best.distance_m(self.truth)
+
+
+def print_readings(console: Console, sweeps: tuple[Sweep, ...]) -> None:
+    """Say what the sweeps brought."""
+    taken = sum(len(sweep.readings) for sweep in sweeps)
+    hits, misses = (sum(sweep.count(status) for sweep in sweeps) for status in (ReadingStatus.OK, ReadingStatus.MISS))
+    console.print(
+        f"  {len(sweeps)} stops, {taken} readings taken: {hits} hits, {misses} misses, {taken - hits - misses} rejected"
+    )
+
+
+def print_trials(console: Console, trials: list[Trial]) -> None:
+    """Print truth, estimate and error of each localization, and the median error."""
+    table = Table("", "truth [m]", "estimate [m]", "error [mm]", "heading [deg]", "rank / readings", "regions", "state")
+    for number, trial in enumerate(trials, 1):
+        best, error_m = trial.estimate.best, trial.error_m
+        heading = "-" if best is None else f"{math.degrees(wrap_rad(best.heading_rad - trial.truth.heading_rad)):+.2f}"
+        table.add_row(
+            str(number),
+            f"({trial.truth.x_m:.3f}, {trial.truth.y_m:.3f})",
+            "-" if best is None else f"({best.x_m:.3f}, {best.y_m:.3f})",
+            "-" if error_m is None else f"{1000 * error_m:.0f}",
+            heading,
+            f"{trial.estimate.best_rank} / {trial.estimate.readings}",
+            str(len(trial.estimate.regions)),
+            trial.estimate.state.value,
+        )
+    console.print(table)
+    errors = [trial.error_m for trial in trials if trial.error_m is not None]
+    sure = sum(trial.estimate.state is PoseState.LOCALIZED for trial in trials)
+    middle = f"median error {1000 * median(errors):.0f} mm" if errors else "no error to speak of"
+    console.print(f"  {sure} of {len(trials)} localized; {middle}")

@@ -1,0 +1,106 @@
+"""An emulated robot and the real daemon, as two processes joined by pseudo-terminals, with a client for this one."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from robotd.config import Config, effective_text
+from robotd.core.errors import RequestTimeout, RobotdError
+from robotd.hardware.devices.device import LinkState
+from robotd.server.client import Client
+
+DEVICES = ("drive", "pantilt", "rangefinder")
+_START_S = 30.0
+_END_S = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Rig:
+    """What a demonstration plays with."""
+
+    client: Client
+    truth_file: Path
+    log_file: Path
+
+
+def wired(config: Config, directory: Path) -> Config:
+    """Return a configuration whose devices, sockets, maps and recordings all live in a directory."""
+    links = directory / "devices"
+    return replace(
+        config,
+        server=replace(config.server, runtime_dir=str(directory / "run")),
+        drive=replace(config.drive, port=str(links / "drive")),
+        pantilt=replace(config.pantilt, port=str(links / "pantilt")),
+        rangefinder=replace(config.rangefinder, port=str(links / "rangefinder")),
+        maps=replace(config.maps, dir=str(directory / "maps")),
+        recording=replace(config.recording, dir=str(directory / "recordings")),
+    )
+
+
+@contextmanager
+def rig(directory: Path, config: Config, emulator: list[str]) -> Iterator[Rig]:
+    """Start both processes and yield once all three devices are there; end them afterwards, the daemon first.
+
+    Args:
+        directory: where everything lives; it exists.
+        config: made by :func:`wired` for this directory.
+        emulator: arguments of ``robotctl`` that run the emulated boards, without where to put them.
+
+    Raises:
+        RobotdError: one of them ended, or they did not find each other.
+    """
+    config_file, truth, log = (directory / name for name in ("robotd.toml", "truth.jsonl", "robotd.log"))
+    config_file.write_text(effective_text(config), encoding="utf-8")
+    links = directory / "devices"
+    boards = [*_program("robotd.cli.main"), *emulator, "--links", str(links), "--truth", str(truth)]
+    daemon = [*_program("robotd.app.daemon"), "--config", str(config_file)]
+    with ExitStack() as stack:
+        output = stack.enter_context(log.open("w", encoding="utf-8"))
+        simulation = stack.enter_context(_running(boards, output.fileno()))
+        _wait(lambda: all((links / name).exists() for name in DEVICES), "the emulated devices", simulation, log)
+        process = stack.enter_context(_running(daemon, output.fileno()))
+        client = stack.enter_context(Client(config.server.runtime_dir))
+        _wait(lambda: _all_ready(client), "the daemon and its devices", process, log)
+        yield Rig(client, truth, log)
+
+
+def _program(module: str) -> list[str]:
+    return [sys.executable, "-m", module]
+
+
+@contextmanager
+def _running(command: list[str], output: int) -> Iterator[subprocess.Popen[bytes]]:
+    # A session of its own: Ctrl-C comes to us, we stop the robot, and only then end the processes.
+    environment = os.environ | {"PYTHONUNBUFFERED": "1"}
+    process = subprocess.Popen(command, stdout=output, stderr=output, start_new_session=True, env=environment)
+    try:
+        yield process
+    finally:
+        process.send_signal(signal.SIGTERM)
+        try:
+            process.wait(_END_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _wait(ready: Callable[[], bool], what: str, process: subprocess.Popen[bytes], log: Path) -> None:
+    deadline_s = time.monotonic() + _START_S
+    while not ready():
+        if process.poll() is not None:
+            raise RobotdError(f"{what}: the process ended with {process.returncode}; see {log}")
+        if time.monotonic() > deadline_s:
+            raise RobotdError(f"{what} did not come up in {_START_S:g} s; see {log}")
+        time.sleep(0.05)
+
+
+def _all_ready(client: Client) -> bool:
+    with suppress(RequestTimeout):
+        return all(device.link is LinkState.READY for device in client.status().devices)
+    return False

@@ -1,0 +1,116 @@
+"""A simulated room: make a map stop by stop, save it, then drive about and be found in it."""
+
+import argparse
+import shutil
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+
+from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials
+from robotd.cli.demo.rig import Rig, rig, wired
+from robotd.cli.demo.truth import true_pose
+from robotd.cli.verb import FAILED, OK
+from robotd.config import Config
+from robotd.core.reading import Sweep
+from robotd.grid.binary import BinaryMap
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.localization.localizer import Localizer
+from robotd.localization.rank import RankGrid
+from robotd.mission.events import MapChanged
+from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
+from robotd.mission.steering import DrivingSettings
+from robotd.sim.world import World, load_world
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Take the world and where to put the results."""
+    parser.add_argument("world", nargs="?", default="laboratory", help="built-in world or TOML file")
+    parser.add_argument("--seed", type=int, default=1, help="of the simulated robot (default: 1)")
+    parser.add_argument("--localizations", type=int, default=4, metavar="N", help="how many (default: 4)")
+    parser.add_argument("--stops", type=int, default=None, metavar="N", help="map from the first N stops only")
+    parser.add_argument("--out", type=Path, default=Path("demo"), metavar="DIR", help="for the results (default: demo)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the demonstration and return the exit code."""
+    console = Console(highlight=False)
+    world = load_world(arguments.world)
+    directory = fresh(arguments.out)
+    console.print(f"[bold]robotd demo[/]: the {world.name}, seed {arguments.seed}; everything lives in {directory}")
+    emulator = ["sim", arguments.world, "--seed", str(arguments.seed)]
+    with rig(directory, wired(Config(driving=brisk()), directory), emulator) as parts:
+        client = parts.client
+        recording = client.record_start(str(directory / "recording.mcap"))
+        client.arm()
+        console.print("Making the map, stop by stop:")
+        stops_m = world.stops_m[: arguments.stops]
+        sweeps, _ = follow(client, MapMission(world.name, stops_m, world.start_pose))
+        print_readings(console, sweeps)
+        entry = client.map_save()
+        console.print(f"  map saved: {directory / 'maps' / entry.name / str(entry.version)} ({entry.digest[:12]})")
+        trials = [_localize_at(parts, console, probe_m) for probe_m in world.probes_m[: arguments.localizations]]
+        the_map = client.map_show()
+        client.record_stop()
+    console.print(f"Found in it, {len(trials)} times (position unknown in the whole map, heading from odometry):")
+    print_trials(console, trials)
+    _draw(directory, world, stops_m, the_map, trials[-1])
+    console.print(f"  every byte recorded: {recording}; try: robotctl replay {recording}")
+    console.print(f"  pictures: {', '.join(str(file) for file in sorted(directory.glob('*.png')))}")
+    return OK if all(trial.error_m is not None for trial in trials) else FAILED
+
+
+def fresh(directory: Path) -> Path:
+    """Return an empty directory; what an earlier demonstration left there goes."""
+    directory = directory.resolve()
+    for name in ("devices", "run", "maps", "recordings"):
+        shutil.rmtree(directory / name, ignore_errors=True)
+    for file in (*directory.glob("*.png"), *directory.glob("*.mcap"), directory / "truth.jsonl"):
+        file.unlink(missing_ok=True)
+    directory.mkdir(parents=True, exist_ok=True)
+    return directory
+
+
+def brisk() -> DrivingSettings:
+    """Return how to drive when somebody is watching."""
+    return DrivingSettings(speed_mps=0.6, turn_radps=1.5, deceleration_mps2=0.4, turn_deceleration_radps2=2.0)
+
+
+def _localize_at(parts: Rig, console: Console, probe_m: tuple[float, float]) -> Trial:
+    console.print(f"Driving to ({probe_m[0]:.1f}, {probe_m[1]:.1f}) m and looking round:")
+    follow(parts.client, DriveMission(*probe_m))
+    (sweep,), estimate = follow(parts.client, LocalizeMission())
+    assert estimate is not None  # noqa: S101  # a localization that is done has one
+    return Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)
+
+
+def _draw(
+    directory: Path, world: World, stops_m: tuple[tuple[float, float], ...], the_map: MapChanged, last: Trial
+) -> None:
+    from robotd.cli import pictures  # noqa: PLC0415  # heavy, and only needed now
+
+    stops = ((world.start_pose.x_m, world.start_pose.y_m), *stops_m)
+    walls = [np.array(wall.points_m) for wall in world.walls]
+    radius_m = Config().planning.robot_radius_m
+    pictures.draw_room(directory / "room.png", f"The {world.name}", walls, stops_m=stops, robot_radius_m=radius_m)
+    pictures.draw_map(directory / "map.png", "The robot's map", the_map.spec, the_map.values, stops_m=stops)
+    ranks = rank_of(the_map, last.sweep, last.estimate.best.heading_rad if last.estimate.best else 0.0)
+    pictures.draw_localization(
+        directory / "localization.png",
+        "Where is the robot?",
+        the_map.spec,
+        ranks.rank[0],
+        obstacles=the_map.values > 127,
+        truth=pictures.Mark(last.truth, radius_m),
+        estimate=last.estimate.best,
+    )
+
+
+def rank_of(the_map: MapChanged, sweep: Sweep, heading_rad: float) -> RankGrid:
+    """Return the rank grid of a sweep on a map: what the daemon saw when it decided."""
+    binary = BinaryMap.from_grid(OccupancyGrid(the_map.spec, the_map.values))
+    localizer = Localizer(binary, Config().localization, the_map.map_id)
+    localizer.begin((heading_rad,))
+    for reading in sweep.measured:
+        localizer.add(reading)
+    return localizer.ranks

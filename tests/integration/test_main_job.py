@@ -1,0 +1,139 @@
+"""The main job, end to end, in memory: map a room, be found in it, say so when that is not possible."""
+
+import math
+from statistics import median
+
+import numpy as np
+import pytest
+
+from robotd.core.clock import NS_PER_S
+from robotd.core.errors import MissionError
+from robotd.core.reading import ReadingStatus
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.events import MapChanged, MissionPhase, SweepDone, SweepProgress
+from robotd.mission.modes import Mode
+from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
+from robotd.sim.robot import SimulatedRobot
+from robotd.sim.world import load_world
+
+pytestmark = pytest.mark.slow
+
+
+def final_estimates(said: list[object]) -> list[PoseEstimate]:
+    return [e for e in said if isinstance(e, PoseEstimate) and e.final and e.state is not PoseState.PREDICTED]
+
+
+async def test_the_robot_maps_the_laboratory_and_is_found_in_it_within_50_mm(live) -> None:  # type: ignore[no-untyped-def]  # the fixture's type lives in conftest
+    robot = SimulatedRobot(load_world("laboratory"), seed=3)
+    async with live(robot) as it:
+        said = await it.done(MapMission("lab", robot.stops_m, robot.start))
+        sweeps = [event.sweep for event in said if isinstance(event, SweepDone)]
+        assert len(sweeps) == 1 + len(robot.stops_m)
+        assert all(len(sweep.readings) == 300 for sweep in sweeps)
+        errors_m = []
+        for probe_m in robot.probes_m:
+            _, end = await it.do(DriveMission(*probe_m))
+            if end.phase is MissionPhase.FAILED:  # a stray reading may leave an obstacle where there is none
+                continue
+            found = final_estimates(await it.done(LocalizeMission()))[-1]
+            assert found.state is PoseState.LOCALIZED
+            assert found.best is not None
+            errors_m.append(math.hypot(found.best.x_m - robot.truth.x_m, found.best.y_m - robot.truth.y_m))
+        assert len(errors_m) >= 4
+        assert median(errors_m) < 0.050
+        assert max(errors_m) < 0.150
+
+
+async def test_every_reading_of_a_sweep_has_its_own_bearing_time_and_status(live) -> None:  # type: ignore[no-untyped-def]  # as above
+    robot = SimulatedRobot(load_world("office"), seed=1)
+    async with live(robot) as it:
+        said = await it.done(MapMission("office", (), robot.start))
+    (sweep,) = [event.sweep for event in said if isinstance(event, SweepDone)]
+    bearings = np.sort([reading.bearing_rad % (2 * math.pi) for reading in sweep.readings])
+    gaps = np.diff([*bearings, bearings[0] + 2 * math.pi])
+    assert np.degrees(gaps).min() > 1.2 * 0.8
+    assert np.degrees(gaps).max() < 1.2 * 1.2
+    times = [reading.time_ns for reading in sweep.readings]
+    assert times == sorted(times)
+    assert len(set(times)) == 300
+    assert {ReadingStatus.OK} <= {reading.status for reading in sweep.readings}
+    progress = [event for event in said if isinstance(event, SweepProgress)]
+    assert [event.taken for event in progress] == list(range(10, 301, 10))
+    assert progress[-1].hits + progress[-1].misses + progress[-1].rejected == 300
+
+
+async def test_estimates_are_published_while_the_sweep_is_under_way(live) -> None:  # type: ignore[no-untyped-def]  # as above
+    robot = SimulatedRobot(load_world("office"), seed=1)
+    async with live(robot) as it:
+        await it.done(MapMission("office", robot.stops_m, robot.start))
+        said = await it.done(LocalizeMission())
+    estimates = [event for event in said if isinstance(event, PoseEstimate)]
+    partial = [event for event in estimates if not event.final]
+    assert len(partial) >= 14
+    assert [event.readings for event in partial] == sorted(event.readings for event in partial)
+    done = next(index for index, event in enumerate(said) if isinstance(event, SweepDone))
+    assert sum(isinstance(event, PoseEstimate) for event in said[:done]) >= 10
+    assert estimates[-1].final
+
+
+async def test_in_one_of_two_equal_rooms_it_is_never_sure_of_the_wrong_one(live) -> None:  # type: ignore[no-untyped-def]  # as above
+    robot = SimulatedRobot(load_world("symmetric"), seed=2)
+    states = []
+    async with live(robot) as it:
+        await it.done(MapMission("twins", robot.stops_m, robot.start))
+        for probe_m in robot.probes_m:
+            await it.done(DriveMission(*probe_m))
+            found = final_estimates(await it.done(LocalizeMission()))[-1]
+            states.append(found.state)
+            here = (robot.truth.x_m, robot.truth.y_m)
+            assert any(math.dist(here, (region.centre.x_m, region.centre.y_m)) < 0.2 for region in found.regions)
+            if found.state is PoseState.AMBIGUOUS:
+                assert found.best is None
+                twins = [(here[0] + shift_m, here[1]) for shift_m in (-5.0, 5.0)]
+                assert any(math.dist(twin, (r.centre.x_m, r.centre.y_m)) < 0.3 for twin in twins for r in found.regions)
+    assert PoseState.AMBIGUOUS in states
+
+
+async def test_a_robot_taken_off_its_map_is_lost(live) -> None:  # type: ignore[no-untyped-def]  # as above
+    lab, office = (SimulatedRobot(load_world(name), seed=1) for name in ("laboratory", "office"))
+    async with live(office) as it:
+        await it.done(MapMission("office", office.stops_m, office.start))
+        await it.daemon.control.save_map(None)
+    async with live(lab) as it:
+        await it.daemon.control.load_map("office", None, None)
+        found = final_estimates(await it.done(LocalizeMission(0.0)))[-1]
+    assert found.state is PoseState.LOST
+    assert found.best is None
+
+
+async def test_an_unreachable_place_is_said_at_once_and_nothing_moves(live) -> None:  # type: ignore[no-untyped-def]  # as above
+    robot = SimulatedRobot(load_world("office"), seed=1)
+    async with live(robot) as it:
+        await it.done(MapMission("office", robot.stops_m, robot.start))
+        before = robot.truth
+        said, end = await it.do(DriveMission(50.0, 50.0))
+        assert end.phase is MissionPhase.FAILED
+        assert "cannot be reached" in end.message
+        assert robot.truth.distance_m(before) < 1e-6
+        assert it.daemon.supervisor.mode is Mode.IDLE
+        assert (said[-1].time_ns - said[0].time_ns) / NS_PER_S < 1.0
+
+
+async def test_a_saved_map_comes_back_exactly_and_the_robot_is_found_in_it(live) -> None:  # type: ignore[no-untyped-def]  # as above
+    robot = SimulatedRobot(load_world("office"), seed=1)
+    async with live(robot) as it:
+        said = await it.done(MapMission("office", robot.stops_m, robot.start))
+        cells = it.daemon.supervisor.place.grid.cells.copy()
+        entry = await it.daemon.control.save_map(None)
+    changes = [event for event in said if isinstance(event, MapChanged) and not event.whole]
+    assert [event.generation for event in changes] == list(range(1, len(robot.stops_m) + 2))
+    again = SimulatedRobot(load_world("office"), seed=9)
+    async with live(again) as it:
+        loaded = await it.daemon.control.load_map("office", None, None)
+        assert loaded.digest == entry.digest
+        assert np.array_equal(it.daemon.supervisor.place.grid.cells, cells)
+        with pytest.raises(MissionError, match="tied to this map"):
+            raise MissionError((await it.do(LocalizeMission()))[1].message)
+        found = final_estimates(await it.done(LocalizeMission(again.truth.heading_rad)))[-1]
+        assert found.state is PoseState.LOCALIZED
+        assert math.hypot(found.best.x_m - again.truth.x_m, found.best.y_m - again.truth.y_m) < 0.1
