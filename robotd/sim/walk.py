@@ -56,9 +56,8 @@ class Walk:
 
     @property
     def finished(self) -> bool:
-        """Whether all is said but what a client may or may not ask for in the end."""
-        ahead = (asked.request for _, asked in asked_ahead(self._steps, self._at))
-        return self.due_us is None and all(isinstance(request, BOOKKEEPING) for request in ahead)
+        """Whether the host has asked for all but what a client may or may not want in the end."""
+        return all(isinstance(asked.request, BOOKKEEPING) for _, asked in asked_ahead(self._steps, self._at))
 
     def take_due(self, now_us: int) -> list[Said]:
         """Return what is to be said by now, and step past it."""
