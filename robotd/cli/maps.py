@@ -20,6 +20,7 @@ from robotd.cli.where import legs_argument
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RobotdError
 from robotd.core.pose import IDENTITY, Pose2
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
 from robotd.mission.events import MapChanged
 from robotd.mission.requests import Legs, MapMission
@@ -107,7 +108,7 @@ def _show(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client:
         shown = client.map_show(arguments.name, arguments.version)
     if arguments.png is not None:
-        _draw(arguments.png, arguments.name or shown.map_id, shown)
+        _draw(arguments.png, f"Map {arguments.name}" if arguments.name else "The map in use", shown)
     if arguments.json:
         print_json(_facts(shown))
         return OK
@@ -133,6 +134,7 @@ def _facts(shown: MapChanged) -> dict[str, object]:
     return {
         "map_id": shown.map_id,
         "generation": shown.generation,
+        "digest": OccupancyGrid(shown.spec, values).digest(),
         "spec": asdict(shown.spec),
         "free_cells": int((values < NO_INFORMATION).sum()),
         "unknown_cells": int((values == NO_INFORMATION).sum()),

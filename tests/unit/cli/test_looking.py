@@ -77,6 +77,7 @@ def test_a_map_is_drawn_on_the_terminal_and_into_a_file(
     assert png.read_bytes().startswith(b"\x89PNG")
     assert main(["map", "show", "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
+    assert len(facts["digest"]) == 64
     assert (facts["free_cells"], facts["unknown_cells"], facts["occupied_cells"]) == (4, 20, 12)
 
 
