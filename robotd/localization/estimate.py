@@ -12,7 +12,7 @@ class PoseState(enum.StrEnum):
     LOST = "lost"
     """No pose explains enough of the readings."""
     AMBIGUOUS = "ambiguous"
-    """Several separate regions explain them about as well."""
+    """Several separate regions explain them about as well, or one that is too wide to be called a place."""
     LOCALIZED = "localized"
     """One region only."""
     PREDICTED = "predicted"

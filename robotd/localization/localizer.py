@@ -17,9 +17,13 @@ from robotd.localization.regions import regions_of
 
 @dataclass(frozen=True, slots=True)
 class LocalizationSettings:
-    """What counts as explained, and what as an answer."""
+    """What counts as explained, and what as an answer.
 
-    range_error_m: float = 0.05
+    The defaults were chosen on simulated rooms and on two real buildings (5 cm cells, 120 kept-out scans each): the
+    true pose explained 75 to 90 % of the readings, the best pose in a building where the robot was not 17 to 69 %.
+    """
+
+    range_error_m: float = 0.075
     """The paper's eps: how far an obstacle on the map may lie from the head of a reading."""
     heading_error_rad: float = 0.0175
     """How far the heading that odometry gives may be off: headings up to so far away are tried too."""
@@ -28,9 +32,9 @@ class LocalizationSettings:
     localized_share: float = 0.5
     """Share of the readings that the best pose must explain; below it the robot is lost."""
     rival_share: float = 0.2
-    """A pose that explains this share of the readings fewer than the best is still an answer."""
+    """A pose is still an answer if it explains fewer readings than the best by no more than this share of all."""
     unique_within_m: float = 0.5
-    """The pose is unique if all answers lie this near to the best one."""
+    """The pose is unique if all answers lie this near to the best: no rival elsewhere, no region a corridor long."""
     readings_min: int = 12
     """With fewer readings than this nothing is said."""
 

@@ -100,16 +100,17 @@ def test_a_long_corridor_without_marks_is_ambiguous_though_its_region_is_one() -
     assert max(region.x_max_m - region.x_min_m for region in estimate.regions) > 2.0
 
 
-def test_a_robot_in_another_room_is_lost() -> None:
-    elsewhere = room((0.0, -2.0, 0.3, 1.0), (2.0, -1.0, 2.3, 3.0), (4.0, -2.0, 4.5, 0.0))
-    localizer = Localizer(LAB, SETTINGS, "a map")
-    localizer.begin((0.3,))
-    for reading in seen_from(elsewhere, Pose2(1.2, 1.0, 0.3), 60):
-        localizer.add(reading)
-    estimate = localizer.estimate(0, final=True)
-    assert estimate.state is PoseState.LOST
-    assert (estimate.best, estimate.regions) == (None, ())
-    assert estimate.readings == 60
+def test_a_robot_that_was_turned_or_carried_elsewhere_is_lost() -> None:
+    elsewhere = room((-1.0, -2.0, 0.0, 3.0), (6.0, -2.0, 7.0, 3.0), (2.0, 1.8, 2.2, 3.0), (3.5, -2.0, 3.7, -1.0))
+    for binary, pose, believed_rad in ((LAB, Pose2(0.0, 0.0, 0.3), 1.1), (elsewhere, Pose2(3.0, 0.9, 0.3), 0.7)):
+        localizer = Localizer(LAB, SETTINGS, "a map")
+        localizer.begin((believed_rad,))
+        for reading in seen_from(binary, pose, 60):
+            localizer.add(reading)
+        estimate = localizer.estimate(0, final=True)
+        assert estimate.state is PoseState.LOST
+        assert (estimate.best, estimate.regions) == (None, ())
+        assert estimate.readings == 60
 
 
 def test_too_few_readings_say_nothing() -> None:
