@@ -1,60 +1,24 @@
 """What a daemon needs to know about a robot that is not there, as a configuration file."""
 
-import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
-from robotd.config import Config, effective_text, loads
+from robotd.config import effective_text, loads
 from robotd.config.writer import write_value
 from robotd.core.errors import RobotdError
-from robotd.core.pose import Pose2
 from robotd.recording.reader import Recording
-from robotd.sim.recorded_building import RecordedRobot
-from robotd.sim.robot import EmulatedRobot
-from robotd.sim.world import load_world
 
-_MARGIN_M = 0.5
 RUNTIME_DIR, MAPS_DIR, RECORDINGS_DIR = "run", "maps", "recordings"
 
 
-@dataclass(frozen=True, slots=True)
-class GridSize:
-    """How many cells it takes for a map with the start in its middle to hold a whole place."""
-
-    rows: int
-    cols: int
-
-    @classmethod
-    def around(cls, start: Pose2, points_m: Iterable[tuple[float, float]], resolution_m: float) -> "GridSize":
-        """Return the size that reaches all points, with a margin, in whole tens of cells."""
-        reach_m = np.abs(np.array(list(points_m)) - (start.x_m, start.y_m)).max(axis=0) + _MARGIN_M
-        cols, rows = (20 * math.ceil(side / (10 * resolution_m)) for side in reach_m)
-        return cls(rows, cols)
-
-
-def grid_size(world: str, robot: EmulatedRobot) -> GridSize:
-    """Return how large a map of the robot's place must be."""
-    defaults = Config()
-    points = [*robot.stops_m, *robot.probes_m, (robot.start.x_m, robot.start.y_m)]
-    if isinstance(robot, RecordedRobot):
-        reach_m = defaults.rangefinder.range_max_m
-        points = [(x + sign * reach_m, y + sign * reach_m) for x, y in points for sign in (-1, 1)]
-    else:
-        points += [corner for wall in load_world(world).wall for corner in wall.points_m]
-    return GridSize.around(robot.start, points, defaults.grid.resolution_m)
-
-
-def config_text(ports: Mapping[str, str], size: GridSize) -> str:
+def config_text(ports: Mapping[str, str]) -> str:
     """Return a configuration for devices on these ports, which keeps all that it makes beside itself."""
     sections: dict[str, dict[str, object]] = {
         "server": {"runtime_dir": RUNTIME_DIR},
         "maps": {"dir": MAPS_DIR},
         "recording": {"dir": RECORDINGS_DIR},
         **{device: {"port": port} for device, port in ports.items()},
-        "grid": {"rows": size.rows, "cols": size.cols},
     }
     lines = ["# Made by robotctl for emulated devices; what is not here has its default."]
     for section, values in sections.items():

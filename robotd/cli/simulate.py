@@ -8,7 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import cast
 
-from robotd.cli.emulated import config_text, grid_size, recorded_config_text, write_config
+from robotd.cli.emulated import config_text, recorded_config_text, write_config
 from robotd.cli.terminal import err, out, print_json, print_pairs
 from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.log import configure
@@ -25,7 +25,7 @@ def _sim(arguments: argparse.Namespace) -> int:
     robot = load_robot(arguments.world, arguments.seed, odometry=OdometrySource(arguments.odometry))
 
     def write(file: Path, ports: dict[str, str]) -> None:
-        write_config(file, config_text(ports, grid_size(arguments.world, robot)))
+        write_config(file, config_text(ports))
 
     _serve(arguments, robot, write, truth_path=arguments.truth)
     return OK

@@ -6,17 +6,14 @@ from typing import Any
 
 import pytest
 
-from robotd.cli.emulated import GridSize, grid_size
 from robotd.cli.main import main
 from robotd.config import load
-from robotd.core.pose import Pose2
-from robotd.grid.occupancy import GridSettings
 from robotd.hardware.link.tap import Direction
 from robotd.recording.comparison import Difference
 from robotd.recording.entries import BytesEntry, RecordingHeader
 from robotd.recording.recorder import Recorder
 from robotd.sim.load import load_robot
-from robotd.sim.world import load_world, world_names
+from robotd.sim.world import load_world
 
 
 @pytest.fixture
@@ -59,19 +56,6 @@ def test_the_configuration_it_writes_is_one_to_run_on(
     assert config.maps.dir == str(tmp_path / "lab" / "maps")
 
 
-@pytest.mark.parametrize("name", world_names())
-def test_the_map_it_asks_for_holds_the_whole_room(name: str) -> None:
-    robot = load_robot(name)
-    size = grid_size(name, robot)
-    spec = GridSettings(rows=size.rows, cols=size.cols).spec_around(robot.start.x_m, robot.start.y_m)
-    corners = [corner for wall in load_world(name).wall for corner in wall.points_m]
-    assert all(spec.contains(*spec.cell_at(*corner)) for corner in corners)
-
-
-def test_a_map_is_no_larger_than_it_must_be() -> None:
-    assert GridSize.around(Pose2(1.0, 1.0, 0.0), [(3.0, 0.0)], 0.05) == GridSize(rows=60, cols=100)
-
-
 def test_a_configuration_that_cannot_be_written_is_a_failure(
     interrupted: list[dict[str, Any]], capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -94,8 +78,6 @@ def test_a_recorded_building_is_made_of_a_log(
     assert main(words) == 0
     assert json.loads(capsys.readouterr().out) == {"file": str(out), "stops": 3, "kept_out": 3}
     robot = load_robot(str(out))
-    size = grid_size(str(out), robot)
-    assert size.rows * 0.05 / 2 > 6.0
     assert len(robot.probes_m) == 3
 
 

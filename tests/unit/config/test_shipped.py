@@ -32,3 +32,7 @@ def test_every_key_has_a_sentence_before_it_with_its_unit() -> None:
         assert sentence.startswith("# "), path
         if path[-1].rpartition("_")[2] in UNITS:
             assert "[" in sentence, path
+
+
+def test_it_is_as_wide_as_a_page() -> None:
+    assert [line for line in FILE.read_text().splitlines() if len(line) > 120] == []
