@@ -253,4 +253,4 @@ def _save(axes: Axes, file: Path) -> None:
     figure = axes.get_figure()
     assert isinstance(figure, Figure)
     file.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(file)
+    figure.savefig(file, format="png")

@@ -57,7 +57,7 @@ def read_table(kind: type[T], table: Table, path: KeyPath, problems: Problems, b
     before = len(problems.found)
     shape = _Shape.of(kind, base)
     values = _read_known(shape, table, path, problems)
-    for name in table.keys() - shape.types.keys():
+    for name in (name for name in table if name not in shape.types):
         problems.add((*path, name), unknown_name("key" if path else "section", name, shape.types))
     made = _construct(shape, values, table.keys() - values.keys(), path, problems)
     if made is None or len(problems.found) > before:

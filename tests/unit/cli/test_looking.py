@@ -125,3 +125,10 @@ def test_recording_is_started_and_stopped(client: Any, capsys: pytest.CaptureFix
     assert named == f"recording to {file}"
     assert json.loads(unnamed) == {"path": "recordings/new.mcap"}
     assert stopped == "recorded recordings/new.mcap"
+
+
+def test_a_file_that_cannot_be_written_is_one_line(
+    client: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["map", "show", "--png", str(tmp_path)]) == 1
+    assert capsys.readouterr().err == f"robotctl: {tmp_path}: Is a directory\n"
