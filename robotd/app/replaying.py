@@ -6,11 +6,12 @@ from pathlib import Path
 
 from robotd.app.compose import Daemon, compose
 from robotd.config import loads
-from robotd.core.clock import NS_PER_S, run_virtual
+from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RobotdError
 from robotd.hardware.wire.requests import summarize_requests
 from robotd.recording.comparison import Difference, compare, results_digest
 from robotd.recording.entries import CommandEntry, ResultEntry
+from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import Recording, read
@@ -43,7 +44,7 @@ def replay_recording(path: Path) -> ReplayReport:
     """
     recording = read(path)
     journal = PrerollJournal(recording.header, _NO_LIMIT)
-    run_virtual(_play(recording, journal), start_ns=recording.header.started_ns)
+    run_recorded(_play(recording, journal), start_ns=recording.header.started_ns)
     return ReplayReport(
         digest=results_digest(journal.remembered),
         recorded_digest=results_digest(recording.entries),

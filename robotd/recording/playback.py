@@ -1,13 +1,17 @@
 """Plays a recording to the daemon, in its process and on the virtual clock.
 
-One task walks through the entries in file order and lets each take effect at its recorded time: bytes arrive,
+The loop is led through the entries in file order, and each takes effect at its recorded time: bytes arrive,
 lines come and go, clients ask, array work is handed back. What the daemon writes goes nowhere; its journal
 sees it, and :func:`robotd.recording.comparison.compare` judges it. The loop must start at the recording's first
 moment, so that the daemon's times are the recorded ones::
 
-    playback = Playback(recording, carry_out)
-    links = {name: playback.line(name).connect for name in devices}   # a Connect each
-    run_virtual(daemon_with(links, playback.compute, playback.run), start_ns=recording.header.started_ns)
+    async def replay() -> None:
+        playback = Playback(recording, carry_out)
+        links = {name: playback.line(name).connect for name in devices}   # a Connect each
+        ... start the daemon on these links and on playback.compute ...
+        await playback.run()
+
+    run_recorded(replay(), start_ns=recording.header.started_ns)
 """
 
 import asyncio
@@ -15,12 +19,13 @@ from collections import Counter, defaultdict, deque
 from collections.abc import Callable
 from typing import TypeVar
 
-from robotd.core.clock import NS_PER_S
 from robotd.core.errors import TransportError
 from robotd.hardware.link.tap import Direction
 from robotd.recording.entries import BytesEntry, CommandEntry, ComputedEntry, Entry, LineEntry
+from robotd.recording.moments import RecordedTimeLoop
 from robotd.recording.reader import Recording
 
+_FOR_EVER_S = 1e9
 SETTLE_S = 0.001
 """How long after the last entry its effects are waited for."""
 
@@ -37,7 +42,9 @@ class Playback:
             recording: what to play.
             carry_out: called with each command at its time; must not block (start a task for what takes long).
         """
-        self._recording = recording
+        self._entries = recording.entries
+        self._at = 0
+        self._over = asyncio.Event()
         self._carry_out = carry_out
         self._lines = {device: ReplayLine(device) for device in recording.devices}
         self.compute = RecordedCompute(recording)
@@ -47,12 +54,29 @@ class Playback:
         return self._lines.setdefault(device, ReplayLine(device))
 
     async def run(self) -> None:
-        """Let every entry take effect at its time, and end when the last has."""
-        for entry in self._recording.entries:
-            await _until(entry.time_ns)
-            self._play(entry)
+        """Let every entry take effect at its time, and end when the last has.
+
+        Raises:
+            TypeError: the loop is not one of :func:`robotd.recording.moments.run_recorded`.
+        """
+        loop = asyncio.get_running_loop()
+        if not isinstance(loop, RecordedTimeLoop):
+            raise TypeError("a recording is played on a RecordedTimeLoop: use run_recorded")
+        loop.follow(self._next_ns, self._play_next)
+        async with asyncio.timeout(_FOR_EVER_S):  # a loop without a timer would wait for a descriptor
+            while self._next_ns() is not None:
+                await self._over.wait()
         await asyncio.sleep(SETTLE_S)
         self.compute.release_all()
+
+    def _next_ns(self) -> int | None:
+        return self._entries[self._at].time_ns if self._at < len(self._entries) else None
+
+    def _play_next(self) -> None:
+        self._at += 1
+        self._play(self._entries[self._at - 1])
+        if self._at == len(self._entries):
+            self._over.set()
 
     def _play(self, entry: Entry) -> None:
         match entry:
@@ -66,13 +90,6 @@ class Playback:
                 self.compute.release(entry)
             case _:
                 """What the daemon wrote, and the results that it came to, are for the comparison."""
-
-
-async def _until(time_ns: int) -> None:
-    loop = asyncio.get_running_loop()
-    left_s = time_ns / NS_PER_S - loop.time()
-    if left_s > 0:
-        await asyncio.sleep(left_s)
 
 
 class ReplayLine:

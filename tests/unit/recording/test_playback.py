@@ -4,7 +4,7 @@ import asyncio
 import functools
 import random
 import zlib
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Coroutine
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from robotd.hardware.transport.transport import Connect, Transport
 from robotd.recording.comparison import compare, results_digest
 from robotd.recording.entries import BytesEntry, CommandEntry, ComputedEntry, Entry, LineEntry, RecordingHeader
 from robotd.recording.journal import Journal, MemoryJournal
+from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback, RecordedCompute
 from robotd.recording.reader import Recording, read
 from robotd.recording.recorder import Recorder
@@ -144,7 +145,7 @@ def replay(recording: Recording) -> list[Entry]:
         daemon = ToyDaemon({device: playback.line(device).connect for device in DEVICES}, playback.compute, journal)
         await daemon.run(playback.run)
 
-    run_virtual(main(), start_ns=recording.header.started_ns)
+    run_recorded(main(), start_ns=recording.header.started_ns)
     return journal.entries
 
 
@@ -184,6 +185,18 @@ def test_a_cut_recording_replays_up_to_the_cut(keep: float) -> None:
     assert compare(recording, replay(recording), asked) == ()
 
 
+def recorded(test: Callable[[], Coroutine[Any, Any, None]]) -> Callable[[], None]:
+    """Run a test on a loop that can be led through recorded moments."""
+
+    @functools.wraps(test)
+    def run() -> None:
+        run_recorded(test(), start_ns=START_NS)
+
+    del run.__wrapped__  # pytest would see the coroutine function through it
+    return run
+
+
+@recorded
 async def test_chunks_arrive_as_they_were_at_their_times() -> None:
     start = now_ns()
     playback = Playback(
@@ -219,6 +232,7 @@ async def test_chunks_arrive_as_they_were_at_their_times() -> None:
     await task
 
 
+@recorded
 async def test_a_daemon_that_connects_late_still_gets_every_byte() -> None:
     playback = Playback(
         recording_of(LineEntry(1, "drive", up=True), from_board(2, b"a"), from_board(3, b"b")), no_command
@@ -228,6 +242,7 @@ async def test_a_daemon_that_connects_late_still_gets_every_byte() -> None:
     assert [await line.read(), await line.read()] == [b"a", b"b"]
 
 
+@recorded
 async def test_closing_ends_a_pending_read() -> None:
     playback = Playback(recording_of(LineEntry(1, "drive", up=True)), no_command)
     await playback.run()
@@ -239,6 +254,7 @@ async def test_closing_ends_a_pending_read() -> None:
         await reading
 
 
+@recorded
 async def test_a_line_that_was_never_opened_never_comes() -> None:
     playback = Playback(recording_of(), no_command)
     with pytest.raises(TimeoutError):
@@ -246,6 +262,7 @@ async def test_a_line_that_was_never_opened_never_comes() -> None:
             await playback.line("drive").connect()
 
 
+@recorded
 async def test_commands_come_at_their_times() -> None:
     start = now_ns()
     seen: list[tuple[int, str]] = []
@@ -254,6 +271,7 @@ async def test_commands_come_at_their_times() -> None:
     assert seen == [(start + 5, "arm"), (start + 9, "stop")]
 
 
+@recorded
 async def test_results_of_computing_come_no_earlier_than_recorded_and_in_order() -> None:
     start = now_ns()
     playback = Playback(
@@ -272,6 +290,7 @@ async def test_results_of_computing_come_no_earlier_than_recorded_and_in_order()
     await task
 
 
+@recorded
 async def test_a_job_that_fails_or_is_cancelled_does_not_count() -> None:
     compute = RecordedCompute(recording_of(ComputedEntry(5, "rank", 0)))
     with pytest.raises(ZeroDivisionError):
@@ -281,3 +300,45 @@ async def test_a_job_that_fails_or_is_cancelled_does_not_count() -> None:
     cancelled.cancel()
     compute.release(ComputedEntry(5, "rank", 0))
     assert await compute.run("rank", lambda: 7) == 7
+
+
+async def ask_with_patience(playback: Playback, patience_s: float, journal: Journal) -> int:
+    """Ask again whenever there is no answer in time; return how often."""
+    line = await playback.line("drive").connect()
+    reading = asyncio.create_task(line.read())
+    for tries in range(1, 10):
+        journal.bytes_passed("drive", Direction.TO_BOARD, now_ns(), b"ask;")
+        line.write(b"ask;")
+        done, _ = await asyncio.wait({reading}, timeout=patience_s)
+        if done:
+            return tries
+    raise AssertionError("never answered")
+
+
+@recorded
+async def test_a_timer_that_did_nothing_when_it_was_recorded_does_nothing_in_the_replay() -> None:
+    start = now_ns()
+    answer = from_board(start + 500_000_000, b"late, but the daemon was even later")
+    playback = Playback(recording_of(LineEntry(start + 1, "drive", up=True), answer), no_command)
+    asking = asyncio.create_task(ask_with_patience(playback, 0.2, MemoryJournal()))
+    await playback.run()
+    assert await asking == 1
+
+
+@recorded
+async def test_a_timer_that_did_something_does_it_again_at_its_time() -> None:
+    start = now_ns()
+    asked = [BytesEntry(start + ms * 1_000_000, "drive", Direction.TO_BOARD, b"ask;") for ms in (0, 203, 411)]
+    answer = from_board(start + 500_000_000, b"late")
+    recording = recording_of(LineEntry(start, "drive", up=True), *asked, answer)
+    playback, journal = Playback(recording, no_command), MemoryJournal()
+    asking = asyncio.create_task(ask_with_patience(playback, 0.2, journal))
+    await playback.run()
+    assert await asking == 3
+    assert [entry.time_ns for entry in journal.entries] == [entry.time_ns for entry in asked]
+    assert now_ns() > answer.time_ns
+
+
+async def test_a_recording_is_not_played_on_another_loop() -> None:
+    with pytest.raises(TypeError, match="use run_recorded"):
+        await Playback(recording_of(), no_command).run()
