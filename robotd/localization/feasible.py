@@ -81,9 +81,9 @@ def _overlap(shape: tuple[int, ...], row: int, col: int) -> tuple[Window, Window
 def _block_where_outside(blocked: NDArray[np.bool_], body: NDArray[np.intp]) -> None:
     """Block the cells from which some cell of the body is outside the grid: strips along its four sides."""
     rows, cols = blocked.shape
-    low_row, low_col = np.minimum(body.min(axis=0), 0).tolist()
-    high_row, high_col = np.maximum(body.max(axis=0), 0).tolist()
-    blocked[: min(rows, -low_row)] = True
+    low_row, low_col = body.min(axis=0).tolist()
+    high_row, high_col = body.max(axis=0).tolist()
+    blocked[: max(0, -low_row)] = True
     blocked[max(0, rows - high_row) :] = True
-    blocked[:, : min(cols, -low_col)] = True
+    blocked[:, : max(0, -low_col)] = True
     blocked[:, max(0, cols - high_col) :] = True

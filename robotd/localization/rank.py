@@ -20,7 +20,8 @@ _READINGS_MAX = int(np.iinfo(np.uint16).max)
 class RankGrid:
     """Counts feasible readings for every cell and every heading; it can be looked at after any of them.
 
-    Only free cells are poses: a cell that is occupied or unknown explains no reading, its rank stays 0.
+    Only free cells are poses: the robot's own cell belongs to the body of every probe, so a cell that is occupied or
+    unknown explains no reading and its rank stays 0.
     """
 
     def __init__(self, binary: BinaryMap, headings_rad: Sequence[float], error_radius_cells: float) -> None:
@@ -58,7 +59,7 @@ class RankGrid:
                 error_radius_cells=self._error_radius_cells,
                 reach_cells=2 * max(self._free.shape),
             )
-            self._rank[slice_number] += feasible_poses(self._obstacles, probe) & self._free
+            self._rank[slice_number] += feasible_poses(self._obstacles, probe)
         self.readings += 1
 
     @property

@@ -81,6 +81,18 @@ def test_convolution_gives_the_poses_that_the_definition_gives(
     assert np.array_equal(feasible, slow_feasible(occupied, reading, heading, radius))
 
 
+offsets = st.lists(st.tuples(st.integers(-13, 13), st.integers(-13, 13)), min_size=1, max_size=6)
+
+
+@given(maps, offsets)
+def test_whatever_the_body_a_cell_is_blocked_by_obstacles_and_by_the_edge(
+    occupied: NDArray[np.bool_], body: list[tuple[int, int]]
+) -> None:
+    blocked = blocked_set(occupied, np.array(body))
+    for row, col in np.ndindex(occupied.shape):
+        assert blocked[row, col] == any(is_occupied(occupied, row + i, col + j) for i, j in body)
+
+
 def drawn(*rows: str) -> NDArray[np.bool_]:
     """Return the cells marked ``#``, the first row being the top."""
     return np.array([[cell == "#" for cell in row] for row in reversed(rows)])

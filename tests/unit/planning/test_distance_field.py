@@ -4,6 +4,7 @@ import heapq
 import math
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -39,6 +40,13 @@ def test_the_field_is_the_shortest_way(free: NDArray[np.bool_], data: st.DataObj
     field, expected = distance_field(free, goal), slow_field(free, goal)
     assert np.array_equal(np.isinf(field), np.isinf(expected))
     assert np.allclose(field, expected)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_ways_that_meet_from_different_wavefronts_are_compared(seed: int) -> None:
+    free = np.random.default_rng(seed).random((45, 50)) < 0.75
+    free[20, 20] = True
+    assert np.allclose(distance_field(free, (20, 20)), slow_field(free, (20, 20)))
 
 
 def test_a_long_corridor_is_followed_to_its_end() -> None:

@@ -114,9 +114,19 @@ def test_a_robot_too_near_to_a_wall_leaves_it_first() -> None:
     path = plan(WALL, beside, (0.0, 0.5), SETTINGS)
     assert isinstance(path, Path)
     (x_m, y_m), *_ = path.waypoints_m
-    assert x_m < 0.8
+    assert 0.6 < x_m < 0.8
     assert abs(y_m + 1.0) < 0.2
     assert clearance_m(Path((x_m, y_m), path.waypoints_m[1:]), WALL) > 0.25
+
+
+def test_a_robot_in_a_narrow_niche_leaves_it_by_the_mouth_and_not_through_the_wall() -> None:
+    niche = room((-0.3, -2.0, -0.2, -0.9), (0.2, -2.0, 0.3, -0.9))
+    wide = PlanningSettings(robot_radius_m=0.15, clearance_m=0.35)
+    path = plan(niche, Pose2(0.0, -1.3, 0.0), (2.0, -1.0), wide)
+    assert isinstance(path, Path)
+    (x_m, y_m), *_ = path.waypoints_m
+    assert abs(x_m) < 0.2
+    assert y_m > -0.6
 
 
 def test_the_ground_under_the_robot_is_free_though_nobody_saw_it() -> None:
