@@ -63,8 +63,14 @@ def compose(config: Config, connects: Mapping[str, Connect], compute: Compute, j
         lambda event, place: note_result(journal, event, place),
     )
     store = MapStore(Path(config.maps.dir), config.grid, keep=config.maps.keep)
-    recordings_dir = Path(config.recording.dir)
-    control = Control(supervisor, store, journal, noted, recordings_dir, effective_text(config))
+    control = Control(
+        supervisor,
+        store=store,
+        journal=journal,
+        compute=noted,
+        recordings_dir=Path(config.recording.dir),
+        config_text=effective_text(config),
+    )
     return Daemon(robot, supervisor, control)
 
 

@@ -18,7 +18,7 @@ from robotd.core.log import configure
 from robotd.mission.compute import ThreadCompute
 from robotd.recording.entries import RecordingHeader
 from robotd.recording.preroll import PrerollJournal
-from robotd.server.health import Notifier, feed_watchdog
+from robotd.server.health import Notifier, feed_watchdog, watchdog_s
 from robotd.server.server import Server
 
 EXIT_USAGE = 2
@@ -85,11 +85,14 @@ def _stop_first(daemon: Daemon, stopping: asyncio.Event) -> None:
 
 async def _serve(config: Config, daemon: Daemon, stopping: asyncio.Event) -> None:
     server = Server(config.server, daemon.control)
-    notifier = Notifier.from_environment()
+    notifier = Notifier.of()
     async with asyncio.TaskGroup() as group:
         serving = group.create_task(server.run(), name="server")
-        tasks = [serving, group.create_task(feed_watchdog(notifier), name="watchdog")]
-        tasks += [group.create_task(part, name=name) for name, part in daemon.parts().items()]
+        tasks = [serving, *(group.create_task(part, name=name) for name, part in daemon.parts().items())]
+        within_s = watchdog_s()
+        if within_s is not None:
+            feeding = feed_watchdog(notifier, within_s, lambda: not any(task.done() for task in tasks))
+            tasks.append(group.create_task(feeding, name="watchdog"))
         group.create_task(_announce(server, notifier), name="announce")
         await stopping.wait()
         log.info("stopping")
@@ -101,7 +104,8 @@ async def _serve(config: Config, daemon: Daemon, stopping: asyncio.Event) -> Non
 
 async def _announce(server: Server, notifier: Notifier) -> None:
     await server.serving.wait()
-    notifier.ready("serving; disarmed")
+    notifier.ready()
+    notifier.status("serving")
     log.info("robotd %s is ready", __version__)
 
 
@@ -115,3 +119,7 @@ def new_journal(config: Config) -> PrerollJournal:
         started_ns=now_ns(),
     )
     return PrerollJournal(header, config.recording.preroll_bytes)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -14,6 +14,7 @@ from rich_argparse import RawDescriptionRichHelpFormatter
 
 from robotd import __version__
 from robotd.cli import configuration, control, imports, maps, recordings, simulate, where
+from robotd.cli.demo import verbs as demonstrations
 from robotd.cli.terminal import complain
 from robotd.cli.verb import BAD_CONFIG, FAILED, INTERRUPTED, Verb
 from robotd.core.errors import ConfigError, RobotdError
@@ -26,9 +27,11 @@ VERBS: tuple[Verb, ...] = (
     *imports.VERBS,
     *recordings.VERBS,
     *configuration.VERBS,
+    *demonstrations.VERBS,
 )
 
 FAMILIES = {
+    "demo": "show the main job, end to end, on a robot that is not there",
     "config": "check and show configurations",
     "import": "make a recorded building of somebody else's log",
     "map": "make, save, load and look at maps",
@@ -82,6 +85,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         return INTERRUPTED
     except BrokenPipeError:  # the reader of our output went away, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except OSError as error:  # a file that was named on the command line
+        complain(f"robotctl: {error.filename or ''}: {error.strerror or error}")
         return FAILED
     return code
 

@@ -19,6 +19,7 @@ from robotd.core.errors import MapError
 from robotd.grid.image import encode_pgm, trinary_from_cells
 from robotd.grid.map_yaml import MapYaml
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.spec import GridSpec
 from robotd.maps.atomic import make_directory, publish_directory, remove_leftover, withdraw_directory
 from robotd.maps.manifest import FileSum, Manifest, check_name, decode_manifest
 
@@ -42,6 +43,8 @@ class MapEntry:
     metadata: dict[str, Any]
     path: Path
     """The directory; ``map.yaml`` in it is for other programs."""
+    spec: GridSpec | None
+    """Its placement; None if the manifest is damaged."""
     damage: str | None = None
     """Why its manifest cannot be read."""
 
@@ -126,7 +129,7 @@ class MapStore:
         try:
             return _entry_of(_read_manifest(path), path)
         except MapError as error:
-            return MapEntry(name, version, "", 0, {}, path, damage=str(error))
+            return MapEntry(name, version, "", 0, {}, path, None, damage=str(error))
 
     def _intact(self, name: str, damaged: int) -> str:
         for version in reversed([version for version in self._versions(name) if version != damaged]):
@@ -185,7 +188,15 @@ def _files_of(
 
 
 def _entry_of(manifest: Manifest, path: Path) -> MapEntry:
-    return MapEntry(manifest.name, manifest.version, manifest.digest, manifest.created_unix_ns, manifest.metadata, path)
+    return MapEntry(
+        name=manifest.name,
+        version=manifest.version,
+        digest=manifest.digest,
+        created_unix_ns=manifest.created_unix_ns,
+        metadata=manifest.metadata,
+        path=path,
+        spec=manifest.spec,
+    )
 
 
 def _read_manifest(path: Path) -> Manifest:

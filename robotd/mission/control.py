@@ -13,7 +13,7 @@ import numpy as np
 
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns, wall_offset_ns
-from robotd.core.errors import MissionError
+from robotd.core.errors import MapError, MissionError
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.spec import GridSpec
@@ -32,6 +32,7 @@ class Control:
     def __init__(
         self,
         supervisor: Supervisor,
+        *,
         store: MapStore,
         journal: PrerollJournal,
         compute: Compute,
@@ -90,7 +91,7 @@ class Control:
         """Return every cell of the map in use.
 
         Raises:
-            MissionError: there is none.
+            MapError: there is none.
         """
         return self._place().whole(now_ns())
 
@@ -107,8 +108,7 @@ class Control:
         """Save the map in use as a new version, under its own or another name.
 
         Raises:
-            MissionError: there is none.
-            MapError: it cannot be written; what was there before is untouched.
+            MapError: there is none, or it cannot be written; what was there before is untouched.
         """
         place = self._place()
         metadata = {"generation": place.generation, "map_id": place.map_id}
@@ -129,8 +129,8 @@ class Control:
 
     def use_map(self, map_id: str, name: str, grid: OccupancyGrid, robot_in_map: Pose2 | None) -> None:
         """Make a grid the map in use."""
-        arguments = {"map_id": map_id, "name": name, "grid": _packed(grid)}
-        arguments["robot_in_map"] = None if robot_in_map is None else msgspec.to_builtins(robot_in_map)
+        pose = None if robot_in_map is None else msgspec.to_builtins(robot_in_map)
+        arguments = {"map_id": map_id, "name": name, "grid": _packed(grid), "robot_in_map": pose}
         self._journal.command(now_ns(), "use_map", arguments)
         place = MapInUse(map_id, name, grid, None)
         here = self._supervisor.robot.drive.odometry.latest
@@ -152,8 +152,10 @@ class Control:
         return str(file)
 
     async def stop_recording(self) -> str | None:
-        """End the recording and return its file; RecordingError if there is none, or if it is incomplete."""
+        """End the recording and return its file, None if there is none; RecordingError if it is incomplete."""
         path = self._journal.path
+        if path is None:
+            return None
         finish = self._journal.stop()
         self._recording_changed(None)
         await self._compute.run("end recording", finish)
@@ -183,7 +185,7 @@ class Control:
     def _place(self) -> MapInUse:
         place = self._supervisor.place
         if place is None:
-            raise MissionError("no map is in use: make one, or load one")
+            raise MapError("no map is in use: make one, or load one")
         return place
 
     def _recording_changed(self, path: str | None) -> None:

@@ -42,5 +42,5 @@ async def run_driving(context: MissionContext, place: MapInUse, mission: DriveMi
     report.at(MissionPhase.DRIVING, 0)
     arrived = await drive_to(context, place, mission.x_m, mission.y_m, mission.legs)
     pose = place.pose_of(arrived)
-    assert pose is not None  # noqa: S101  # drive_to refuses to start without
+    assert pose is not None  # drive_to refuses to start without
     return f"arrived at ({pose.x_m:.2f}, {pose.y_m:.2f}) m"

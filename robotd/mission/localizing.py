@@ -41,7 +41,7 @@ async def run_localizing(
     finally:
         narrowed.cancel()
         await asyncio.wait((narrowed,))
-    if estimate.state is PoseState.LOCALIZED and estimate.best is not None:
+    if mission.tie and estimate.state is PoseState.LOCALIZED and estimate.best is not None:
         place.map_from_odom = estimate.best @ sweep.in_odom.inverse()
     return estimate
 

@@ -33,6 +33,8 @@ class LocalizeMission:
 
     heading_rad: float | None = None
     """The robot's heading in the map frame, if the client knows better than odometry."""
+    tie: bool = True
+    """Whether odometry is tied anew to the map where the robot is found; otherwise it is only said."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ class DrivingSettings:
     """How hard it plans to brake; well below what the base can."""
     turn_deceleration_radps2: float = 1.0
     """The same for turning."""
-    gain_hz: float = 2.5
+    gain_hz: float = 5.0
     """Speed per remaining distance at the very end of a leg."""
     position_tolerance_m: float = 0.02
     """A leg ends this near to its end."""

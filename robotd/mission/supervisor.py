@@ -53,6 +53,7 @@ class Supervisor:
         self._sweeps = 0
         self._lease: Lease | None = None
         self._predictor = Predictor()
+        self._halts = 0
 
     @property
     def mode(self) -> Mode:
@@ -110,8 +111,7 @@ class Supervisor:
             raise MissionError(f"cannot arm: {'; '.join(self.robot.faults)}: clear first")
         try:
             async with asyncio.timeout(_DEVICE_TIMEOUT_S):
-                for device in self.robot.devices:
-                    await device.arm()
+                await self._arm_devices()
         except TimeoutError:
             self.robot.stop_now()
             raise LinkTimeout(f"arming took longer than {_DEVICE_TIMEOUT_S:g} s") from None
@@ -119,6 +119,15 @@ class Supervisor:
             self.robot.stop_now()
             raise
         self._apply(Occasion.ARM, "armed")
+
+    async def _arm_devices(self) -> None:
+        halts = self._halts
+        for device in self.robot.devices:
+            await device.arm()
+            if self._halts != halts:
+                raise MissionError(f"stopped while arming: {self._reason}")
+        if not all(device.status.armed for device in self.robot.devices):
+            raise MissionError("a device was lost while the others were arming")
 
     async def stop(self, reason: str) -> None:
         """Stop everything and disarm; valid at any time."""
@@ -196,6 +205,7 @@ class Supervisor:
     def halt(self, occasion: Occasion, reason: str) -> None:
         """Stop first, then everything else."""
         self.robot.stop_now()
+        self._halts += 1
         if self._mission is not None and self._mission is not asyncio.current_task():
             self._mission.cancel()
         self._apply(occasion, reason)

@@ -13,6 +13,7 @@ import msgspec
 from msgspec import Meta
 
 from robotd.core.pose import IDENTITY, Pose2
+from robotd.maps.store import MapEntry
 from robotd.mission.events import MissionProgress, Status
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
 from robotd.server.map_wire import MapPayload
@@ -58,6 +59,14 @@ class MapEntryInfo:
     resolution_m: float
     damage: str | None = None
     """Why this version cannot be read; its other numbers are then zero."""
+
+    @classmethod
+    def of(cls, entry: MapEntry) -> "MapEntryInfo":
+        """Return what clients are told of a stored version."""
+        rows, cols = entry.spec.shape if entry.spec else (0, 0)
+        resolution_m = entry.spec.resolution_m if entry.spec else 0.0
+        created_ns = entry.created_unix_ns
+        return cls(entry.name, entry.version, entry.digest, created_ns, rows, cols, resolution_m, entry.damage)
 
 
 class PoseArgument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -201,11 +210,12 @@ class Localize(Command[MissionStarted], frozen=True):
     cmd, result = "localize", MissionStarted
     heading_rad: Heading | None = None
     lease_s: LeaseTime | None = None
+    tie: bool = True
 
     @property
     def mission(self) -> Mission:
         """What it asks the robot to do."""
-        return LocalizeMission(self.heading_rad)
+        return LocalizeMission(self.heading_rad, self.tie)
 
 
 class DriveTo(Command[MissionStarted], frozen=True):
@@ -299,7 +309,7 @@ def start_command(mission: Mission, lease_s: float | None) -> StartCommand:
     match mission:
         case MapMission(name, stops_m, start, legs):
             return MapStart(name, stops_m, PoseArgument.of(start), legs, lease_s)
-        case LocalizeMission(heading_rad):
-            return Localize(heading_rad, lease_s)
+        case LocalizeMission(heading_rad, tie):
+            return Localize(heading_rad, lease_s, tie)
         case DriveMission(x_m, y_m, legs):
             return DriveTo(x_m, y_m, legs, lease_s)

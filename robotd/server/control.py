@@ -4,9 +4,9 @@ from typing import Protocol
 
 from robotd.core.broadcast import Broadcast
 from robotd.core.pose import Pose2
+from robotd.maps.store import MapEntry
 from robotd.mission.events import Event, MapChanged, Status
 from robotd.mission.requests import Mission
-from robotd.server.api import MapEntryInfo
 
 
 class Control(Protocol):
@@ -64,13 +64,13 @@ class Control(Protocol):
     async def stored_map(self, name: str, version: int | None) -> MapChanged:
         """Return all of a stored map, the newest version unless one is named; ``MapError`` if there is none."""
 
-    async def save_map(self, name: str | None) -> MapEntryInfo:
+    async def save_map(self, name: str | None) -> MapEntry:
         """Store the map in use, under its own name unless one is given; ``MapError`` if there is none."""
 
-    async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntryInfo:
+    async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
         """Take a stored map into use; ``MapError`` if there is none, ``MissionError`` while a mission is under way."""
 
-    async def list_maps(self) -> tuple[MapEntryInfo, ...]:
+    async def list_maps(self) -> tuple[MapEntry, ...]:
         """Return the stored maps."""
 
     async def start_recording(self, path: str | None) -> str:

@@ -108,14 +108,14 @@ class Handlers:
         return api.Renewed(progress)
 
     async def _map_save(self, command: api.MapSave) -> api.MapEntryInfo:
-        return await self._control.save_map(command.name)
+        return api.MapEntryInfo.of(await self._control.save_map(command.name))
 
     async def _map_load(self, command: api.MapLoad) -> api.MapEntryInfo:
         pose = command.robot_in_map.pose if command.robot_in_map else None
-        return await self._control.load_map(command.name, command.version, pose)
+        return api.MapEntryInfo.of(await self._control.load_map(command.name, command.version, pose))
 
     async def _map_list(self, _: api.ListMaps) -> api.MapList:
-        return api.MapList(await self._control.list_maps())
+        return api.MapList(tuple(api.MapEntryInfo.of(entry) for entry in await self._control.list_maps()))
 
     async def _map_show(self, command: api.MapShow) -> MapPayload:
         return await asyncio.to_thread(pack_map, await self._map(command))

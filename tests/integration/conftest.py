@@ -96,5 +96,9 @@ def in_directory(config: Config, directory: Path) -> Config:
 
 async def until_ready(daemon: Daemon) -> None:
     async with asyncio.timeout(10.0):
-        while daemon.robot.absent:
-            await asyncio.sleep(0.05)
+        with contextlib.ExitStack() as stack:
+            changes = {
+                device.name: stack.enter_context(device.status_changes.subscribe()) for device in daemon.robot.devices
+            }
+            while daemon.robot.absent:
+                await changes[daemon.robot.absent[0]].get()

@@ -10,20 +10,27 @@ from robotd.core.clock import NS_PER_S
 from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
 from robotd.localization.estimate import PoseEstimate, PoseState
-from robotd.mission.events import MapChanged, MissionPhase, SweepDone, SweepProgress
+from robotd.mission.events import Event, MapChanged, MissionPhase, SweepDone, SweepProgress
+from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
+from tests.integration.conftest import Live, Living
 
 pytestmark = pytest.mark.slow
 
 
-def final_estimates(said: list[object]) -> list[PoseEstimate]:
+def place(it: Living) -> MapInUse:
+    assert it.daemon.supervisor.place is not None
+    return it.daemon.supervisor.place
+
+
+def final_estimates(said: list[Event]) -> list[PoseEstimate]:
     return [e for e in said if isinstance(e, PoseEstimate) and e.final and e.state is not PoseState.PREDICTED]
 
 
-async def test_the_robot_maps_the_laboratory_and_is_found_in_it_within_50_mm(live) -> None:  # type: ignore[no-untyped-def]  # the fixture's type lives in conftest
+async def test_the_robot_maps_the_laboratory_and_is_found_in_it_within_50_mm(live: Live) -> None:
     robot = SimulatedRobot(load_world("laboratory"), seed=3)
     async with live(robot) as it:
         said = await it.done(MapMission("lab", robot.stops_m, robot.start))
@@ -44,7 +51,7 @@ async def test_the_robot_maps_the_laboratory_and_is_found_in_it_within_50_mm(liv
         assert max(errors_m) < 0.150
 
 
-async def test_every_reading_of_a_sweep_has_its_own_bearing_time_and_status(live) -> None:  # type: ignore[no-untyped-def]  # as above
+async def test_every_reading_of_a_sweep_has_its_own_bearing_time_and_status(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
         said = await it.done(MapMission("office", (), robot.start))
@@ -62,7 +69,7 @@ async def test_every_reading_of_a_sweep_has_its_own_bearing_time_and_status(live
     assert progress[-1].hits + progress[-1].misses + progress[-1].rejected == 300
 
 
-async def test_estimates_are_published_while_the_sweep_is_under_way(live) -> None:  # type: ignore[no-untyped-def]  # as above
+async def test_estimates_are_published_while_the_sweep_is_under_way(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
         await it.done(MapMission("office", robot.stops_m, robot.start))
@@ -76,7 +83,7 @@ async def test_estimates_are_published_while_the_sweep_is_under_way(live) -> Non
     assert estimates[-1].final
 
 
-async def test_in_one_of_two_equal_rooms_it_is_never_sure_of_the_wrong_one(live) -> None:  # type: ignore[no-untyped-def]  # as above
+async def test_in_one_of_two_equal_rooms_it_is_never_sure_of_the_wrong_one(live: Live) -> None:
     robot = SimulatedRobot(load_world("symmetric"), seed=2)
     states = []
     async with live(robot) as it:
@@ -94,7 +101,7 @@ async def test_in_one_of_two_equal_rooms_it_is_never_sure_of_the_wrong_one(live)
     assert PoseState.AMBIGUOUS in states
 
 
-async def test_a_robot_taken_off_its_map_is_lost(live) -> None:  # type: ignore[no-untyped-def]  # as above
+async def test_a_robot_taken_off_its_map_is_lost(live: Live) -> None:
     lab, office = (SimulatedRobot(load_world(name), seed=1) for name in ("laboratory", "office"))
     async with live(office) as it:
         await it.done(MapMission("office", office.stops_m, office.start))
@@ -106,7 +113,7 @@ async def test_a_robot_taken_off_its_map_is_lost(live) -> None:  # type: ignore[
     assert found.best is None
 
 
-async def test_an_unreachable_place_is_said_at_once_and_nothing_moves(live) -> None:  # type: ignore[no-untyped-def]  # as above
+async def test_an_unreachable_place_is_said_at_once_and_nothing_moves(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
         await it.done(MapMission("office", robot.stops_m, robot.start))
@@ -119,11 +126,11 @@ async def test_an_unreachable_place_is_said_at_once_and_nothing_moves(live) -> N
         assert (said[-1].time_ns - said[0].time_ns) / NS_PER_S < 1.0
 
 
-async def test_a_saved_map_comes_back_exactly_and_the_robot_is_found_in_it(live) -> None:  # type: ignore[no-untyped-def]  # as above
+async def test_a_saved_map_comes_back_exactly_and_the_robot_is_found_in_it(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
         said = await it.done(MapMission("office", robot.stops_m, robot.start))
-        cells = it.daemon.supervisor.place.grid.cells.copy()
+        cells = place(it).grid.cells.copy()
         entry = await it.daemon.control.save_map(None)
     changes = [event for event in said if isinstance(event, MapChanged) and not event.whole]
     assert [event.generation for event in changes] == list(range(1, len(robot.stops_m) + 2))
@@ -131,9 +138,10 @@ async def test_a_saved_map_comes_back_exactly_and_the_robot_is_found_in_it(live)
     async with live(again) as it:
         loaded = await it.daemon.control.load_map("office", None, None)
         assert loaded.digest == entry.digest
-        assert np.array_equal(it.daemon.supervisor.place.grid.cells, cells)
+        assert np.array_equal(place(it).grid.cells, cells)
         with pytest.raises(MissionError, match="tied to this map"):
             raise MissionError((await it.do(LocalizeMission()))[1].message)
         found = final_estimates(await it.done(LocalizeMission(again.truth.heading_rad)))[-1]
         assert found.state is PoseState.LOCALIZED
+        assert found.best is not None
         assert math.hypot(found.best.x_m - again.truth.x_m, found.best.y_m - again.truth.y_m) < 0.1

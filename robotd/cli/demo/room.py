@@ -80,7 +80,7 @@ def _localize_at(parts: Rig, console: Console, probe_m: tuple[float, float]) -> 
     console.print(f"Driving to ({probe_m[0]:.1f}, {probe_m[1]:.1f}) m and looking round:")
     follow(parts.client, DriveMission(*probe_m))
     (sweep,), estimate = follow(parts.client, LocalizeMission())
-    assert estimate is not None  # noqa: S101  # a localization that is done has one
+    assert estimate is not None  # a localization that is done has one
     return Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)
 
 
@@ -90,7 +90,7 @@ def _draw(
     from robotd.cli import pictures  # noqa: PLC0415  # heavy, and only needed now
 
     stops = ((world.start_pose.x_m, world.start_pose.y_m), *stops_m)
-    walls = [np.array(wall.points_m) for wall in world.walls]
+    walls = [np.array(wall.points_m) for wall in world.wall]
     radius_m = Config().planning.robot_radius_m
     pictures.draw_room(directory / "room.png", f"The {world.name}", walls, stops_m=stops, robot_radius_m=radius_m)
     pictures.draw_map(directory / "map.png", "The robot's map", the_map.spec, the_map.values, stops_m=stops)

@@ -16,14 +16,18 @@ from robotd.core.pose import Pose2
 from robotd.grid.spec import GridSpec
 from robotd.hardware.devices.device import DeviceStatus, LinkState
 from robotd.localization.estimate import PoseEstimate, PoseState, Region
+from robotd.maps.store import MapEntry
 from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.mission.lease import Lease
 from robotd.mission.modes import Mode
 from robotd.mission.requests import Mission
-from robotd.server.api import MapEntryInfo
 from robotd.server.server import Server, ServerSettings
 
 SPEC = GridSpec(0.05, -1.0, -2.0, (40, 60))
+
+
+def _entry(name: str, version: int, digest: str, created_unix_ns: int) -> MapEntry:
+    return MapEntry(name, version, digest, created_unix_ns, {}, Path(name), GridSpec(0.05, -1.0, -2.0, (40, 60)))
 
 
 class FakeControl:
@@ -114,16 +118,16 @@ class FakeControl:
             raise MapError(f"there is no map {name!r}")
         return whole_map(generation=0, map_id=f"office-{version or 3}")
 
-    async def save_map(self, name: str | None) -> MapEntryInfo:
+    async def save_map(self, name: str | None) -> MapEntry:
         self.calls.append(f"save {name}")
-        return MapEntryInfo(name or "unnamed", 4, "d1", 5, 40, 60, 0.05)
+        return _entry(name or "unnamed", 4, "d1", 5)
 
-    async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntryInfo:
+    async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
         self.calls.append(f"load {name} {version} {robot_in_map}")
-        return MapEntryInfo(name, version or 3, "d2", 6, 40, 60, 0.05)
+        return _entry(name, version or 3, "d2", 6)
 
-    async def list_maps(self) -> tuple[MapEntryInfo, ...]:
-        return (MapEntryInfo("office", 3, "d2", 6, 40, 60, 0.05),)
+    async def list_maps(self) -> tuple[MapEntry, ...]:
+        return (_entry("office", 3, "d2", 6),)
 
     async def start_recording(self, path: str | None) -> str:
         self._recording = path or "robot.mcap"

@@ -1,0 +1,21 @@
+"""``demo room`` and ``demo building``; ``make demo`` and ``make demo-real`` call them."""
+
+from robotd.cli.demo import building, room
+from robotd.cli.verb import Verb
+
+VERBS = (
+    Verb(
+        "demo room",
+        "show the main job: a simulated robot maps a room over real serial protocol, and is found in it",
+        "robotctl demo room laboratory",
+        room.run,
+        room.add_arguments,
+    ),
+    Verb(
+        "demo building",
+        "the same in a recorded building: map real stops of a CARMEN log, then be found at those kept out of the map",
+        "robotctl demo building intel.corrected.log.gz",
+        building.run,
+        building.add_arguments,
+    ),
+)
