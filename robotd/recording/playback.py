@@ -25,7 +25,6 @@ from robotd.recording.entries import BytesEntry, CommandEntry, ComputedEntry, En
 from robotd.recording.moments import RecordedTimeLoop
 from robotd.recording.reader import Recording
 
-_FOR_EVER_S = 1e9
 SETTLE_S = 0.001
 """How long after the last entry its effects are waited for."""
 
@@ -63,9 +62,8 @@ class Playback:
         if not isinstance(loop, RecordedTimeLoop):
             raise TypeError("a recording is played on a RecordedTimeLoop: use run_recorded")
         loop.follow(self._next_ns, self._play_next)
-        async with asyncio.timeout(_FOR_EVER_S):  # a loop without a timer would wait for a descriptor
-            while self._next_ns() is not None:
-                await self._over.wait()
+        if self._entries:
+            await self._over.wait()
         await asyncio.sleep(SETTLE_S)
         self.compute.release_all()
 
