@@ -10,7 +10,7 @@ import pytest
 from robotd.config import Config
 from robotd.core.reading import Sweep
 from robotd.mission.events import SweepDone
-from robotd.mission.requests import LocalizeMission, MapMission
+from robotd.mission.requests import Legs, LocalizeMission, MapMission
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.recording.reader import Recording, read
 from robotd.sim.fake_robot import FakeRobot
@@ -19,6 +19,7 @@ from robotd.sim.world import load_world
 
 pytestmark = pytest.mark.slow
 
+STOPS_M = ((1.6, 0.9), (1.2, 1.4))
 QUICK = replace(Config(), sweep=SweepSettings(readings=24))
 
 
@@ -35,10 +36,11 @@ async def record(live: Any, path: Path) -> tuple[str, list[Sweep]]:
     robot = SimulatedRobot(load_world("office"), seed=5)
     async with live(robot, QUICK) as it:
         await it.daemon.control.start_recording(str(path))
-        said = await it.done(MapMission("office", robot.stops_m[:2], robot.start))
+        said = await it.done(MapMission("office", STOPS_M, robot.start, Legs.STRAIGHT))
         digest = it.daemon.supervisor.place.grid.digest()
         said += await it.done(LocalizeMission())
         await it.daemon.control.stop_recording()
+    assert len(sweeps(said)) == 1 + len(STOPS_M) + 1
     return digest, sweeps(said)
 
 
@@ -50,7 +52,7 @@ async def repeat(live: Any, recording: Recording, *, dawdle_s: float) -> tuple[s
         await asyncio.sleep(dawdle_s)
         await it.daemon.control.arm()
         await asyncio.sleep(dawdle_s)
-        said = await it.done(MapMission("office", robot.stops_m[:2], robot.start))
+        said = await it.done(MapMission("office", STOPS_M, robot.start, Legs.STRAIGHT))
         digest = it.daemon.supervisor.place.grid.digest()
         await asyncio.sleep(dawdle_s)
         said += await it.done(LocalizeMission())
