@@ -10,7 +10,7 @@ from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RobotdError
 from robotd.hardware.wire.requests import summarize_requests
 from robotd.recording.comparison import Difference, compare, results_digest
-from robotd.recording.entries import CommandEntry, ResultEntry
+from robotd.recording.entries import CommandEntry, Entry, ResultEntry
 from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback
 from robotd.recording.preroll import PrerollJournal
@@ -44,18 +44,19 @@ def replay_recording(path: Path) -> ReplayReport:
     """
     recording = read(path)
     journal = PrerollJournal(recording.header, _NO_LIMIT)
-    run_recorded(_play(recording, journal), start_ns=recording.header.started_ns)
+    replayed = run_recorded(_play(recording, journal), start_ns=recording.header.started_ns)
     return ReplayReport(
-        digest=results_digest(journal.remembered),
+        digest=results_digest(replayed),
         recorded_digest=results_digest(recording.entries),
-        results=sum(isinstance(entry, ResultEntry) for entry in journal.remembered),
-        differences=compare(recording, journal.remembered, summarize_requests),
+        results=sum(isinstance(entry, ResultEntry) for entry in replayed),
+        differences=compare(recording, replayed, summarize_requests),
         complete=recording.complete,
         duration_s=(recording.end_ns - recording.header.started_ns) / NS_PER_S,
     )
 
 
-async def _play(recording: Recording, journal: PrerollJournal) -> None:
+async def _play(recording: Recording, journal: PrerollJournal) -> tuple[Entry, ...]:
+    """Let the daemon live through the recording and return what its journal noted until it ended."""
     requests: set[asyncio.Task[None]] = set()
 
     def carry_out(entry: CommandEntry) -> None:
@@ -70,9 +71,11 @@ async def _play(recording: Recording, journal: PrerollJournal) -> None:
     async with asyncio.TaskGroup() as group:
         parts = [group.create_task(part, name=name) for name, part in daemon.parts().items()]
         await playback.run()
+        replayed = tuple(journal.remembered)  # before it is stopped, which the recorded one may not have been
         for task in (*parts, *requests):
             task.cancel()
         await daemon.supervisor.stop("the recording ended")
+    return replayed
 
 
 async def _repeat(daemon: Daemon, entry: CommandEntry) -> None:

@@ -31,7 +31,7 @@ class LocalizationSettings:
     """Step between the headings that are tried."""
     localized_share: float = 0.5
     """Share of the readings that the best pose must explain; below it the robot is lost."""
-    rival_share: float = 0.2
+    rival_share: float = 0.15
     """A pose is still an answer if it explains fewer readings than the best by no more than this share of all."""
     unique_within_m: float = 0.5
     """The pose is unique if all answers lie this near to the best: no rival elsewhere, no region a corridor long."""

@@ -15,6 +15,7 @@ from robotd.config import Config
 from robotd.core.reading import Sweep
 from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.localizer import Localizer
 from robotd.localization.rank import RankGrid
 from robotd.mission.events import MapChanged
@@ -100,7 +101,7 @@ def _draw(
         "Where is the robot?",
         the_map.spec,
         ranks.rank[0],
-        obstacles=the_map.values > 127,
+        obstacles=the_map.values > NO_INFORMATION,
         truth=pictures.Mark(last.truth, radius_m),
         estimate=last.estimate.best,
     )
