@@ -7,18 +7,14 @@ stamped when it is said, a shot when it was asked for.
 """
 
 import logging
-import zlib
 from dataclasses import replace
 
 from firmware_proto.common import (
     DICTIONARY_CHUNK,
-    Ack,
-    Arm,
     BoardKind,
     BoardState,
     BoardStatus,
     Configure,
-    ConfigureReply,
     Fault,
     Hello,
     Identify,
@@ -33,13 +29,13 @@ from firmware_proto.dictionary import REQUEST_END, requests_for
 from firmware_proto.drive import DriveReport, OdometryReport, SetVelocity
 from firmware_proto.framing import Deframer, RawFrame
 from firmware_proto.pantilt import Aim, AimReadback, AimReport, Motion, ReadAim, ReadLimits
-from firmware_proto.rangefinder import Shoot, Shot, ShotStatus
 from firmware_proto.rules import RULES
 from firmware_proto.schema import Message, payload_size
 from robotd.core.errors import RecordingError
 from robotd.recording.comparison import NOTHING, Difference
 from robotd.recording.reader import Recording
 from robotd.sim.boards.outbox import Outbox
+from robotd.sim.plausible import aimed, plausible_answer, recorded_answer, state_after
 from robotd.sim.script import BOOKKEEPING, Asked, Said, is_standstill, read_script, starts_motion
 from robotd.sim.walk import Meeting, Walk
 
@@ -218,30 +214,22 @@ class FakeBoard:
         if isinstance(request, Aim):
             self._aim_seqs[meeting.asked.seq] = seq
             # Until the next report, whoever asks must not hear what became of the Aim before.
-            self._last[AimReport] = _aimed(request, seq, self._now_us, Motion.TURNING)
+            self._last[AimReport] = aimed(request, seq, self._now_us, Motion.TURNING)
         if meeting.asked.answered and not isinstance(request, _MADE_LIVE):
             self._open[meeting.place] = (request, seq, self._now_us)
             self._outbox.remember(request.TYPE, seq, b"")
         else:
-            self._reply(request, seq, self._plausible(request))
+            self._reply(request, seq, plausible_answer(request, self._now_us))
 
     def _improvise(self, request: Message, seq: int) -> None:
         """Answer what the recorded host never asked here, as a board in good health would."""
-        self._reply(request, seq, self._plausible(request))
+        self._reply(request, seq, plausible_answer(request, self._now_us))
         if isinstance(request, Aim):
-            self._tell(_aimed(request, seq, self._now_us, Motion.DONE))
+            self._tell(aimed(request, seq, self._now_us, Motion.DONE))
         elif isinstance(request, (Configure, *BOOKKEEPING)):
-            before, self._improvised = self._improvised, _state_after(request)
+            before, self._improvised = self._improvised, state_after(request)
             if BoardStatus in self._last and self._improvised != before:
                 self._tell(self._last[BoardStatus])
-
-    def _plausible(self, request: Message) -> Message | Result:
-        match request:
-            case Configure():
-                return ConfigureReply(Result.OK, zlib.crc32(request.to_payload()))
-            case Shoot():
-                return Shot(self._now_us, 0, 0, ShotStatus.NOT_MEASURED)
-        return Result.OK
 
     def _reply(self, request: Message, seq: int, outcome: Message | Result) -> None:
         wire = self._outbox.reply(request.TYPE, seq, outcome)
@@ -263,7 +251,7 @@ class FakeBoard:
             self._tell(message)
         elif said.answers in self._open:
             request, seq, came_us = self._open.pop(said.answers)
-            self._reply(request, seq, _outcome(message, came_us))
+            self._reply(request, seq, recorded_answer(message, came_us))
 
     def _tell(self, message: Message) -> None:
         """Send telemetry as of now."""
@@ -286,26 +274,3 @@ class FakeBoard:
         if not isinstance(report, AimReport):
             return Result.WRONG_STATE
         return AimReadback(self._now_us, report.pan_tenth_mrad, report.tilt_tenth_mrad, report.aim_seq, report.moving)
-
-
-def _outcome(answer: Message, came_us: int) -> Message | Result:
-    """Return a recorded answer as it is to be given to a request that came at ``came_us``."""
-    match answer:
-        case Ack():
-            return Result(answer.result)
-        case Shot():
-            return replace(answer, board_us=came_us)
-    return answer
-
-
-def _aimed(aim: Aim, seq: int, now_us: int, motion: Motion) -> AimReport:
-    return AimReport(now_us, aim.pan_tenth_mrad, aim.tilt_tenth_mrad, seq, motion)
-
-
-def _state_after(request: Message) -> tuple[BoardState, Fault]:
-    match request:
-        case Arm():
-            return BoardState.ARMED, Fault.NONE
-        case Kill():
-            return BoardState.FAULT, Fault.KILLED
-    return BoardState.CONFIGURED, Fault.NONE
