@@ -261,9 +261,15 @@ class FakeBoard:
                 message = replace(message, board_us=self._now_us, state=state, faults=faults)
             case OdometryReport() | DriveReport() | AimReport():
                 message = replace(message, board_us=self._now_us)
-        self._last[type(message)] = message
+        if not (isinstance(message, AimReport) and self._is_aiming):
+            self._last[type(message)] = message
         self._outbox.tell(message)
         self._put_off_repeating()
+
+    @property
+    def _is_aiming(self) -> bool:
+        """Whether an Aim is not acknowledged yet: reports that come before its Ack are of the time before it."""
+        return any(isinstance(request, Aim) for request, _, _ in self._open.values())
 
     def _put_off_repeating(self) -> None:
         if self._period_us is not None:

@@ -297,8 +297,8 @@ def test_motion_done_carries_the_seq_of_the_living_aim() -> None:
 
 def test_whoever_asks_during_a_motion_hears_of_this_motion() -> None:
     tape = Tape("pantilt").opens().says(60, aim_report(0, 0, Motion.HALTED)).arms(600)
-    tape.asks(1000, Aim(100, 0, 900), 0).says(1001, Ack(Result.OK), 0, to=Aim)
-    tape.says(1050, aim_report(100, 0, Motion.DONE))
+    tape.asks(1000, Aim(100, 0, 900), 0).says(1001, aim_report(0, 0, Motion.HALTED))  # sent before the Aim came
+    tape.says(1002, Ack(Result.OK), 0, to=Aim).says(1050, aim_report(100, 0, Motion.DONE))
     host = Host(tape.board(), BoardKind.PANTILT)
     host.open()
     host.ask(Arm())
