@@ -67,9 +67,9 @@ async def test_a_lease_that_runs_out_stops_the_robot_and_replays(live: Live, tmp
         for _ in range(10):
             await asyncio.sleep(0.4)
             it.daemon.control.renew(mission_id)
-        assert it.daemon.supervisor.mode is Mode.MAPPING
+        assert it.daemon.control.status.mode == Mode.MAPPING
         await asyncio.sleep(1.0)
-        assert it.daemon.supervisor.mode is Mode.DISARMED
+        assert it.daemon.control.status.mode == Mode.DISARMED
         assert "lease" in it.daemon.control.status.reason
         assert not any(device.armed for device in it.daemon.control.status.devices)
         await it.daemon.control.stop_recording()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from robotd.cli.demo.mission import Trial, follow, print_readings
+from robotd.cli.demo.mission import Trial, follow, print_readings, stage
 from robotd.cli.demo.rig import Rig, rig, wired
 from robotd.cli.demo.room import fresh
 from robotd.cli.demo.truth import true_pose
@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the demonstration and return the exit code."""
-    console = Console(highlight=False)
+    console = stage()
     directory = fresh(arguments.out)
     file = directory / "building.json.gz"
     every = max(2, round(1 + arguments.stops / max(1, arguments.trials)))
@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     with rig(directory, wired(_config(), directory), emulator) as parts:
         parts.client.arm()
         console.print("Making the map, along straight legs as the recorded robot went:")
-        sweeps, _ = follow(parts.client, MapMission("building", robot.stops_m, robot.start, Legs.STRAIGHT))
+        sweeps, _ = follow(console, parts.client, MapMission("building", robot.stops_m, robot.start, Legs.STRAIGHT))
         print_readings(console, sweeps)
         entry = parts.client.map_save()
         console.print(f"  map saved: {directory / 'maps' / entry.name / str(entry.version)} ({entry.digest[:12]})")
@@ -77,8 +77,8 @@ def _config() -> Config:
 
 
 def _localize_at(parts: Rig, console: Console, number: int, probe_m: tuple[float, float]) -> Trial:
-    follow(parts.client, DriveMission(*probe_m, legs=Legs.STRAIGHT))
-    (sweep,), estimate = follow(parts.client, LocalizeMission(tie=False))
+    follow(console, parts.client, DriveMission(*probe_m, legs=Legs.STRAIGHT))
+    (sweep,), estimate = follow(console, parts.client, LocalizeMission(tie=False))
     if estimate is None:
         raise MissionError("a localization ended without an estimate")
     trial = Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)

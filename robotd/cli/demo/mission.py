@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from statistics import median
+from typing import Self
 
 from rich.console import Console
 from rich.table import Table
@@ -13,29 +14,54 @@ from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
 from robotd.core.reading import ReadingStatus, Sweep
 from robotd.localization.estimate import PoseEstimate, PoseState
-from robotd.mission.events import SweepDone
+from robotd.mission.events import MissionPhase, MissionProgress, SweepDone
 from robotd.mission.requests import Mission
 from robotd.server.client import Client
-from robotd.server.mission_run import final_estimate
+from robotd.server.mission_run import MissionEvent, final_estimate
 
 LEASE_S = 5.0
 """Generous: a demonstration shares two cores with its simulated hardware."""
+_WIDTH = 120
 
 
-def follow(client: Client, mission: Mission) -> tuple[tuple[Sweep, ...], PoseEstimate | None]:
+def stage() -> Console:
+    """Return where a demonstration tells its story; wide enough for its tables where there is no terminal."""
+    console = Console(highlight=False, soft_wrap=True)
+    return console if console.is_terminal else Console(highlight=False, soft_wrap=True, width=_WIDTH)
+
+
+def follow(console: Console, client: Client, mission: Mission) -> tuple[tuple[Sweep, ...], PoseEstimate | None]:
     """Run a mission to its end and return its sweeps and, of a localization, what it found."""
-    sweeps: list[Sweep] = []
-    events = []
-    with MissionBars() as bars:
+    events: list[MissionEvent] = []
+    with MissionBars() if console.is_terminal else _Narrator(console) as teller:
         for event in client.run_mission(mission, LEASE_S):
-            bars.show(event)
+            teller.show(event)
             events.append(event)
-            if isinstance(event, SweepDone):
-                sweeps.append(event.sweep)
+    sweeps = tuple(event.sweep for event in events if isinstance(event, SweepDone))
     try:
-        return tuple(sweeps), final_estimate(events)
+        return sweeps, final_estimate(events)
     except MissionError:
-        return tuple(sweeps), None
+        return sweeps, None
+
+
+class _Narrator:
+    """Progress for a log file: a line a stop."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Leave nothing behind."""
+
+    def show(self, event: MissionEvent) -> None:
+        """Tell what is worth a line."""
+        if isinstance(event, MissionProgress) and event.phase is MissionPhase.SWEEPING and event.stops > 1:
+            self._console.print(f"  stop {event.stop + 1} of {event.stops}: sweeping")
+        elif isinstance(event, MissionProgress) and event.message:
+            self._console.print(f"  {event.message}", markup=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
-from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials
+from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials, stage
 from robotd.cli.demo.rig import Rig, rig, wired
 from robotd.cli.demo.truth import true_pose
 from robotd.cli.verb import FAILED, OK
@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the demonstration and return the exit code."""
-    console = Console(highlight=False)
+    console = stage()
     world = load_world(arguments.world)
     directory = fresh(arguments.out)
     console.print(f"[bold]robotd demo[/]: the {world.name}, seed {arguments.seed}; everything lives in {directory}")
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
         client.arm()
         console.print("Making the map, stop by stop:")
         stops_m = world.stops_m[: arguments.stops]
-        sweeps, _ = follow(client, MapMission(world.name, stops_m, world.start_pose))
+        sweeps, _ = follow(console, client, MapMission(world.name, stops_m, world.start_pose))
         print_readings(console, sweeps)
         entry = client.map_save()
         console.print(f"  map saved: {directory / 'maps' / entry.name / str(entry.version)} ({entry.digest[:12]})")
@@ -79,8 +79,8 @@ def brisk() -> DrivingSettings:
 
 def _localize_at(parts: Rig, console: Console, probe_m: tuple[float, float]) -> Trial:
     console.print(f"Driving to ({probe_m[0]:.1f}, {probe_m[1]:.1f}) m and looking round:")
-    follow(parts.client, DriveMission(*probe_m))
-    (sweep,), estimate = follow(parts.client, LocalizeMission())
+    follow(console, parts.client, DriveMission(*probe_m))
+    (sweep,), estimate = follow(console, parts.client, LocalizeMission())
     assert estimate is not None  # a localization that is done has one
     return Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)
 
