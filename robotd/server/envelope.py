@@ -159,8 +159,8 @@ def _command_of(fields: dict[str, Any]) -> Command[Any]:
     version = fields.get("v")
     if type(version) is not int or version != VERSION:
         raise ServerError(ErrorCode.UNSUPPORTED_VERSION, f"this server speaks version {VERSION}, got {version!r:.50}")
-    if unknown := fields.keys() - _KEYS:
-        raise ServerError(ErrorCode.MALFORMED, f"unknown key {min(unknown)!r:.50}: a request has v, id, cmd and args")
+    if unknown := [key for key in fields if key not in _KEYS]:
+        raise ServerError(ErrorCode.MALFORMED, f"unknown key {unknown[0]!r:.50}: a request has v, id, cmd and args")
     name = fields.get("cmd")
     kind = COMMANDS.get(name) if isinstance(name, str) else None
     if kind is None:

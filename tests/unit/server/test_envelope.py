@@ -114,6 +114,7 @@ BAD = {
     "id true": (request(id=True), "malformed"),
     "id too great": (request(id=2**63), "malformed"),
     "unknown key": (request(extra=1), "malformed"),
+    "unknown keys of two kinds": (msgpack.packb({"v": 1, "id": 5, b"": 1, "zz": 2}), "malformed"),
     "version 2": (request(v=2), "unsupported_version"),
     "version 1.0": (request(v=1.0), "unsupported_version"),
     "version true": (request(v=True), "unsupported_version"),
@@ -162,6 +163,7 @@ VALUES = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4),
     max_leaves=20,
 )
+KEYS = st.sampled_from(["v", "id", "cmd", "args", "zz"]) | st.text(max_size=3) | st.binary(max_size=2)
 NAMES = st.sampled_from([*api.COMMANDS, "fly"])
 FIELDS = st.sampled_from(["x_m", "y_m", "name", "lease_s", "heading_rad", "mission_id", "stops_m", "start", "reason"])
 
@@ -171,6 +173,12 @@ FIELDS = st.sampled_from(["x_m", "y_m", "name", "lease_s", "heading_rad", "missi
 @settings(max_examples=150)
 def test_no_bytes_raise(data: bytes) -> None:
     assert isinstance(decode_request(data, LIMIT), Request | BadRequest)
+
+
+@given(st.dictionaries(KEYS, st.just(1) | NAMES | VALUES, max_size=6))
+@settings(max_examples=150)
+def test_no_map_raises(fields: dict[Any, Any]) -> None:
+    assert isinstance(decode_request(msgpack.packb(fields), LIMIT), Request | BadRequest)
 
 
 @given(NAMES, st.dictionaries(FIELDS, VALUES, max_size=4), st.just(1) | VALUES, st.integers(0, 9) | VALUES)
