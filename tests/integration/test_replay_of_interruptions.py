@@ -12,7 +12,7 @@ from robotd.mission.modes import Mode
 from robotd.mission.requests import LocalizeMission, MapMission
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
-from tests.integration.conftest import Live
+from tests.integration.conftest import Live, Living
 
 pytestmark = pytest.mark.slow
 
@@ -67,13 +67,17 @@ async def test_a_lease_that_runs_out_stops_the_robot_and_replays(live: Live, tmp
         for _ in range(10):
             await asyncio.sleep(0.4)
             it.daemon.control.renew(mission_id)
-        assert it.daemon.control.status.mode == Mode.MAPPING
+        assert mode_of(it) is Mode.MAPPING
         await asyncio.sleep(1.0)
-        assert it.daemon.control.status.mode == Mode.DISARMED
+        assert mode_of(it) is Mode.DISARMED
         assert "lease" in it.daemon.control.status.reason
         assert not any(device.armed for device in it.daemon.control.status.devices)
         await it.daemon.control.stop_recording()
     check(replayed(tmp_path / "lease.mcap"))
+
+
+def mode_of(it: Living) -> Mode:
+    return it.daemon.control.status.mode
 
 
 async def test_a_map_taken_into_use_is_in_the_recording(live: Live, tmp_path: Path) -> None:
