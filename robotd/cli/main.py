@@ -4,6 +4,7 @@ Exit codes: 0 done, 1 failed, 2 wrong usage, 78 wrong configuration, 130 interru
 """
 
 import argparse
+import importlib
 import os
 import signal
 import sys
@@ -13,34 +14,46 @@ from contextlib import contextmanager
 from rich_argparse import RawDescriptionRichHelpFormatter
 
 from robotd import __version__
-from robotd.cli import configuration, control, imports, maps, recordings, simulate, where
-from robotd.cli.demo import verbs as demonstrations
-from robotd.cli.terminal import complain
 from robotd.cli.verb import BAD_CONFIG, FAILED, INTERRUPTED, Verb
 from robotd.core.errors import ConfigError, RobotdError
 
-VERBS: tuple[Verb, ...] = (
-    *control.VERBS,
-    *maps.VERBS,
-    *where.VERBS,
-    *simulate.VERBS,
-    *imports.VERBS,
-    *recordings.VERBS,
-    *configuration.VERBS,
-    *demonstrations.VERBS,
-)
-
-FAMILIES = {
-    "demo": "show the main job, end to end, on a robot that is not there",
-    "config": "check and show configurations",
-    "import": "make a recorded building of somebody else's log",
-    "map": "make, save, load and look at maps",
-    "record": "record everything that happens to a file",
+WORDS = {
+    "status": ("control", "show the whole robot in one look"),
+    "arm": ("control", "allow motion"),
+    "disarm": ("control", "stop and forbid motion"),
+    "stop": ("control", "stop now, whatever is under way; it needs arm before it moves again"),
+    "clear": ("control", "acknowledge latched faults; the robot stays disarmed"),
+    "map": ("maps", "make, save, load and look at maps"),
+    "localize": ("where", "sweep where it stands and say where that is on the map in use"),
+    "pose": ("where", "print the newest pose estimate"),
+    "watch": ("where", "print what happens, as it happens, until Ctrl-C"),
+    "drive-to": ("where", "drive to a place on the map in use, and stand there"),
+    "sim": ("simulate", "simulate a robot in a room: its three boards, on pseudo-terminals"),
+    "fake": ("simulate", "answer as the recorded boards did, on pseudo-terminals: run a fresh daemon on them"),
+    "import": ("imports", "make a recorded building of somebody else's log"),
+    "record": ("recordings", "record everything that happens to a file"),
+    "replay": (
+        "recordings",
+        "run the daemon again on recorded bytes, and compare every result; exit code 1 if one differs",
+    ),
+    "config": ("configuration", "check and show configurations"),
+    "demo": ("demo.verbs", "show the main job, end to end, on a robot that is not there"),
 }
+"""The first words of the command line: the module with the verbs that begin so, and what they do.
+
+Only that module is imported: half of the verbs need simulation, maps or a configuration, and a ``stop`` must not wait
+for what it does not need.
+"""
 
 
-def build_parser() -> argparse.ArgumentParser:
-    """Return the parser of all verbs."""
+def verbs_of(word: str) -> tuple[Verb, ...]:
+    """Return the verbs that begin with a word: one, or a family."""
+    verbs: tuple[Verb, ...] = importlib.import_module(f"robotd.cli.{WORDS[word][0]}").VERBS
+    return tuple(verb for verb in verbs if verb.name.split()[0] == word)
+
+
+def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
+    """Return a parser that knows every first word, and all about the one on this command line."""
     parser = argparse.ArgumentParser(
         prog="robotctl",
         description="Talk to robotd: missions, maps, poses, recordings, and robots that are not there.",
@@ -48,47 +61,52 @@ def build_parser() -> argparse.ArgumentParser:
         formatter_class=RawDescriptionRichHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"robotctl {__version__}")
-    top = parser.add_subparsers(metavar="VERB", required=True)
-    families = {}
-    for verb in VERBS:
-        family, _, name = verb.name.rpartition(" ")
-        if family and family not in families:
-            helped = top.add_parser(family, help=FAMILIES[family], formatter_class=parser.formatter_class)
-            families[family] = helped.add_subparsers(metavar="VERB", required=True)
-        group = families[family] if family else top
-        verb.add_to(
-            group.add_parser(
-                name,
-                help=verb.summary,
-                description=verb.summary[:1].upper() + verb.summary[1:] + ".",
-                epilog=f"Example: {verb.example}",
-                formatter_class=parser.formatter_class,
-            )
-        )
+    words = parser.add_subparsers(metavar="VERB", required=True)
+    wanted = next((text for text in argv if not text.startswith("-")), None)
+    for word, (_, summary) in WORDS.items():
+        helped = words.add_parser(word, help=summary, formatter_class=parser.formatter_class)
+        if word == wanted:
+            _add_verbs(helped, verbs_of(word))
     return parser
+
+
+def _add_verbs(parser: argparse.ArgumentParser, verbs: tuple[Verb, ...]) -> None:
+    """Give the parser of a first word its verb, or a second word to choose one of the family."""
+    if " " not in verbs[0].name:
+        verbs[0].add_to(parser)
+        return
+    family = parser.add_subparsers(metavar="VERB", required=True)
+    for verb in verbs:
+        name = verb.name.split()[1]
+        verb.add_to(family.add_parser(name, help=verb.summary, formatter_class=parser.formatter_class))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``robotctl`` and return its exit code; wrong usage leaves by ``SystemExit(2)``, as argparse does."""
-    arguments = build_parser().parse_args(argv)
+    words = sys.argv[1:] if argv is None else argv
     try:
         with _ended_like_interrupted():
+            arguments = build_parser(words).parse_args(words)
             code: int = arguments.run(arguments)
     except ConfigError as error:
-        for problem in error.problems:
-            complain(str(problem))
-        return BAD_CONFIG
+        return _complain(BAD_CONFIG, *map(str, error.problems))
     except RobotdError as error:
-        complain(f"robotctl: {error}")
-        return FAILED
+        return _complain(FAILED, f"robotctl: {error}")
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:  # the reader of our output went away, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:  # a file that was named on the command line
-        complain(f"robotctl: {error.filename or ''}: {error.strerror or error}")
-        return FAILED
+        return _complain(FAILED, ": ".join(filter(None, ("robotctl", error.filename, error.strerror or str(error)))))
+    return code
+
+
+def _complain(code: int, *lines: str) -> int:
+    from robotd.cli.terminal import complain  # noqa: PLC0415  # what starts quickly can be interrupted cleanly
+
+    for line in lines:
+        complain(line)
     return code
 
 

@@ -32,7 +32,9 @@ class Verb:
     """Whether it needs a running daemon: such verbs take ``--runtime-dir`` and ``--timeout``."""
 
     def add_to(self, parser: argparse.ArgumentParser) -> None:
-        """Give a fresh parser the arguments of this verb."""
+        """Give a fresh parser all about this verb."""
+        parser.description = f"{self.summary[:1].upper()}{self.summary[1:]}."
+        parser.epilog = f"Example: {self.example}"
         self.arguments(parser)
         parser.add_argument("--json", action="store_true", help="print JSON instead of text for people")
         if self.asks_daemon:

@@ -2,14 +2,19 @@
 
 import json
 import shlex
+import subprocess
+import sys
+from importlib import import_module
 from typing import Any
 
 import pytest
 
 from robotd import __version__
-from robotd.cli.main import FAMILIES, VERBS, build_parser, main
+from robotd.cli.main import WORDS, build_parser, main, verbs_of
 from robotd.cli.verb import Verb
 from robotd.core.errors import RequestTimeout, ServerError
+
+VERBS = [verb for word in WORDS for verb in verbs_of(word)]
 
 
 @pytest.mark.parametrize("verb", VERBS, ids=lambda verb: verb.name)
@@ -23,11 +28,33 @@ def test_every_verb_explains_itself_with_an_example_that_parses(verb: Verb, caps
     assert ("--runtime-dir" in said) == verb.asks_daemon
     words = shlex.split(verb.example.partition(" > ")[0])
     assert words[: 1 + len(verb.name.split())] == ["robotctl", *verb.name.split()]
-    assert build_parser().parse_args(words[1:]).run is verb.run
+    assert build_parser(words[1:]).parse_args(words[1:]).run is verb.run
 
 
-def test_every_family_is_explained_and_used() -> None:
-    assert {verb.name.split()[0] for verb in VERBS if " " in verb.name} == FAMILIES.keys()
+def test_every_word_says_what_its_verb_says_or_stands_for_a_family() -> None:
+    every = {verb.name for module, _ in WORDS.values() for verb in import_module(f"robotd.cli.{module}").VERBS}
+    assert every == {verb.name for verb in VERBS}
+    alone = {verb.name: verb.summary for verb in VERBS if " " not in verb.name}
+    assert {word: summary for word, (_, summary) in WORDS.items() if word in alone} == alone
+
+
+def test_a_verb_waits_for_nothing_that_it_does_not_need() -> None:
+    """The words of the command line are explained without the rest of the house, and a stop needs only a client."""
+    for words, unwanted in (
+        ("--help", "robotd.server"),
+        ("stop --help", "robotd.sim"),
+        ("stop --help", "robotd.config"),
+    ):
+        program = f"""
+import sys
+from robotd.cli.main import main
+try:
+    main({words.split()!r})
+except SystemExit:
+    print(*(name for name in sys.modules if name.startswith({unwanted!r})), file=sys.stderr)
+"""
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+        assert (done.stderr.split(), "Usage: robotctl" in done.stdout) == ([], True)
 
 
 def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
