@@ -1,10 +1,21 @@
 """The daemon, from the command line."""
 
 import argparse
+import os
+from pathlib import Path
 
+from robotd.core.errors import TransportError
 from robotd.server.client import Client
+from robotd.server.endpoints import runtime_dir_of_user
 
 
 def connect(arguments: argparse.Namespace) -> Client:
-    """Return a client of the daemon that ``--runtime-dir`` names; use it in a ``with`` block."""
-    return Client(arguments.runtime_dir, deadline_s=arguments.timeout)
+    """Return a client of the daemon that ``--runtime-dir`` names; use it in a ``with`` block.
+
+    Raises:
+        TransportError: this user may not talk to the daemon there.
+    """
+    directory = Path(arguments.runtime_dir or runtime_dir_of_user())
+    if directory.exists() and not os.access(directory, os.X_OK):
+        raise TransportError(f"{directory}: permission denied: only members of its group may talk to robotd")
+    return Client(directory, deadline_s=arguments.timeout)

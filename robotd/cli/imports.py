@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from robotd.cli.quantities import positive, whole
 from robotd.cli.terminal import out, print_json
 from robotd.cli.verb import OK, Verb
 from robotd.sim.building import write_recorded_building
@@ -29,30 +30,16 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("log", type=Path, metavar="LOG", help="a CARMEN log, as it is or compressed (.gz, .bz2)")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="the recorded building")
     parser.add_argument(
-        "--spacing-m", type=_positive, default=1.0, metavar="M", help="way between two stops (default: 1)"
+        "--spacing-m", type=positive, default=1.0, metavar="M", help="way between two stops (default: 1)"
     )
     parser.add_argument(
         "--keep-out-every",
-        type=_count,
+        type=whole(0),
         default=2,
         metavar="N",
         help="keep every Nth stop out of the map, to localize at; 0 for none (default: 2)",
     )
-    parser.add_argument("--limit", type=_count, metavar="N", help="end after so many stops")
-
-
-def _positive(text: str) -> float:
-    value = float(text)
-    if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"must be positive, got {text}")
-    return value
-
-
-def _count(text: str) -> int:
-    value = int(text)
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"must not be negative, got {text}")
-    return value
+    parser.add_argument("--limit", type=whole(0), metavar="N", help="end after so many stops")
 
 
 VERBS = (

@@ -1,18 +1,19 @@
 """``map start``, ``map save``, ``map load``, ``map list`` and ``map show``."""
 
 import argparse
-import math
 import shutil
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from robotd.cli.connection import connect
 from robotd.cli.half_blocks import coloured, plain, shrink
 from robotd.cli.motion import carry_out
+from robotd.cli.quantities import heading_of_deg, number, whole
 from robotd.cli.simulate import odometry_argument
 from robotd.cli.terminal import out, print_json, print_table
 from robotd.cli.verb import OK, Verb
@@ -24,7 +25,7 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
 from robotd.mission.events import MapChanged
 from robotd.mission.requests import Legs, MapMission
-from robotd.server.api import MapEntryInfo
+from robotd.server.api import MapEntryInfo, MapName
 from robotd.sim.load import load_robot
 from robotd.sim.recorded_building import OdometrySource
 
@@ -38,12 +39,12 @@ def _start(arguments: argparse.Namespace) -> int:
 
 
 def _start_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", help="what to call the map")
+    parser.add_argument("name", type=_name, help="what to call the map")
     parser.add_argument(
         "--stop",
         action="append",
         nargs=2,
-        type=float,
+        type=number,
         default=[],
         metavar=("X", "Y"),
         help="where to stop and sweep [m], once for each; the robot's place at the start comes first by itself",
@@ -54,17 +55,26 @@ def _start_arguments(parser: argparse.ArgumentParser) -> None:
     legs_argument(parser)
 
 
+def _name(text: str) -> str:
+    """Return the name of a map, as it may be."""
+    try:
+        return msgspec.convert(text, MapName)
+    except msgspec.ValidationError:
+        allowed = "1 to 64 letters, digits, '.', '-' and '_', the first a letter or a digit"
+        raise argparse.ArgumentTypeError(f"{text!r} is no name for a map, which has {allowed}") from None
+
+
 class _PoseAction(argparse.Action):
     """Turns ``X Y DEG`` into a pose."""
 
     def __call__(self, parser: object, namespace: argparse.Namespace, values: object, _: object = None) -> None:
         assert isinstance(values, list)
         x_m, y_m, heading_deg = values
-        setattr(namespace, self.dest, Pose2(x_m, y_m, math.radians(heading_deg)))
+        setattr(namespace, self.dest, Pose2(x_m, y_m, heading_of_deg(heading_deg)))
 
 
 def _pose_argument(parser: argparse.ArgumentParser, name: str, summary: str) -> None:
-    parser.add_argument(name, action=_PoseAction, nargs=3, type=float, metavar=("X", "Y", "DEG"), help=summary)
+    parser.add_argument(name, action=_PoseAction, nargs=3, type=number, metavar=("X", "Y", "DEG"), help=summary)
 
 
 def _save(arguments: argparse.Namespace) -> int:
@@ -93,7 +103,10 @@ def _list(arguments: argparse.Namespace) -> int:
         print_json([asdict(entry) for entry in entries])
         return OK
     rows = [
-        (entry.name, entry.version, _date(entry.created_unix_ns), f"{entry.cols} x {entry.rows}", entry.digest[:12])
+        (
+            *(entry.name, entry.version, _date(entry.created_unix_ns), f"{entry.cols} x {entry.rows}"),
+            f"damaged: {entry.damage}" if entry.damage else entry.digest[:12],
+        )
         for entry in entries
     ]
     print_table(("map", "version", "made (UTC)", "cells", "digest"), rows)
@@ -143,19 +156,19 @@ def _facts(shown: MapChanged) -> dict[str, object]:
 
 
 def _save_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", nargs="?", help="another name than the one it was made under")
+    parser.add_argument("name", nargs="?", type=_name, help="another name than the one it was made under")
 
 
 def _load_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", help="the map")
-    parser.add_argument("--version", type=int, metavar="N", help="an older version of it (default: the newest)")
+    parser.add_argument("--version", type=whole(0), metavar="N", help="an older version of it (default: the newest)")
     _pose_argument(parser, "--robot", "where the robot stands on it, if you know")
 
 
 def _show_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", help="a stored map (default: the one in use)")
-    parser.add_argument("--version", type=int, metavar="N", help="an older version of it (default: the newest)")
-    parser.add_argument("--width", type=int, metavar="N", help="widest picture, in characters (default: 100)")
+    parser.add_argument("--version", type=whole(0), metavar="N", help="an older version of it (default: the newest)")
+    parser.add_argument("--width", type=whole(1), metavar="N", help="widest picture, in characters (default: 100)")
     parser.add_argument("--png", type=Path, metavar="FILE", help="draw it into a file, too")
 
 

@@ -7,6 +7,10 @@ from typing import Any
 
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
+
+_UNBROKEN = 10_000
+"""Columns of a pipe: tables are not folded there, so that a line stays a line."""
 
 
 def print_json(document: Any) -> None:
@@ -15,8 +19,9 @@ def print_json(document: Any) -> None:
 
 
 def out() -> Console:
-    """Return the console for answers; it has no colour where there is no terminal, or where NO_COLOR is set."""
-    return Console(file=sys.stdout, highlight=False, soft_wrap=True)
+    """Return the console for answers; no colour and no width where there is no terminal, no colour with NO_COLOR."""
+    width = None if sys.stdout.isatty() else _UNBROKEN
+    return Console(file=sys.stdout, highlight=False, soft_wrap=True, width=width)
 
 
 def err() -> Console:
@@ -35,7 +40,7 @@ def print_pairs(pairs: Iterable[tuple[str, object]]) -> None:
     grid.add_column(style="dim")
     grid.add_column()
     for name, value in pairs:
-        grid.add_row(name, str(value))
+        grid.add_row(name, Text(str(value)))
     out().print(grid)
 
 
@@ -43,5 +48,5 @@ def print_table(columns: Iterable[str], rows: Iterable[Iterable[object]]) -> Non
     """Print a table with a header."""
     table = Table(*columns, box=None, header_style="bold", pad_edge=False)
     for row in rows:
-        table.add_row(*map(str, row))
+        table.add_row(*(Text(str(cell)) for cell in row))
     out().print(table)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from robotd.cli.quantities import positive
+
 OK: Final = 0
 FAILED: Final = 1
 USAGE: Final = 2
@@ -40,14 +42,9 @@ class Verb:
         if self.asks_daemon:
             parser.add_argument("--runtime-dir", type=Path, metavar="DIR", help="where the daemon has its sockets")
             parser.add_argument(
-                "--timeout", type=seconds, default=5.0, metavar="S", help="longest wait for an answer [s] (default: 5)"
+                "--timeout",
+                type=positive,
+                metavar="S",
+                help="longest wait for an answer [s] (default: 3 to 60, by what is asked)",
             )
         parser.set_defaults(run=self.run)
-
-
-def seconds(text: str) -> float:
-    """Return a positive time [s] from the command line."""
-    value = float(text)
-    if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"must be a positive time in seconds, got {text}")
-    return value

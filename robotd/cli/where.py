@@ -1,11 +1,11 @@
 """``localize``, ``pose``, ``watch`` and ``drive-to``."""
 
 import argparse
-import math
 from dataclasses import asdict
 
 from robotd.cli.connection import connect
 from robotd.cli.motion import carry_out
+from robotd.cli.quantities import heading_of_deg, number
 from robotd.cli.terminal import out, print_json
 from robotd.cli.verb import OK, Verb
 from robotd.cli.wording import as_json, estimate_in_words, in_words, region_in_words
@@ -15,16 +15,19 @@ from robotd.mission.requests import DriveMission, Legs, LocalizeMission
 from robotd.server.feed import Gap
 from robotd.server.topics import Topic
 
+_PATIENCE_S = 3.0
+"""How long to wait for what is published on joining, unless told otherwise."""
+
 
 def _localize(arguments: argparse.Namespace) -> int:
-    heading_rad = None if arguments.heading_deg is None else math.radians(arguments.heading_deg)
+    heading_rad = None if arguments.heading_deg is None else heading_of_deg(arguments.heading_deg)
     return carry_out(arguments, LocalizeMission(heading_rad))
 
 
 def _heading(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--heading-deg",
-        type=float,
+        type=number,
         metavar="DEG",
         help="the robot's heading on the map, if you know it better than its odometry",
     )
@@ -35,8 +38,8 @@ def _drive_to(arguments: argparse.Namespace) -> int:
 
 
 def _goal(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("x_m", type=float, metavar="X", help="map x [m]")
-    parser.add_argument("y_m", type=float, metavar="Y", help="map y [m]")
+    parser.add_argument("x_m", type=number, metavar="X", help="map x [m]")
+    parser.add_argument("y_m", type=number, metavar="Y", help="map y [m]")
     legs_argument(parser)
 
 
@@ -52,7 +55,7 @@ def legs_argument(parser: argparse.ArgumentParser) -> None:
 
 def _pose(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client, client.subscribe(Topic.POSE) as events:
-        while not isinstance(event := events.next(arguments.timeout), PoseEstimate):
+        while not isinstance(event := events.next(arguments.timeout or _PATIENCE_S), PoseEstimate):
             if event is None:
                 raise RequestTimeout("no pose: the daemon is silent, or it was never localized")
     if arguments.json:
@@ -66,6 +69,7 @@ def _pose(arguments: argparse.Namespace) -> int:
 
 def _watch(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client, client.subscribe(*arguments.topic) as events:
+        client.hello()  # where there is no daemon, say so; one that goes away later may come back
         for event in events:
             if arguments.json:
                 print_json({"event": "gap", **asdict(event)} if isinstance(event, Gap) else as_json(event))

@@ -87,7 +87,7 @@ class AsyncClient:
     ) -> None:
         """Prepare to connect; see :class:`robotd.server.client.Client`."""
         self._endpoints = Endpoints(Path(runtime_dir or runtime_dir_of_user()))
-        self._exchanges = Exchanges(retry_s=retry_s, deadline_s=deadline_s)
+        self._exchanges = Exchanges(str(self._endpoints), retry_s=retry_s, deadline_s=deadline_s)
         self._retry_s = retry_s
         self._patience_s = api.GetStatus.deadline_s if deadline_s is None else deadline_s
         self._waiting: dict[int, asyncio.Future[None]] = {}
@@ -262,7 +262,7 @@ class AsyncClient:
             deadline_s = _now_s() + self._patience_s
             while not isinstance(event := await events.next(deadline_s - _now_s()), Status):
                 if event is None:
-                    raise RequestTimeout("no status from robotd")
+                    raise RequestTimeout(f"no status from {self._endpoints}")
             yield events
 
     async def _start_or_stop(self, mission: Mission, lease_s: float | None) -> api.MissionStarted:

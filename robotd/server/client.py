@@ -93,7 +93,7 @@ class Client:
             TransportError: the directory's path is too long for a Unix socket.
         """
         self._endpoints = Endpoints(Path(runtime_dir or runtime_dir_of_user()))
-        self._exchanges = Exchanges(retry_s=retry_s, deadline_s=deadline_s)
+        self._exchanges = Exchanges(str(self._endpoints), retry_s=retry_s, deadline_s=deadline_s)
         self._context = zmq.Context()
         self._patience_s = api.GetStatus.deadline_s if deadline_s is None else deadline_s
         self._commands = self._context.socket(zmq.DEALER)
@@ -243,7 +243,7 @@ class Client:
             deadline_s = _now_s() + self._patience_s
             while not isinstance(event := events.next(deadline_s - _now_s()), Status):
                 if event is None:
-                    raise RequestTimeout("no status from robotd")
+                    raise RequestTimeout(f"no status from {self._endpoints}")
             yield events
 
     def _start_or_stop(self, mission: Mission, lease_s: float | None) -> api.MissionStarted:

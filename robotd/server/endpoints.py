@@ -32,6 +32,10 @@ class Endpoints:
         if longest[0] > _LONGEST_PATH:
             raise TransportError(f"{longest[1]}: {longest[0]} bytes, a Unix socket's path has at most {_LONGEST_PATH}")
 
+    def __str__(self) -> str:
+        """Who serves there."""
+        return f"robotd in {self.runtime_dir}"
+
     @property
     def commands(self) -> str:
         """Requests and replies (ROUTER)."""

@@ -20,10 +20,11 @@ class Exchange(Generic[R]):
     """One request and its answer."""
 
     def __init__(
-        self, request_id: int, command: Command[R], *, now_s: float, retry_s: float, deadline_s: float
+        self, request_id: int, command: Command[R], *, whom: str, now_s: float, retry_s: float, deadline_s: float
     ) -> None:
         self.id = request_id
         self._command = command
+        self._whom = whom
         self._data = encode_request(request_id, command)
         self._retry_s = retry_s
         self._deadline_s = now_s + deadline_s
@@ -42,7 +43,7 @@ class Exchange(Generic[R]):
             RequestTimeout: there was no answer before the deadline.
         """
         if now_s >= self._deadline_s:
-            raise RequestTimeout(f"{self._command.cmd}: no answer from robotd")
+            raise RequestTimeout(f"{self._command.cmd}: no answer from {self._whom}")
         if now_s < self._next_s:
             return None
         self._next_s = now_s + self._retry_s
@@ -77,7 +78,9 @@ class Exchange(Generic[R]):
 class Exchanges:
     """The requests of one client, by number."""
 
-    def __init__(self, *, retry_s: float, deadline_s: float | None) -> None:
+    def __init__(self, whom: str, *, retry_s: float, deadline_s: float | None) -> None:
+        """Ask ``whom``, as complaints shall call it."""
+        self._whom = whom
         self._retry_s = retry_s
         self._deadline_s = deadline_s
         self._number = 0
@@ -87,7 +90,9 @@ class Exchanges:
         """Open an exchange."""
         self._number += 1
         deadline_s = command.deadline_s if self._deadline_s is None else self._deadline_s
-        exchange = Exchange(self._number, command, now_s=now_s, retry_s=self._retry_s, deadline_s=deadline_s)
+        exchange = Exchange(
+            self._number, command, whom=self._whom, now_s=now_s, retry_s=self._retry_s, deadline_s=deadline_s
+        )
         self._open[exchange.id] = exchange
         return exchange
 

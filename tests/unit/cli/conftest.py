@@ -1,6 +1,7 @@
 """A daemon that is not there, as far as the command line can see."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from types import TracebackType
 from typing import Any, Self
 
@@ -73,6 +74,7 @@ class FakeClient:
         self.asked: list[Any] = []
         self.mission_events: tuple[MissionEvent, ...] = MISSION_EVENTS
         self.raises: BaseException | None = None
+        self.damage: str | None = None
         self.published: list[Published | Gap] = [ESTIMATE]
 
     def __enter__(self) -> Self:
@@ -80,6 +82,10 @@ class FakeClient:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.asked.append("close")
+
+    def hello(self) -> None:
+        if isinstance(self.raises, Exception):
+            raise self.raises
 
     def status(self) -> Status:
         if isinstance(self.raises, Exception):
@@ -118,7 +124,7 @@ class FakeClient:
         return ENTRY
 
     def map_list(self) -> tuple[MapEntryInfo, ...]:
-        return (ENTRY,)
+        return (replace(ENTRY, damage=self.damage),)
 
     def map_show(self, name: str | None, version: int | None) -> MapChanged:
         self.asked.append(("map_show", name, version))

@@ -60,6 +60,9 @@ def test_maps_are_saved_loaded_and_listed(client: Any, capsys: pytest.CaptureFix
     assert loaded.startswith("loaded lab version 3")
     assert header.split() == ["map", "version", "made", "(UTC)", "cells", "digest"]
     assert row.split() == ["lab", "3", "2023-11-14", "22:13:20", "60", "x", "40", "abcdef012345"]
+    client.damage = "cells.npy: checksum does not match"
+    assert main(["map", "list"]) == 0
+    assert "damaged: cells.npy: checksum does not match" in capsys.readouterr().out
     for words in (["save"], ["load", "lab"]):
         assert main(["map", *words, "--json"]) == 0
         assert json.loads(capsys.readouterr().out)["digest"] == "abcdef0123456789"

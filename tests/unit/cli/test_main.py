@@ -4,7 +4,9 @@ import json
 import shlex
 import subprocess
 import sys
+from dataclasses import replace
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -76,6 +78,13 @@ def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) 
         ["status", "--timeout", "nan"],
         ["watch", "moon"],
         ["map", "start", "a", "--legs", "wiggly"],
+        ["map", "start", "a/b"],
+        ["map", "start", "a", "--stop", "1", "nan"],
+        ["map", "start", "a", "--start", "1", "inf", "0"],
+        ["map", "show", "a", "--version", "-1"],
+        ["map", "show", "--width", "0"],
+        ["drive-to", "nan", "1"],
+        ["localize", "--heading-deg", "inf"],
         ["sim"],
     ],
 )
@@ -102,6 +111,46 @@ def test_a_failure_is_one_line_and_exit_code_1(
     assert (captured.out, captured.err) == ("", line + "\n")
 
 
+def test_watching_nobody_is_a_failure(client: Any) -> None:
+    client.raises = RequestTimeout("no answer from robotd")
+    assert main(["watch"]) == 1
+
+
+def test_who_is_not_in_the_group_is_told_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    assert main(["status", "--runtime-dir", str(tmp_path)]) == 1
+    assert capsys.readouterr().err == (
+        f"robotctl: {tmp_path}: permission denied: only members of its group may talk to robotd\n"
+    )
+
+
+def test_silence_is_told_with_where_a_daemon_was_sought(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["arm", "--runtime-dir", str(tmp_path), "--timeout", "0.01"]) == 1
+    assert capsys.readouterr().err == f"robotctl: arm: no answer from robotd in {tmp_path}\n"
+
+
+def test_what_others_wrote_is_no_markup(
+    client: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status = replace(client.status(), reason="stopped by [/anybody] [red]")
+    monkeypatch.setattr(client, "status", lambda: status)
+    assert main(["status"]) == 0
+    assert "stopped by [/anybody] [red]" in capsys.readouterr().out
+
+
+def test_an_error_without_a_file_is_one_line_too(
+    client: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(document: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("robotd.cli.control.print_json", full)
+    assert main(["status", "--json"]) == 1
+    assert capsys.readouterr().err == "robotctl: No space left on device\n"
+
+
 def test_the_timeout_and_the_directory_reach_the_client(monkeypatch: pytest.MonkeyPatch, client: Any) -> None:
     seen: list[Any] = []
 
@@ -111,7 +160,8 @@ def test_the_timeout_and_the_directory_reach_the_client(monkeypatch: pytest.Monk
 
     monkeypatch.setattr("robotd.cli.control.connect", connect)
     assert main(["arm", "--runtime-dir", "there", "--timeout", "1.5"]) == 0
-    assert seen == [("there", 1.5)]
+    assert main(["arm", "--runtime-dir", "there"]) == 0  # each request has its own time, saving a map a long one
+    assert seen == [("there", 1.5), ("there", None)]
 
 
 def test_status_for_people_and_for_programs(client: Any, capsys: pytest.CaptureFixture[str]) -> None:

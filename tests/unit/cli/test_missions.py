@@ -18,11 +18,13 @@ from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMiss
 def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
     main(["localize"])
     main(["localize", "--heading-deg", "90"])
+    main(["localize", "--heading-deg", "-270"])
     main(["drive-to", "1.5", "-2", "--legs", "straight"])
     main(["map", "start", "lab", "--stop", "1", "2", "--stop", "-3", "4", "--start", "1", "0", "180"])
     main(["map", "start", "lab"])
     assert [asked for asked in client.asked if asked != "close"] == [
         LocalizeMission(None),
+        LocalizeMission(math.radians(90)),
         LocalizeMission(math.radians(90)),
         DriveMission(1.5, -2.0, Legs.STRAIGHT),
         MapMission("lab", ((1.0, 2.0), (-3.0, 4.0)), Pose2(1.0, 0.0, math.pi), Legs.PLANNED),

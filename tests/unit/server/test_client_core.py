@@ -18,7 +18,7 @@ from robotd.server.topics import LogEntry, Topic, encode_frame, to_wire
 
 
 def exchanges(deadline_s: float | None = None) -> Exchanges:
-    return Exchanges(retry_s=0.5, deadline_s=deadline_s)
+    return Exchanges("robotd in /here", retry_s=0.5, deadline_s=deadline_s)
 
 
 def test_a_request_is_repeated_under_its_number_until_the_deadline() -> None:
