@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import ClassVar
 
-from firmware_proto.common import Arm, BoardKind, BoardState, BoardStatus, Clear, Disarm, Fault
+from firmware_proto.common import Arm, BoardKind, BoardState, BoardStatus, Clear, Fault
 from firmware_proto.schema import Message
 from robotd.core.broadcast import Broadcast
 from robotd.core.errors import DeviceError, TransportError
@@ -28,6 +28,8 @@ class BoardDevice:
         self._wire = BoardWire(self.KIND)
         self._counters = LinkCounters()
         self._session: Session | None = None
+        self._may_move = False
+        """Whether an arm was asked for, and no stop since."""
         self._status = DeviceStatus(self.name, LinkState.ABSENT, armed=False, detail="not started")
         self._status_changes: Broadcast[DeviceStatus] = Broadcast()
         self._link = Link(
@@ -64,13 +66,9 @@ class BoardDevice:
         """Allow motion; see :meth:`robotd.hardware.devices.device.Device.arm`."""
         if self._status.faults:
             raise DeviceError(self.name, "fault", f"{', '.join(self._status.faults)} latched: clear first")
+        self._may_move = True
         await self._order(Arm())
         self._change(armed=True)
-
-    async def disarm(self) -> None:
-        """Stop and forbid motion; same errors as :meth:`arm`."""
-        await self._order(Disarm())
-        self._change(armed=False)
 
     async def clear_faults(self) -> None:
         """Acknowledge latched faults; leaves the device disarmed; same errors as :meth:`arm`."""
@@ -78,7 +76,11 @@ class BoardDevice:
         self._change(armed=False, faults=())
 
     def stop_now(self) -> None:
-        """Put the preformatted stop on the wire in place of all that waits; never blocks, never raises."""
+        """Put the preformatted stop on the wire in place of all that waits; never blocks, never raises.
+
+        A stop can be lost like any frame, so it is said again each time the board says that it is still armed.
+        """
+        self._may_move = False
         if self._session is not None:
             self._session.stop_now()
 
@@ -96,12 +98,16 @@ class BoardDevice:
     def link_lost(self, reason: str) -> None:
         """Note that there is none, and why."""
         self._session = None
+        self._may_move = False
         self._change(link=LinkState.ABSENT, armed=False, faults=(), detail=reason)
 
     def telemetry(self, message: Message) -> None:
         """Take a message that nobody asked for; a subclass takes its own first."""
         if isinstance(message, BoardStatus):
-            self._change(armed=message.state == BoardState.ARMED, faults=fault_names(message.faults))
+            is_armed = message.state == BoardState.ARMED
+            if is_armed and not self._may_move:
+                self.stop_now()
+            self._change(armed=is_armed, faults=fault_names(message.faults))
 
     # What a subclass uses
 

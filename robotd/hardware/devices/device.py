@@ -57,11 +57,11 @@ class Device(Protocol):
             TransportError: the device is absent.
         """
 
-    async def disarm(self) -> None:
-        """Stop and forbid motion; same errors as :meth:`arm`."""
-
     async def clear_faults(self) -> None:
         """Acknowledge latched faults; leaves the device disarmed; same errors as :meth:`arm`."""
 
     def stop_now(self) -> None:
-        """Put the preformatted stop on the wire in place of all that waits; never blocks, never raises."""
+        """Put the preformatted stop on the wire in place of all that waits; never blocks, never raises.
+
+        Nothing may move until the next :meth:`arm`: should the stop be lost, the device says it again.
+        """

@@ -53,6 +53,8 @@ async def shake_hands(session: Session, terms: Terms, nonce: int, dictionaries: 
     await _configure(session, Configure(terms.telemetry_ms, terms.ttl_max_ms))
     for _ in range(_QUICK_PINGS):
         await session.ping()
+    if session.clock.best is None:
+        raise RemoteProtocolError(f"{session.device}: no answer to a ping tells the board's time")
     session.boot_id = hello.boot_id
 
 

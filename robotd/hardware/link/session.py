@@ -76,6 +76,7 @@ class Session:
         self._request: Request | None = None
         self._posted: set[int] = set()
         self._serving = False
+        self._stops = 0
         self._board_us = 0
         self._lost: RobotdError | None = None
 
@@ -124,10 +125,11 @@ class Session:
     def stop_now(self) -> None:
         """Put the preformatted stop on the wire in place of everything not yet written; never raises.
 
-        An ARM that waits for its answer is given up: its repeat must not come after the stop.
+        An ARM that waits for its answer, or for its turn, is given up: it must not come after the stop.
         """
+        self._stops += 1
         if self._request is not None and isinstance(self._request.message, Arm):
-            self._request.fail(DeviceError(self.device, "stopped", "while arming"))
+            self._request.fail(self._stopped())
         try:
             self._line.write_urgent(STOP_BYTES)
         except TransportError:
@@ -155,8 +157,11 @@ class Session:
     # Requests
 
     async def _exchange(self, message: Message, takes_s: float) -> Received:
+        stops = self._stops
         async with self._one_at_a_time:
             self._check()
+            if isinstance(message, Arm) and self._stops != stops:
+                raise self._stopped()
             request = self._request = Request(self.device, message, self._next_seq(message))
             began_ns = now_ns()
             try:
@@ -236,6 +241,9 @@ class Session:
     def _check(self) -> None:
         if self._lost is not None:
             raise TransportError(str(self._lost))
+
+    def _stopped(self) -> DeviceError:
+        return DeviceError(self.device, "stopped", "while arming")
 
     def _lose(self, error: RobotdError) -> RobotdError:
         if self._lost is None:

@@ -15,6 +15,7 @@ from firmware_proto.rangefinder import SetLaser, Shoot, Shot
 from firmware_proto.schema import REPLY, Message
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError, TransportError
+from robotd.hardware.link.clock_sync import ClockSync
 from robotd.hardware.link.handshake import Terms, shake_hands
 from robotd.hardware.link.round_trip import TIMEOUT_MAX_S
 from robotd.hardware.link.session import LinkCounters, Session
@@ -143,6 +144,15 @@ async def test_the_handshake_configures_the_board_and_finds_its_clock() -> None:
         assert b.session.boot_id == b.board._boot_id
         true_us = now_ns() // 1000
         assert abs(b.session.clock.host_ns(b.clock.board_us(true_us)) - true_us * 1000) < 1 * MS
+
+
+async def test_a_board_that_does_not_give_our_time_back_is_refused() -> None:
+    async with bench(BoardKind.DRIVE) as b:
+        b.board._handlers[Ping] = lambda ping, seq: Pong(0, b.board._now_us)
+        b.session.clock = ClockSync()
+        await asyncio.sleep(5.0)  # our own time is past what a round trip may take
+        with pytest.raises(RemoteProtocolError, match="no answer to a ping tells the board's time"):
+            await shake_hands(b.session, Terms(BoardKind.DRIVE, 40, 500), 1, {})
 
 
 async def test_the_clock_stays_true_while_the_board_drifts() -> None:
@@ -329,6 +339,19 @@ async def test_stop_brings_the_board_to_rest_and_no_repeat_of_an_arm_comes_after
         await asyncio.sleep(1.0)
         assert (before, b.board.state) == (BoardState.ARMED, BoardState.CONFIGURED)
         assert b.line.count(Arm) == 1
+
+
+async def test_an_arm_that_waits_for_its_turn_is_given_up_by_a_stop() -> None:
+    async with bench(BoardKind.DRIVE) as b:
+        b.line.from_board = lambda frame: frame.type != Disarm.TYPE | REPLY
+        asked = asyncio.gather(b.session.command(Disarm()), b.session.command(Arm()), return_exceptions=True)
+        await asyncio.sleep(0.01)
+        b.session.stop_now()
+        timeout, stopped = await asked
+        assert isinstance(timeout, LinkTimeout)
+        assert isinstance(stopped, DeviceError)
+        assert stopped.code == "stopped"
+        assert b.line.count(Arm) == 0
 
 
 async def test_stop_on_a_dead_line_raises_nothing() -> None:

@@ -1,0 +1,373 @@
+"""Whatever goes wrong in whatever moment, the robot comes to rest, stays so, and moves again only when armed anew."""
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator, Awaitable, Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+from firmware_proto.common import BoardState, Fault
+from robotd.app.compose import Daemon, compose
+from robotd.app.daemon import new_journal
+from robotd.config import Config
+from robotd.core.broadcast import Subscription
+from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.errors import RobotdError
+from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.hardware.link.tap import Direction
+from robotd.hardware.transport.transport import Connect, Transport
+from robotd.hardware.wire.board import STOP_BYTES
+from robotd.mission.compute import Compute
+from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepProgress
+from robotd.mission.modes import Mode
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.recording.entries import BytesEntry
+from robotd.recording.preroll import PrerollJournal
+from robotd.sim.robot import DEVICES, SimulatedRobot
+from robotd.sim.runtime import connectors
+from robotd.sim.world import load_world
+from tests.integration.conftest import in_directory, until_ready
+
+LEASE_S = 0.5
+REST_WITHIN_S = 1.5
+"""The lease, or the deadman of a set-point, and the ramp from cruising speed."""
+NOTICED_WITHIN_S = 1.1
+"""A board that restarts falls silent for a second."""
+SOON_S = 0.1
+"""For bytes to travel, and the board's next word."""
+
+
+class Plug:
+    """An end of a line that can be pulled, and that can garble a stop."""
+
+    def __init__(self, line: Transport) -> None:
+        self.name = line.name
+        self.garbles = 0
+        self._line = line
+
+    async def read(self) -> bytes:
+        return await self._line.read()
+
+    def write(self, data: bytes) -> None:
+        self._line.write(data)
+
+    def write_urgent(self, data: bytes) -> None:
+        self._line.write_urgent(data[:-3] if self.garbles else data)
+        self.garbles = max(0, self.garbles - 1)
+
+    def close(self) -> None:
+        self._line.close()
+
+
+class Holding:
+    """Computes at once, but keeps the result of an insertion or of preparing to localize until it is let go."""
+
+    def __init__(self) -> None:
+        self.go = asyncio.Event()
+
+    async def run(self, name: str, function: Callable[..., object], *args: object) -> object:
+        result = function(*args)
+        if name in {"insert", "prepare"}:
+            await self.go.wait()
+        return result
+
+
+@dataclass(slots=True)
+class Rig:
+    """A daemon on an emulated robot, and everything that can go wrong with it."""
+
+    robot: SimulatedRobot
+    daemon: Daemon
+    journal: PrerollJournal
+    compute: Holding
+    plugs: dict[str, Plug]
+    events: Subscription[Event]
+    parts: list[asyncio.Task[None]]
+    began_ns: int = 0
+    asked: list[asyncio.Task[None]] = field(default_factory=list)
+
+    @property
+    def mode(self) -> Mode:
+        return self.daemon.supervisor.mode
+
+    @property
+    def states(self) -> dict[str, BoardState]:
+        return {name: board.state for name, board in self.robot.boards.items()}
+
+    @property
+    def is_quiet(self) -> bool:
+        """Base at rest, head still, laser dark."""
+        pantilt, rangefinder = self.robot.boards["pantilt"], self.robot.boards["rangefinder"]
+        return self.robot.at_rest and pantilt._plant.arrives_us is None and not rangefinder._lit  # type: ignore[attr-defined]  # looks inside the emulators
+
+    def start(self, mission: Mission) -> int:
+        return self.daemon.control.start(mission, LEASE_S)
+
+    async def keep_alive(self, mission_id: int, until: Callable[[Event], bool]) -> None:
+        """Renew the lease until something happens."""
+        async with asyncio.timeout(60.0):
+            async for event in self.events:
+                if until(event):
+                    return
+                with contextlib.suppress(RobotdError):
+                    self.daemon.control.renew(mission_id)
+
+    def stopped(self, device: str) -> bool:
+        """Whether a stop was put on the wire of a device since things began to go wrong."""
+        return any(
+            isinstance(entry, BytesEntry)
+            and entry.device == device
+            and entry.direction is Direction.TO_BOARD
+            and STOP_BYTES in entry.data
+            and entry.time_ns >= self.began_ns
+            for entry in self.journal.remembered
+        )
+
+    async def end(self) -> None:
+        for part in self.parts:
+            part.cancel()
+        await asyncio.gather(*self.parts, return_exceptions=True)
+
+
+def daemon_on(
+    plugs: dict[str, Plug], connects: dict[str, Connect], compute: Holding, journal: PrerollJournal
+) -> Daemon:
+    def plugged(name: str, connect: Connect) -> Connect:
+        async def connect_plugged() -> Transport:
+            plugs[name] = Plug(await connect())
+            return plugs[name]
+
+        return connect_plugged
+
+    wrapped = {name: plugged(name, connect) for name, connect in connects.items()}
+    computing: Compute = compute  # type: ignore[assignment]  # object for any T: it hands back what it is given
+    return compose(Config(), wrapped, computing, journal)
+
+
+@contextlib.asynccontextmanager
+async def rig(directory: Path) -> AsyncIterator[Rig]:
+    robot = SimulatedRobot(load_world("laboratory"), seed=4)
+    journal = new_journal(in_directory(Config(), directory))
+    compute, plugs = Holding(), dict[str, Plug]()
+    async with connectors(robot) as connects:
+        daemon = daemon_on(plugs, connects, compute, journal)
+        with daemon.control.events.subscribe(depth=100_000) as events:
+            parts = [asyncio.create_task(part, name=name) for name, part in daemon.parts().items()]
+            one = Rig(robot, daemon, journal, compute, plugs, events, parts)
+            try:
+                await until_ready(daemon)
+                await asyncio.sleep(SOON_S)
+                yield one
+            finally:
+                compute.go.set()
+                await daemon.control.stop("the test is over")
+                await one.end()
+                await asyncio.gather(*one.asked, return_exceptions=True)
+
+
+# What the robot is at
+
+
+async def idle(rig: Rig) -> None:
+    await rig.daemon.control.arm()
+
+
+async def driving(rig: Rig) -> None:
+    await rig.daemon.control.arm()
+    grid = OccupancyGrid(GridSettings().spec_covering(((rig.robot.start.x_m, rig.robot.start.y_m),), 3.0))
+    rig.daemon.control.use_map("blank", "blank", grid, rig.robot.start)
+    mission_id = rig.start(DriveMission(*rig.robot.stops_m[0], Legs.STRAIGHT))
+    speed_mps = 0.0
+
+    def fast(_: Event) -> bool:
+        nonlocal speed_mps
+        speed_mps = rig.robot._body.velocity[0]
+        return speed_mps > 0.2
+
+    await rig.keep_alive(mission_id, fast)
+
+
+async def sweeping(rig: Rig) -> None:
+    await rig.daemon.control.arm()
+    mission_id = rig.start(MapMission("new", (), rig.robot.start))
+    await rig.keep_alive(mission_id, lambda event: isinstance(event, SweepProgress) and event.taken >= 20)
+
+
+async def computing(rig: Rig) -> None:
+    """The sweep is taken, and the robot waits for the map."""
+    await rig.daemon.control.arm()
+    mission_id = rig.start(MapMission("new", (), rig.robot.start))
+
+    def is_computing(event: Event) -> bool:
+        return isinstance(event, MissionProgress) and event.phase is MissionPhase.COMPUTING
+
+    await rig.keep_alive(mission_id, is_computing)
+
+
+async def preparing(rig: Rig) -> None:
+    """The map is made ready to localize on, before the sweep."""
+    await rig.daemon.control.arm()
+    grid = OccupancyGrid(GridSettings().spec_covering(((rig.robot.start.x_m, rig.robot.start.y_m),), 3.0))
+    rig.daemon.control.use_map("blank", "blank", grid, rig.robot.start)
+    rig.start(LocalizeMission())
+    await asyncio.sleep(0.4)
+
+
+async def arming(rig: Rig) -> None:
+    """The base is armed already, the others are not."""
+    rig.asked.append(asyncio.create_task(rig.daemon.control.arm()))
+    with rig.daemon.robot.drive.status_changes.subscribe() as changes:
+        assert (await changes.get()).armed
+    assert not rig.daemon.robot.rangefinder.status.armed
+
+
+async def starting(rig: Rig) -> None:
+    """A mission was asked for in this very moment."""
+    await rig.daemon.control.arm()
+    rig.start(MapMission("new", (), rig.robot.start))
+
+
+# What goes wrong
+
+
+async def stop(rig: Rig) -> None:
+    await rig.daemon.control.stop("enough")
+
+
+async def stop_is_garbled(rig: Rig) -> None:
+    for plug in rig.plugs.values():
+        plug.garbles = 3
+    await rig.daemon.control.stop("enough")
+
+
+def unplug(device: str) -> Callable[[Rig], Awaitable[None]]:
+    async def pull(rig: Rig) -> None:
+        rig.plugs[device]._line.cut()  # type: ignore[attr-defined]  # a memory line can be cut
+
+    return pull
+
+
+def reboot(device: str) -> Callable[[Rig], Awaitable[None]]:
+    async def lose_power(rig: Rig) -> None:
+        rig.robot.boards[device].reboot(4711)
+
+    return lose_power
+
+
+def latch(device: str, fault: Fault) -> Callable[[Rig], Awaitable[None]]:
+    async def report(rig: Rig) -> None:
+        rig.robot.boards[device]._latch(fault, cut=True)
+
+    return report
+
+
+async def silent_client(rig: Rig) -> None:
+    """Nobody renews the lease from here on."""
+
+
+async def daemon_ends(rig: Rig) -> None:
+    """What SIGTERM does: stop on every wire first."""
+    rig.daemon.robot.stop_now()
+    await rig.daemon.control.stop("the daemon is ending")
+    await rig.end()
+
+
+async def daemon_is_killed(rig: Rig) -> None:
+    for plug in rig.plugs.values():
+        plug._line.cut()  # type: ignore[attr-defined]  # as above
+    await rig.end()
+
+
+ACTIVITIES = (idle, driving, sweeping, computing, preparing, arming, starting)
+WRONGS: dict[str, tuple[Callable[[Rig], Awaitable[None]], Mode]] = {
+    "stop": (stop, Mode.DISARMED),
+    "garbled stop": (stop_is_garbled, Mode.DISARMED),
+    **{f"{device} unplugged": (unplug(device), Mode.DISARMED) for device in DEVICES},
+    **{f"{device} rebooted": (reboot(device), Mode.DISARMED) for device in DEVICES},
+    "bumper": (latch("drive", Fault.BUMPER), Mode.FAULT),
+    "head motor": (latch("pantilt", Fault.MOTOR), Mode.FAULT),
+    "laser killed": (latch("rangefinder", Fault.KILLED), Mode.FAULT),
+    "daemon ends": (daemon_ends, Mode.DISARMED),
+}
+
+
+async def check_rest(rig: Rig) -> None:
+    """From here on nothing is armed and nothing moves, although time passes and lines come back."""
+    assert rig.is_quiet
+    assert BoardState.ARMED not in rig.states.values()
+    where = rig.robot.truth
+    await asyncio.sleep(5.0)
+    assert rig.robot.truth == where
+    assert rig.is_quiet
+    assert BoardState.ARMED not in rig.states.values()
+
+
+async def check_arming_works_again(rig: Rig) -> None:
+    await until_ready(rig.daemon)
+    await asyncio.sleep(SOON_S)
+    if rig.mode is Mode.FAULT:
+        with pytest.raises(RobotdError):
+            await rig.daemon.control.arm()
+        await rig.daemon.control.clear()
+    assert rig.mode.value == "disarmed"
+    assert not any(device.status.armed for device in rig.daemon.robot.devices)
+    await rig.daemon.control.arm()
+    await asyncio.sleep(SOON_S)
+    assert rig.mode is Mode.IDLE
+    assert set(rig.states.values()) == {BoardState.ARMED}
+
+
+@pytest.mark.parametrize("activity", ACTIVITIES)
+@pytest.mark.parametrize("wrong", WRONGS)
+async def test_it_comes_to_rest(activity: Callable[[Rig], Awaitable[None]], wrong: str, tmp_path: Path) -> None:
+    happens, mode = WRONGS[wrong]
+    async with rig(tmp_path) as it:
+        await activity(it)
+        it.began_ns = now_ns()
+        await happens(it)
+        await asyncio.sleep(NOTICED_WITHIN_S)
+        if activity is arming:
+            assert it.asked[0].done()
+        assert it.mode is mode
+        await asyncio.sleep(REST_WITHIN_S)
+        cut_off = {device for device in DEVICES if wrong in {f"{device} unplugged", f"{device} rebooted"}}
+        assert all(it.stopped(device) for device in set(DEVICES) - cut_off)
+        await check_rest(it)
+        if wrong != "daemon ends":
+            assert it.mode is mode
+            await check_arming_works_again(it)
+            return
+    assert it.is_quiet
+
+
+@pytest.mark.parametrize("activity", [driving, sweeping, computing, preparing, starting])
+async def test_a_silent_client_loses_its_robot_when_the_lease_ends(
+    activity: Callable[[Rig], Awaitable[None]], tmp_path: Path
+) -> None:
+    async with rig(tmp_path) as it:
+        await activity(it)
+        it.began_ns = now_ns()
+        await asyncio.sleep(LEASE_S + SOON_S)
+        assert it.mode is Mode.DISARMED
+        assert "lease" in it.daemon.control.status.reason
+        stops = [entry.time_ns for entry in it.journal.remembered if getattr(entry, "data", b"") == STOP_BYTES]
+        assert all(it.stopped(device) for device in DEVICES)
+        assert min(at for at in stops if at >= it.began_ns) <= it.began_ns + (LEASE_S + 0.05) * NS_PER_S
+        await asyncio.sleep(REST_WITHIN_S)
+        await check_rest(it)
+        await check_arming_works_again(it)
+
+
+@pytest.mark.parametrize("activity", ACTIVITIES)
+async def test_a_killed_daemon_leaves_a_robot_that_stops_itself(
+    activity: Callable[[Rig], Awaitable[None]], tmp_path: Path
+) -> None:
+    async with rig(tmp_path) as it:
+        await activity(it)
+        await daemon_is_killed(it)
+        await asyncio.sleep(REST_WITHIN_S)
+        assert it.robot.at_rest
+        if activity is driving:
+            assert it.robot.boards["drive"].faults is Fault.DEADMAN
