@@ -1,9 +1,9 @@
 """Missions from the command line. Whatever interrupts one, the robot is stopped first and then people are told."""
 
 import argparse
-from collections.abc import Generator, Iterable
+from collections.abc import Iterable
 from contextlib import closing
-from typing import Protocol, cast
+from typing import Protocol
 
 from robotd.cli.connection import connect
 from robotd.cli.progress import MissionBars
@@ -31,8 +31,7 @@ def carry_out(arguments: argparse.Namespace, mission: Mission) -> int:
 
 
 def _follow(client: Client, mission: Mission, *, as_lines: bool) -> int:
-    running = cast("Generator[MissionEvent, None, None]", client.run_mission(mission))
-    with closing(running) as events:
+    with closing(client.run_mission(mission)) as events:
         try:
             if as_lines:
                 _show_each(events, lambda event: print_json(as_json(event)))

@@ -6,7 +6,6 @@ import contextlib
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from typing import cast
 
 from robotd.cli.emulated import config_text, recorded_config_text, write_config
 from robotd.cli.terminal import err, out, print_json, print_pairs
@@ -40,8 +39,7 @@ def _fake(arguments: argparse.Namespace) -> int:
     def write(file: Path, ports: dict[str, str]) -> None:
         write_config(file, recorded_config_text(ports, recording))
 
-    # A fake board is hosted as an emulated one is, though it is not of that class.
-    _serve(arguments, cast("EmulatedRobot", robot), write)
+    _serve(arguments, robot, write)
     if arguments.json:
         print_json({"finished": robot.finished, "mismatches": [asdict(found) for found in robot.mismatches]})
     else:

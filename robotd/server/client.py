@@ -11,7 +11,7 @@ import contextlib
 import os
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Self, TypeVar
@@ -145,7 +145,7 @@ class Client:
         """Keep a mission's lease alive, and learn how far it has come."""
         return self.call(api.Renew(mission_id))
 
-    def run_mission(self, mission: Mission, lease_s: float | None = None) -> Iterator[MissionEvent]:
+    def run_mission(self, mission: Mission, lease_s: float | None = None) -> Generator[MissionEvent, None, None]:
         """Start a mission, keep it alive, and yield what happens until it is done.
 
         The lease is renewed while the next event is awaited, so a caller that dawdles longer than the lease over

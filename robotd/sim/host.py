@@ -3,21 +3,41 @@
 import asyncio
 import contextlib
 from collections.abc import Callable, Coroutine
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import TransportError
 from robotd.hardware.transport.transport import Transport
 from robotd.sim.board_clock import BoardClock
-from robotd.sim.boards.board import Board
 
 T = TypeVar("T")
 
 _NS_PER_US = 1000
 
 
+class HostedBoard(Protocol):
+    """A board without a line, whether it works or only plays a part: bytes in, bytes out, at the board's own time."""
+
+    @property
+    def next_event_us(self) -> int | None:
+        """When :meth:`advance` must be called at the latest; None while nothing is to come."""
+
+    def receive(self, data: bytes, now_us: int) -> None:
+        """Take bytes from the host."""
+
+    def advance(self, now_us: int) -> None:
+        """Let time pass."""
+
+    def take_output(self) -> bytes:
+        """Return, once, the bytes that the board has for the host."""
+
+
 async def serve(
-    board: Board, clock: BoardClock, lines: "asyncio.Queue[Transport]", *, on_step: Callable[[], None] = lambda: None
+    board: HostedBoard,
+    clock: BoardClock,
+    lines: "asyncio.Queue[Transport]",
+    *,
+    on_step: Callable[[], None] = lambda: None,
 ) -> None:
     """Run a board until cancelled, on one line after the other as they come; in between it is unplugged.
 
@@ -46,7 +66,7 @@ async def serve(
 class _Life:
     """A board, its clock and its present line."""
 
-    def __init__(self, board: Board, clock: BoardClock, on_step: Callable[[], None]) -> None:
+    def __init__(self, board: HostedBoard, clock: BoardClock, on_step: Callable[[], None]) -> None:
         self._board = board
         self._clock = clock
         self._on_step = on_step

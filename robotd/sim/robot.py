@@ -1,5 +1,6 @@
 """A whole robot behind three boards: the simulated one, and what every emulated one offers."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -12,6 +13,7 @@ from robotd.sim.boards.pantilt import PanTiltBoard
 from robotd.sim.boards.rangefinder import RangefinderBoard
 from robotd.sim.body import Body, BodySettings
 from robotd.sim.head import Head, HeadSettings
+from robotd.sim.host import HostedBoard
 from robotd.sim.laser import Laser, LaserSettings
 from robotd.sim.noise import NoiseSettings, stream
 from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant
@@ -24,16 +26,20 @@ DEVICES = ("drive", "pantilt", "rangefinder")
 class EmulatedRobot(Protocol):
     """Three boards, the place they believe to be in, and the truth about it."""
 
-    boards: dict[str, Board]
-    """By device name."""
-    clocks: dict[str, BoardClock]
-    """The boards' own clocks, by device name."""
     start: Pose2
     """Where the robot stands at first; it ties the frame of ``stops_m`` to odometry."""
     stops_m: tuple[Point, ...]
     """Where to stop for a map, after the start."""
     probes_m: tuple[Point, ...]
     """Where to localize afterwards."""
+
+    @property
+    def boards(self) -> Mapping[str, HostedBoard]:
+        """By device name."""
+
+    @property
+    def clocks(self) -> Mapping[str, BoardClock]:
+        """The boards' own clocks, by device name."""
 
     @property
     def truth(self) -> Pose2:
