@@ -57,7 +57,7 @@ def _pose(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client, client.subscribe(Topic.POSE) as events:
         while not isinstance(event := events.next(arguments.timeout or _PATIENCE_S), PoseEstimate):
             if event is None:
-                raise RequestTimeout("no pose: the daemon is silent, or it was never localized")
+                raise RequestTimeout("no pose: the daemon is silent")
     if arguments.json:
         print_json(as_json(event))
         return OK

@@ -3,6 +3,7 @@
 import asyncio
 from typing import NoReturn
 
+from robotd.core.broadcast import Subscription
 from robotd.core.errors import RobotdError
 from robotd.mission.events import Event, MapChanged
 from robotd.server.control import Control
@@ -12,14 +13,19 @@ from robotd.server.map_queue import MapQueue
 from robotd.server.outlet import BETWEEN_GREETINGS_S, Outlet
 from robotd.server.topics import LogEntry, Published, Topic, to_wire
 
-_DEPTH = 4096
+DEPTH = 4096
+"""How many events, or lines of the log, may wait for their turn."""
 
 
 class Publisher:
     """Publishes the events of the mission, and the log."""
 
-    def __init__(self, control: Control, state: Outlet, maps: Outlet, *, routine_hz: float) -> None:
+    def __init__(
+        self, control: Control, events: Subscription[Event], state: Outlet, maps: Outlet, *, routine_hz: float
+    ) -> None:
+        """Take the events of ``control`` by a subscription that is open already, so that the very first are there."""
         self._control = control
+        self._events = events
         self._state = state
         self._maps = maps
         self._routine_hz = routine_hz
@@ -27,7 +33,7 @@ class Publisher:
 
     async def run(self) -> None:
         """Publish until cancelled."""
-        lines: asyncio.Queue[LogEntry] = asyncio.Queue(_DEPTH)
+        lines: asyncio.Queue[LogEntry] = asyncio.Queue(DEPTH)
         with relay_log(lambda line: None if lines.full() else lines.put_nowait(line)):
             async with asyncio.TaskGroup() as group:
                 group.create_task(self._follow_events())
@@ -38,14 +44,13 @@ class Publisher:
 
     async def _follow_events(self) -> NoReturn:
         decimator = Decimator(self._routine_hz)
-        with self._control.events.subscribe(_DEPTH) as events:
-            await self._publish(self._control.status)
-            while True:
-                event: Event = await events.get()
-                if isinstance(event, MapChanged):
-                    self._map_queue.put(event)
-                elif decimator.passes(event):
-                    await self._publish(event)
+        await self._publish(self._control.status)
+        while True:
+            event = await self._events.get()
+            if isinstance(event, MapChanged):
+                self._map_queue.put(event)
+            elif decimator.passes(event):
+                await self._publish(event)
 
     async def _follow_log(self, lines: asyncio.Queue[LogEntry]) -> NoReturn:
         while True:

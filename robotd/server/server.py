@@ -10,7 +10,9 @@ from pathlib import Path
 import zmq
 import zmq.asyncio
 
+from robotd.core.broadcast import Subscription
 from robotd.core.errors import TransportError
+from robotd.mission.events import Event
 from robotd.server.commands import Commands
 from robotd.server.control import Control
 from robotd.server.endpoints import DEFAULT_RUNTIME_DIR, Endpoints
@@ -18,7 +20,7 @@ from robotd.server.handlers import Handlers
 from robotd.server.lock import lock_directory
 from robotd.server.outcomes import Outcomes
 from robotd.server.outlet import Outlet
-from robotd.server.publisher import Publisher
+from robotd.server.publisher import DEPTH, Publisher
 
 _SOCKET_MODE = 0o770
 _ROOM_TO_REFUSE = 4
@@ -91,11 +93,15 @@ class Server:
             async with self._sockets() as (commands, state, maps):
                 self.serving.set()
                 try:
-                    await self._serve(commands, Outlet(state, self.session), Outlet(maps, self.session))
+                    with self._control.events.subscribe(DEPTH) as events:
+                        outlets = Outlet(state, self.session), Outlet(maps, self.session)
+                        await self._serve(commands, events, *outlets)
                 finally:
                     self.serving.clear()
 
-    async def _serve(self, router: zmq.asyncio.Socket, state: Outlet, maps: Outlet) -> None:
+    async def _serve(
+        self, router: zmq.asyncio.Socket, events: Subscription[Event], state: Outlet, maps: Outlet
+    ) -> None:
         settings = self._settings
         outcomes = Outcomes()
         commands = Commands(
@@ -105,7 +111,7 @@ class Server:
             max_pending=settings.max_pending_requests,
             remembered=settings.remembered_replies,
         )
-        publisher = Publisher(self._control, state, maps, routine_hz=settings.routine_hz)
+        publisher = Publisher(self._control, events, state, maps, routine_hz=settings.routine_hz)
         async with asyncio.TaskGroup() as group:
             group.create_task(outcomes.follow(self._control.events), name="outcomes")
             group.create_task(publisher.run(), name="publisher")

@@ -24,7 +24,7 @@ def test_a_pose_is_its_state_and_all_its_regions(client: Any, capsys: pytest.Cap
 def test_no_pose_in_time_is_a_failure(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
     client.published = []
     assert main(["pose"]) == 1
-    assert capsys.readouterr().err == "robotctl: no pose: the daemon is silent, or it was never localized\n"
+    assert capsys.readouterr().err == "robotctl: no pose: the daemon is silent\n"
 
 
 def test_what_is_watched_is_printed_as_it_comes(client: Any, capsys: pytest.CaptureFixture[str]) -> None:

@@ -78,6 +78,21 @@ async def test_who_joins_late_is_told_the_last_of_each_topic(
             assert await take(events, 1) == [make_estimate(PoseState.LOST, 4)]
 
 
+async def test_what_was_published_while_the_server_began_is_told_too(
+    make_control: Callable[[], Any], tmp_path: Path, make_estimate: Callable[..., PoseEstimate]
+) -> None:
+    """The robot says at once that it does not know where it is: before the first reader can be there."""
+    control = make_control()
+    server = Server(ServerSettings(runtime_dir=str(tmp_path)), control)
+    serving = asyncio.create_task(server.run())
+    asyncio.get_running_loop().call_soon(control.events.publish, make_estimate(PoseState.LOST))
+    async with AsyncClient(tmp_path) as client:
+        with client.subscribe("pose") as events:
+            assert await take(events, 1) == [make_estimate(PoseState.LOST)]
+    serving.cancel()
+    await asyncio.wait((serving,))
+
+
 async def test_another_ones_joining_tells_nobody_twice(serving: Serving, tmp_path: Path) -> None:
     async with serving(), AsyncClient(tmp_path) as client:
         with client.subscribe("status") as first:
