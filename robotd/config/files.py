@@ -3,10 +3,12 @@
 from dataclasses import replace
 from pathlib import Path
 
+from robotd.config.lines import key_lines, line_of
 from robotd.config.text import read_text
 from robotd.config.tree import Config
 from robotd.config.writer import write_table
-from robotd.core.errors import ConfigError
+from robotd.core.errors import ConfigError, TransportError
+from robotd.server.endpoints import Endpoints
 
 
 def load(path: Path) -> Config:
@@ -22,7 +24,13 @@ def load(path: Path) -> Config:
     except UnicodeDecodeError as error:
         line = error.object.count(b"\n", 0, error.start) + 1
         raise ConfigError("not TOML: not UTF-8", file=str(path), line=line) from error
-    return _anchored(loads(text, file=str(path)), path.absolute().parent)
+    config = _anchored(loads(text, file=str(path)), path.absolute().parent)
+    try:
+        Endpoints(Path(config.server.runtime_dir))
+    except TransportError as error:
+        at = line_of(key_lines(text), ("server", "runtime_dir"))
+        raise ConfigError(str(error), file=str(path), line=at, key="server.runtime_dir") from error
+    return config
 
 
 def loads(text: str, file: str = "configuration") -> Config:

@@ -165,6 +165,8 @@ def _read_plain(kind: type[Any], value: object, path: KeyPath, problems: Problem
         raise _bad(path, problems, f"expected {_EXPECTED[kind]}, got {_describe(value)}")
     if isinstance(value, float) and not math.isfinite(value):
         raise _bad(path, problems, f"must be finite, got {value}")
+    if isinstance(value, str) and "\0" in value:
+        raise _bad(path, problems, "must not contain a zero byte")
     return value
 
 

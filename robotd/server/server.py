@@ -26,6 +26,8 @@ _SOCKET_MODE = 0o770
 _ROOM_TO_REFUSE = 4
 """A request up to this many times too large is answered with ``too_large``; beyond, libzmq hangs up on the client."""
 _LONGEST_SUBSCRIPTION = 256
+_MOST = 1_000_000
+"""Longest queue, in messages."""
 _LINGER_MS = 100
 """How long the last replies may take to leave when the server ends."""
 
@@ -62,8 +64,8 @@ class ServerSettings:
         if not 1024 <= self.max_request_bytes <= 2**24:
             raise ValueError(f"max_request_bytes must lie between 1024 and {2**24}, got {self.max_request_bytes}")
         for name in ("max_pending_requests", "remembered_replies", "state_queue", "map_queue"):
-            if getattr(self, name) < 1:
-                raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")
+            if not 1 <= getattr(self, name) <= _MOST:
+                raise ValueError(f"{name} must lie between 1 and {_MOST}, got {getattr(self, name)}")
 
 
 class Server:

@@ -87,6 +87,11 @@ def test_the_effective_text_loads_to_the_same(readings: int, tilt_rad: float, po
         ),
         ("[maps]\nkeep = 0", "r.toml:2: maps.keep: must be at least 1, got 0"),
         ("[recording]\npreroll_bytes = -1", "r.toml:2: recording.preroll_bytes: must not be negative, got -1"),
+        (
+            "[server]\nmap_queue = 99999999999",
+            "r.toml:2: server.map_queue: must lie between 1 and 1000000, got 99999999999",
+        ),
+        ('[maps]\ndir = "a\\u0000b"', "r.toml:2: maps.dir: must not contain a zero byte"),
         ("[server]\nlease_s = 60", "r.toml:2: server.lease_s: must lie between 0.1 and 10, got 60.0"),
     ],
 )
@@ -116,6 +121,16 @@ def test_directories_begin_where_the_file_is(tmp_path: Path) -> None:
     assert config.maps.dir == str(tmp_path / "maps")
     assert config.recording.dir == "/var/lib/robotd/recordings"
     assert loads(effective_text(config)) == config
+
+
+@pytest.mark.parametrize("name", ["a" * 100, "/" + "a" * 120])
+def test_a_directory_too_deep_for_sockets_is_named(tmp_path: Path, name: str) -> None:
+    file = tmp_path / "robotd.toml"
+    file.write_text(f'[maps]\nkeep = 3\n[server]\nruntime_dir = "{name}"\n')
+    with pytest.raises(
+        ConfigError, match=r"robotd.toml:4: server.runtime_dir: .*a Unix socket's path has at most 107$"
+    ):
+        load(file)
 
 
 def test_directories_are_those_that_systemd_made(monkeypatch: pytest.MonkeyPatch) -> None:

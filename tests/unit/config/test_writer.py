@@ -39,7 +39,7 @@ class Tree:
 
 
 _FLOATS = st.floats(allow_nan=False, allow_infinity=False)
-_TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=12)
+_TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=12)
 _LEAVES = st.builds(Leaf, _FLOATS, _TEXTS, st.none() | _TEXTS)
 _BRANCHES = st.builds(
     Branch,
