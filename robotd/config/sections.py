@@ -30,8 +30,12 @@ class RecordingSettings:
     """Directory of the recordings for which no file is named."""
     from_start: bool = False
     """Record from the start of the daemon, always."""
-    preroll_bytes: int = 64 * 1024 * 1024
-    """What is remembered since the start, so that a recording begun later still begins there."""
+    preroll_bytes: int = 16 * 1024 * 1024
+    """What is remembered since the start, so that a recording begun later still begins there.
+
+    The three boards at 40 ms say 17 KiB/s at rest and 53 KiB/s in a mission, so 16 MiB last for a quarter of an hour or
+    five minutes of missions; after that no recording can begin. Where that is too short, set ``from_start``.
+    """
 
     def __post_init__(self) -> None:
         """Refuse a pre-roll of less than nothing."""
