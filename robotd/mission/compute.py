@@ -27,8 +27,8 @@ class ThreadCompute:
         return await asyncio.get_running_loop().run_in_executor(self._executor, function, *args)
 
     def close(self) -> None:
-        """Wait for the job under way and end the thread."""
-        self._executor.shutdown()
+        """Wait for the job under way, drop those behind it, and end the thread."""
+        self._executor.shutdown(cancel_futures=True)
 
 
 class NotedCompute:

@@ -14,18 +14,20 @@ from robotd.mission.stop_and_sweep import Sweeper
 _PROGRESS_EVERY = 10
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Reporter:
-    """Tells the world how one mission gets on."""
+    """Tells the world how one mission gets on, and remembers at which stop it is."""
 
     mission_id: int
     kind: str
     stops: int
     publish: Callable[[Event], None]
+    stop: int = 0
 
-    def at(self, phase: MissionPhase, stop: int, message: str = "") -> None:
-        """Report a step of the mission."""
-        self.publish(MissionProgress(now_ns(), self.mission_id, self.kind, phase, stop, self.stops, message))
+    def at(self, phase: MissionPhase, stop: int | None = None, message: str = "") -> None:
+        """Report a step of the mission, at the same stop as the last unless another is named."""
+        self.stop = self.stop if stop is None else stop
+        self.publish(MissionProgress(now_ns(), self.mission_id, self.kind, phase, self.stop, self.stops, message))
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ import numpy as np
 
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns, wall_offset_ns
-from robotd.core.errors import MapError, MissionError
+from robotd.core.errors import MapError, MissionError, RecordingError
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.spec import GridSpec
@@ -113,8 +113,8 @@ class Control:
         place = self._place()
         metadata = {"generation": place.generation, "map_id": place.map_id}
         created_ns = now_ns() + wall_offset_ns()
-        grid = OccupancyGrid(place.grid.spec, place.grid.cells, place.grid.settings)  # a copy: the map may go on
-        return await self._compute.run("save map", self._store.save, name or place.name, grid, metadata, created_ns)
+        wanted = name or place.name
+        return await self._compute.run("save map", self._store.save, wanted, place.grid, metadata, created_ns)
 
     async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
         """Make a stored map the one in use; ``robot_in_map`` says where the robot stands on it, if known.
@@ -124,20 +124,19 @@ class Control:
             MissionError: a mission is under way.
         """
         grid, entry = await self._compute.run("read map", self._store.load, name, version)
-        self.use_map(entry.digest, name, grid, robot_in_map)
+        packed = await self._compute.run("pack map", _packed, grid)
+        pose = None if robot_in_map is None else msgspec.to_builtins(robot_in_map)
+        self._use({"map_id": entry.digest, "name": name, "grid": packed, "robot_in_map": pose}, grid)
         return entry
 
-    def use_map(self, map_id: str, name: str, grid: OccupancyGrid, robot_in_map: Pose2 | None) -> None:
-        """Make a grid the map in use."""
-        pose = None if robot_in_map is None else msgspec.to_builtins(robot_in_map)
-        arguments = {"map_id": map_id, "name": name, "grid": _packed(grid), "robot_in_map": pose}
+    def _use(self, arguments: dict[str, Any], grid: OccupancyGrid) -> None:
         self._journal.command(now_ns(), "use_map", arguments)
-        place = MapInUse(map_id, name, grid, None)
+        place = MapInUse(arguments["map_id"], arguments["name"], grid, None)
         here = self._supervisor.robot.drive.odometry.latest
-        if robot_in_map is not None:
+        if arguments["robot_in_map"] is not None:
             if here is None:
                 raise MissionError("there is no odometry yet to tie to the map")
-            place.tie(robot_in_map, here)
+            place.tie(msgspec.convert(arguments["robot_in_map"], Pose2), here)
         self._supervisor.use(place)
 
     async def start_recording(self, path: str | None) -> str:
@@ -147,6 +146,7 @@ class Control:
             RecordingError: it cannot be done now.
         """
         file = self._recordings_dir / f"{now_ns() + wall_offset_ns()}.mcap" if path is None else Path(path)
+        await self._compute.run("make directory", _make_directory, file.parent)
         self._journal.start(file)
         self._recording_changed(str(file))
         return str(file)
@@ -176,9 +176,7 @@ class Control:
                 kind = _MISSIONS[arguments["kind"]]
                 self.start(msgspec.convert(arguments["mission"], kind), arguments["lease_s"])
             case "use_map":
-                pose = arguments["robot_in_map"]
-                robot_in_map = None if pose is None else msgspec.convert(pose, Pose2)
-                self.use_map(arguments["map_id"], arguments["name"], _unpacked(arguments["grid"]), robot_in_map)
+                self._use(arguments, _unpacked(arguments["grid"]))
             case _:
                 raise MissionError(f"unknown request {name!r}")
 
@@ -194,6 +192,13 @@ class Control:
 
 
 _MISSIONS: dict[str, type[Mission]] = {kind.__name__: kind for kind in Mission.__args__}
+
+
+def _make_directory(directory: Path) -> None:
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RecordingError(f"cannot record to {directory}: {error.strerror}") from error
 
 
 def _packed(grid: OccupancyGrid) -> dict[str, Any]:

@@ -39,7 +39,7 @@ async def _planned(
 
 async def run_driving(context: MissionContext, place: MapInUse, mission: DriveMission, report: Reporter) -> str:
     """Carry out a :class:`DriveMission`; return what to tell the client."""
-    report.at(MissionPhase.DRIVING, 0)
+    report.at(MissionPhase.DRIVING)
     arrived = await drive_to(context, place, mission.x_m, mission.y_m, mission.legs)
     pose = place.pose_of(arrived)
     assert pose is not None  # drive_to refuses to start without

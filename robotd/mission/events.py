@@ -75,7 +75,7 @@ class MissionProgress:
     """``map``, ``localize`` or ``drive``."""
     phase: MissionPhase
     stop: int
-    """Which stop, from 0."""
+    """Which stop, from 0; when it is done, how many."""
     stops: int
     message: str = ""
 

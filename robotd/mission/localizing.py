@@ -30,12 +30,12 @@ async def run_localizing(
     driving = context.settings.driving
     here = await settle(context.robot.drive, context.settings.sweep.settle_s, driving.silence_s)
     heading_rad = _heading(place, mission, here)
-    report.at(MissionPhase.SWEEPING, 0)
+    report.at(MissionPhase.SWEEPING)
     narrowing = await Narrowing.begin(context, place, heading_rad)
     narrowed = asyncio.create_task(narrowing.run(), name="narrowing")
     try:
         sweep = await context.sweep(number, narrowing.offer)
-        report.at(MissionPhase.COMPUTING, 0)
+        report.at(MissionPhase.COMPUTING)
         narrowing.end()
         estimate = await narrowed
     finally:

@@ -16,7 +16,10 @@ _NO_CELLS: NDArray[np.intp] = np.empty(0, dtype=np.intp)
 
 @dataclass(slots=True)
 class MapInUse:
-    """One map and its ties; the supervisor has one at a time."""
+    """One map and its ties; the supervisor has one at a time.
+
+    The grid is never changed, only replaced, and on the loop: whoever holds one, on whatever thread, holds a snapshot.
+    """
 
     map_id: str
     """Digest of its content when it was loaded or begun."""
@@ -35,17 +38,22 @@ class MapInUse:
         """Note that the robot was at ``map_from_robot`` when odometry said ``odometry``."""
         self.map_from_odom = map_from_robot @ odometry.in_odom.inverse()
 
-    def insert(self, sweep: Sweep) -> NDArray[np.intp]:
-        """Lay a sweep into the grid where odometry places it; return the changed cells as flat indices.
+    def grid_with(self, sweep: Sweep) -> tuple[OccupancyGrid, NDArray[np.intp]]:
+        """Return the grid with a sweep laid in where odometry places it, and the changed cells as flat indices.
 
         Raises:
             ValueError: nothing ties odometry to the map.
         """
         if self.map_from_odom is None:
             raise ValueError("a sweep cannot be inserted: odometry is not tied to the map")
-        changed = self.grid.insert(sweep, self.map_from_odom @ sweep.in_odom)
+        grid = OccupancyGrid(self.grid.spec, self.grid.cells, self.grid.settings)
+        changed = grid.insert(sweep, self.map_from_odom @ sweep.in_odom)
+        return grid, changed
+
+    def take(self, grid: OccupancyGrid) -> None:
+        """Go on with a changed grid."""
+        self.grid = grid
         self.generation += 1
-        return changed
 
     def changes(self, time_ns: int, cells: NDArray[np.intp]) -> MapChanged:
         """Return the event for these changed cells."""
@@ -56,7 +64,7 @@ class MapInUse:
     def whole(self, time_ns: int) -> MapChanged:
         """Return the event that carries every cell."""
         event = self.changes(time_ns, _NO_CELLS)
-        return replace(event, whole=True, values=self.grid.cells.copy())
+        return replace(event, whole=True, values=self.grid.cells)
 
     def binary(self) -> BinaryMap:
         """Return the thresholded map."""

@@ -40,11 +40,12 @@ async def run_mapping(
                 await drive_to(context, place, x_m, y_m, mission.legs)
             except MissionError as error:
                 unreachable.append(f"stop {stop}: {error}")
-                report.at(MissionPhase.DRIVING, stop, unreachable[-1])
+                report.at(MissionPhase.DRIVING, message=unreachable[-1])
                 continue
         report.at(MissionPhase.SWEEPING, stop)
         sweep = await context.sweep(take_number())
-        report.at(MissionPhase.COMPUTING, stop)
-        cells = await context.compute.run("insert", place.insert, sweep)
+        report.at(MissionPhase.COMPUTING)
+        grid, cells = await context.compute.run("insert", place.grid_with, sweep)
+        place.take(grid)
         context.publish(place.changes(now_ns(), cells))
     return MappingResult(1 + len(mission.stops_m) - len(unreachable), tuple(unreachable))

@@ -35,7 +35,8 @@ class Occasion(enum.StrEnum):
     CLEAR = "clear"
 
 
-_BUSY = (Mode.MAPPING, Mode.LOCALIZING, Mode.DRIVING)
+UNDER_WAY = (Mode.MAPPING, Mode.LOCALIZING, Mode.DRIVING)
+"""A mission moves the robot."""
 
 TRANSITIONS: dict[tuple[Mode, Occasion], Mode] = {
     (Mode.DISARMED, Occasion.ARM): Mode.IDLE,
@@ -43,7 +44,7 @@ TRANSITIONS: dict[tuple[Mode, Occasion], Mode] = {
     (Mode.IDLE, Occasion.START_MAPPING): Mode.MAPPING,
     (Mode.IDLE, Occasion.START_LOCALIZING): Mode.LOCALIZING,
     (Mode.IDLE, Occasion.START_DRIVING): Mode.DRIVING,
-    **{(mode, Occasion.FINISH): Mode.IDLE for mode in _BUSY},
+    **{(mode, Occasion.FINISH): Mode.IDLE for mode in UNDER_WAY},
     **{(mode, Occasion.STOP): Mode.DISARMED for mode in Mode if mode is not Mode.FAULT},
     (Mode.FAULT, Occasion.STOP): Mode.FAULT,
     **{(mode, Occasion.DEVICE_LOST): Mode.DISARMED for mode in Mode if mode is not Mode.FAULT},

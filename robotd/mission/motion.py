@@ -1,7 +1,8 @@
 """Turning, driving and standing still, advanced by each odometry message and by nothing else.
 
 A set-point goes out for every odometry message that comes in, so a line that falls silent takes the
-set-points with it and the base's own deadman does the rest. Because no timer decides anything but how long
+set-points with it and the base's own deadman does the rest. Whoever calls these must stop the robot when they raise
+or are cancelled: a stop is the supervisor's, and the last word. Because no timer decides anything but how long
 silence may last, the same bytes always lead to the same motion: replay depends on it.
 """
 
@@ -102,22 +103,18 @@ async def _approach(
 ) -> Odometry:
     """Send ``twist`` for each odometry message until ``left`` is within ``tolerance``; then stand."""
     nearest, nearest_ns = math.inf, 0
-    try:
-        with drive.odometry.subscribe() as stream:
-            async for now in _within(stream, settings.silence_s):
-                remaining = left(now)
-                if remaining <= tolerance:
-                    break
-                if remaining < nearest - tolerance / 4.0:
-                    nearest, nearest_ns = remaining, now.time_ns
-                elif now.time_ns - nearest_ns > settings.stall_s * NS_PER_S:
-                    raise DeviceError(
-                        drive.name, "stalled", f"{what} is no nearer to its end for {settings.stall_s:g} s"
-                    )
-                drive.set_velocity(twist(now), settings.setpoint_ttl_s)
-    finally:
-        drive.set_velocity(STANDSTILL, settings.setpoint_ttl_s)
-    return now
+    with drive.odometry.subscribe() as stream:
+        async for now in _within(stream, settings.silence_s):
+            remaining = left(now)
+            if remaining <= tolerance:
+                drive.set_velocity(STANDSTILL, settings.setpoint_ttl_s)
+                return now
+            if remaining < nearest - tolerance / 4.0:
+                nearest, nearest_ns = remaining, now.time_ns
+            elif now.time_ns - nearest_ns > settings.stall_s * NS_PER_S:
+                raise DeviceError(drive.name, "stalled", f"{what} is no nearer to its end for {settings.stall_s:g} s")
+            drive.set_velocity(twist(now), settings.setpoint_ttl_s)
+    raise AssertionError("a subscription never ends")
 
 
 async def _within(stream: Subscription[Odometry], silence_s: float) -> AsyncIterator[Odometry]:

@@ -19,7 +19,7 @@ from robotd.mission.events import Event, MissionPhase, Status
 from robotd.mission.lease import Lease
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.missions import KINDS, carry_out
-from robotd.mission.modes import Mode, Occasion, next_mode
+from robotd.mission.modes import UNDER_WAY, Mode, Occasion, next_mode
 from robotd.mission.prediction import Predictor, unlocalized
 from robotd.mission.requests import Mission
 from robotd.mission.robot import Robot
@@ -63,7 +63,8 @@ class Supervisor:
     @property
     def status(self) -> Status:
         """The whole robot in one look."""
-        readout = self.robot.drive.readouts.latest
+        drive = self.robot.drive
+        readout = drive.readouts.latest if drive.status.link is LinkState.READY else None  # what was is not what is
         return Status(
             time_ns=now_ns(),
             mode=self._mode,
@@ -71,7 +72,7 @@ class Supervisor:
             devices=tuple(device.status for device in self.robot.devices),
             battery_v=readout.battery_v if readout else None,
             bumpers_rad=readout.bumpers_rad if readout else (),
-            mission_id=self._mission_id if self._busy else None,
+            mission_id=self._mission_id if self._mode in UNDER_WAY else None,
             map_id=self.place.map_id if self.place else None,
             map_name=self.place.name if self.place else None,
             recording=self.recording,
@@ -89,13 +90,16 @@ class Supervisor:
         self.events.publish(event)
 
     async def run(self) -> None:
-        """Watch the devices until cancelled."""
-        self.publish(unlocalized(now_ns(), ""))
-        async with asyncio.TaskGroup() as group:
-            for device in self.robot.devices:
-                group.create_task(self._watch(device))
-            group.create_task(self._follow_odometry())
-            group.create_task(self._repeat_status())
+        """Watch the devices until cancelled; whatever ends it stops the robot."""
+        try:
+            self.publish(unlocalized(now_ns(), ""))
+            async with asyncio.TaskGroup() as group:
+                for device in self.robot.devices:
+                    group.create_task(self._watch(device))
+                group.create_task(self._follow_odometry())
+                group.create_task(self._repeat_status())
+        finally:
+            self.halt(Occasion.STOP, "the daemon is ending")
 
     async def arm(self) -> None:
         """Allow motion, on every device or on none.
@@ -113,10 +117,10 @@ class Supervisor:
             async with asyncio.timeout(_DEVICE_TIMEOUT_S):
                 await self._arm_devices()
         except TimeoutError:
-            self.robot.stop_now()
+            self.halt(Occasion.STOP, "arming took too long")
             raise LinkTimeout(f"arming took longer than {_DEVICE_TIMEOUT_S:g} s") from None
-        except BaseException:
-            self.robot.stop_now()
+        except BaseException as error:
+            self.halt(Occasion.STOP, f"arming failed: {str(error) or 'given up'}")
             raise
         self._apply(Occasion.ARM, "armed")
 
@@ -163,9 +167,10 @@ class Supervisor:
         self._mission_id += 1
         mission_id = self._mission_id
         report = Reporter(mission_id, kind.name, kind.stops(mission), self.publish)
-        self._lease = Lease(lease_s, lambda: self._lease_expired(mission_id))
+        lease = self._lease = Lease(lease_s, lambda: self._lease_expired(mission_id))
         self._apply(kind.occasion, f"mission {mission_id}")
         self._mission = asyncio.create_task(self._run_mission(mission, report), name=f"mission {mission_id}")
+        self._mission.add_done_callback(lambda task: self._mission_ended(task, lease, report))
         return mission_id
 
     def renew(self, mission_id: int) -> None:
@@ -218,6 +223,8 @@ class Supervisor:
         mode = next_mode(self._mode, occasion)
         if mode is None:
             return
+        if mode is self._mode is Mode.FAULT:
+            reason = self._reason  # what comes after a fault does not explain it
         if (mode, reason) != (self._mode, self._reason):
             log.info("%s -> %s: %s", self._mode, mode, reason)
         self._mode, self._reason = mode, reason
@@ -229,27 +236,27 @@ class Supervisor:
 
     async def _run_mission(self, mission: Mission, report: Reporter) -> None:
         try:
-            report.at(MissionPhase.STARTED, 0)
+            report.at(MissionPhase.STARTED)
             message = await carry_out(self, self._context, mission, report)
-        except asyncio.CancelledError:
-            report.at(MissionPhase.STOPPED, 0, self._reason)
-            raise
         except MissionError as error:
             self._apply(Occasion.FINISH, str(error))
-            report.at(MissionPhase.FAILED, 0, str(error))
+            report.at(MissionPhase.FAILED, message=str(error))
         except RobotdError as error:
             self.halt(Occasion.STOP, str(error))
-            report.at(MissionPhase.FAILED, 0, str(error))
+            report.at(MissionPhase.FAILED, message=str(error))
         except Exception as error:
             self.halt(Occasion.STOP, f"internal error: {error!r}")
             log.exception("mission %d", report.mission_id)
-            report.at(MissionPhase.FAILED, 0, self._reason)
+            report.at(MissionPhase.FAILED, message=self._reason)
         else:
             self._apply(Occasion.FINISH, message)
             report.at(MissionPhase.DONE, report.stops, message)
-        finally:
-            if self._lease is not None:
-                self._lease.end()
+
+    def _mission_ended(self, task: asyncio.Task[None], lease: Lease, report: Reporter) -> None:
+        """Take the lease back; a mission may be cancelled before its first step, and that is an end too."""
+        lease.end()
+        if task.cancelled():
+            report.at(MissionPhase.STOPPED, message=self._reason)
 
     async def _watch(self, device: Device) -> None:
         with device.status_changes.subscribe() as changes:

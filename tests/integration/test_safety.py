@@ -21,6 +21,7 @@ from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepProgress
+from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
 from robotd.recording.entries import BytesEntry
@@ -174,10 +175,18 @@ async def idle(rig: Rig) -> None:
     await rig.daemon.control.arm()
 
 
+def use_blank_map(rig: Rig) -> None:
+    start, here = rig.robot.start, rig.daemon.robot.drive.odometry.latest
+    grid = OccupancyGrid(GridSettings().spec_covering(((start.x_m, start.y_m),), 3.0))
+    place = MapInUse("blank", "blank", grid, None)
+    assert here is not None
+    place.tie(start, here)
+    rig.daemon.supervisor.use(place)
+
+
 async def driving(rig: Rig) -> None:
     await rig.daemon.control.arm()
-    grid = OccupancyGrid(GridSettings().spec_covering(((rig.robot.start.x_m, rig.robot.start.y_m),), 3.0))
-    rig.daemon.control.use_map("blank", "blank", grid, rig.robot.start)
+    use_blank_map(rig)
     mission_id = rig.start(DriveMission(*rig.robot.stops_m[0], Legs.STRAIGHT))
     speed_mps = 0.0
 
@@ -209,8 +218,7 @@ async def computing(rig: Rig) -> None:
 async def preparing(rig: Rig) -> None:
     """The map is made ready to localize on, before the sweep."""
     await rig.daemon.control.arm()
-    grid = OccupancyGrid(GridSettings().spec_covering(((rig.robot.start.x_m, rig.robot.start.y_m),), 3.0))
-    rig.daemon.control.use_map("blank", "blank", grid, rig.robot.start)
+    use_blank_map(rig)
     rig.start(LocalizeMission())
     await asyncio.sleep(0.4)
 
