@@ -6,6 +6,7 @@ import logging
 import secrets
 import signal
 import sys
+from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -21,7 +22,6 @@ from robotd.recording.preroll import PrerollJournal
 from robotd.server.health import Notifier, feed_watchdog, watchdog_s
 from robotd.server.server import Server
 
-EXIT_USAGE = 2
 EXIT_CONFIG = 78
 
 log = logging.getLogger(__name__)
@@ -37,12 +37,22 @@ def main(argv: list[str] | None = None) -> int:
             print(problem, file=sys.stderr)
         return EXIT_CONFIG
     configure(arguments.log_level)
+    exit_code = 0
     try:
         asyncio.run(run(config))
-    except RobotdError as error:
-        log.error("%s", error)  # noqa: TRY400  # a foreseen error needs no traceback
-        return 1
-    return 0
+    except* RobotdError as errors:  # foreseen, so they need no traceback; others end the program with theirs
+        for one in _one_by_one(errors):
+            log.error("%s", one)  # noqa: TRY400  # as above
+        exit_code = 1
+    return exit_code
+
+
+def _one_by_one(errors: BaseExceptionGroup[RobotdError]) -> Iterator[RobotdError]:
+    for error in errors.exceptions:
+        if isinstance(error, BaseExceptionGroup):
+            yield from _one_by_one(error)
+        else:
+            yield error
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -61,7 +71,8 @@ async def run(config: Config) -> None:
     """Serve until told to stop.
 
     Raises:
-        TransportError: another daemon serves here, or the sockets cannot be had.
+        RobotdError: as it is or in a group: another daemon serves here, the sockets cannot be had, or the recording is
+            incomplete.
     """
     stopping = asyncio.Event()
     with ExitStack() as stack:
@@ -69,12 +80,11 @@ async def run(config: Config) -> None:
         compute = ThreadCompute()
         stack.callback(compute.close)
         daemon = compose(config, serial_connectors(config), compute, journal)
-        if config.recording.from_start:
-            await daemon.control.start_recording(None)
         for number in (signal.SIGTERM, signal.SIGINT):
             asyncio.get_running_loop().add_signal_handler(number, _stop_first, daemon, stopping)
-        await _serve(config, daemon, stopping)
-        if journal.path is not None:
+        try:
+            await _serve(config, daemon, stopping)
+        finally:
             await daemon.control.stop_recording()
 
 
@@ -88,12 +98,15 @@ async def _serve(config: Config, daemon: Daemon, stopping: asyncio.Event) -> Non
     notifier = Notifier.of()
     async with asyncio.TaskGroup() as group:
         serving = group.create_task(server.run(), name="server")
+        await server.serving.wait()  # then this is the only daemon here, and may open the lines
+        if config.recording.from_start:
+            await daemon.control.start_recording(None)
         tasks = [serving, *(group.create_task(part, name=name) for name, part in daemon.parts().items())]
         within_s = watchdog_s()
         if within_s is not None:
             feeding = feed_watchdog(notifier, within_s, lambda: not any(task.done() for task in tasks))
             tasks.append(group.create_task(feeding, name="watchdog"))
-        group.create_task(_announce(server, notifier), name="announce")
+        _announce(notifier)
         await stopping.wait()
         log.info("stopping")
         notifier.stopping()
@@ -102,8 +115,7 @@ async def _serve(config: Config, daemon: Daemon, stopping: asyncio.Event) -> Non
             task.cancel()
 
 
-async def _announce(server: Server, notifier: Notifier) -> None:
-    await server.serving.wait()
+def _announce(notifier: Notifier) -> None:
     notifier.ready()
     notifier.status("serving")
     log.info("robotd %s is ready", __version__)
