@@ -1,0 +1,66 @@
+"""The example programs of the documentation, as processes of their own beside a daemon on a simulated robot."""
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from robotd.cli.demo.rig import rig, wired
+from robotd.config import Config
+from robotd.mission.requests import MapMission
+from robotd.server.client import Client
+from robotd.sim.world import load_world
+
+pytestmark = [pytest.mark.slow, pytest.mark.real_clock, pytest.mark.shares_descriptors]
+
+DOCS = Path(__file__).parents[2] / "docs"
+WHERE = r"localized at x (0\.9|1\.0)\d\d m, y (1\.0|1\.1)\d\d m, \d+ of \d+ readings explained"
+
+
+@pytest.fixture(scope="module")
+def runtime_dir(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Where a daemon serves that has made a map of the office from one stop, where its robot still stands."""
+    directory = tmp_path_factory.mktemp("rig")
+    with rig(directory, wired(Config(), directory), ["sim", "office"]) as parts:
+        parts.client.arm()
+        for _ in parts.client.run_mission(MapMission("office", (), load_world("office").start_pose), lease_s=5.0):
+            pass
+        parts.client.disarm()
+        yield directory / "run"
+
+
+def run(runtime_dir: Path, *arguments: str) -> str:
+    """Run a program of somebody else's, who knows nothing but where the sockets are."""
+    done = subprocess.run(
+        [sys.executable, *arguments],
+        check=False,
+        env={**os.environ, "ROBOTD_RUNTIME_DIR": str(runtime_dir)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_the_example_client_hears_poses_while_it_waits_for_its_answer(runtime_dir: Path) -> None:
+    said = run(runtime_dir, str(DOCS / "example_client.py")).splitlines()
+    published = [line for line in said if line.startswith("published: ")]
+    ranks = [int(line.split(" of ")[1].split()[0]) for line in published if " of " in line]
+    assert len(set(ranks)) >= 5, "estimates come while the sweep is under way, from ever more readings"
+    assert re.fullmatch(f"answer: {WHERE}", said[-1]), said[-1]
+
+
+def test_the_example_client_has_about_thirty_lines() -> None:
+    assert len((DOCS / "example_client.py").read_text(encoding="utf-8").splitlines()) <= 40
+
+
+def test_the_python_on_the_page_of_the_api_works_as_it_stands(runtime_dir: Path) -> None:
+    (program,) = re.findall(r"```python\n(.*?)```", (DOCS / "api.md").read_text(encoding="utf-8"), re.DOTALL)
+    assert "PoseEstimate(" in run(runtime_dir, "-c", program)
+    with Client(runtime_dir) as client:
+        assert client.status().mode == "idle"
