@@ -181,9 +181,9 @@ class AsyncClient:
         """Make a new map and return what happened; ``MissionError`` if it was not done."""
         return [event async for event in self.run_mission(MapMission(name, stops_m, start, legs))]
 
-    async def localize(self, heading_rad: float | None = None) -> PoseEstimate:
-        """Sweep here and return where it is; ``MissionError`` if it was not done."""
-        return final_estimate([event async for event in self.run_mission(LocalizeMission(heading_rad))])
+    async def localize(self, heading_rad: float | None = None, *, tie: bool = True) -> PoseEstimate:
+        """Sweep here and return where it is; ``MissionError`` if it was not done. Without ``tie`` it only looks."""
+        return final_estimate([event async for event in self.run_mission(LocalizeMission(heading_rad, tie))])
 
     async def drive_to(self, x_m: float, y_m: float, legs: Legs = Legs.PLANNED) -> list[MissionEvent]:
         """Drive to a place on the map and return what happened; ``MissionError`` if it was not reached."""

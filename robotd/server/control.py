@@ -65,7 +65,7 @@ class Control(Protocol):
         """Return all of a stored map, the newest version unless one is named; ``MapError`` if there is none."""
 
     async def save_map(self, name: str | None) -> MapEntry:
-        """Store the map in use, under its own name unless one is given; ``MapError`` if there is none."""
+        """Store the map in use, under its own name unless one is given; ``MapError`` if there is none, or no room."""
 
     async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
         """Take a stored map into use; ``MapError`` if there is none, ``MissionError`` while a mission is under way."""

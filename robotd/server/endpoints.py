@@ -13,6 +13,7 @@ _LONGEST_PATH = 107
 
 def runtime_dir_of_user() -> str:
     """Return the runtime directory a client looks in: ``ROBOTD_RUNTIME_DIR``, or the system's."""
+    # No setting of the daemon's, which only config may read: clients are programs of others, and have no config.
     return os.environ.get("ROBOTD_RUNTIME_DIR") or DEFAULT_RUNTIME_DIR
 
 

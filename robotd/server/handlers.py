@@ -108,7 +108,12 @@ class Handlers:
         return api.Renewed(progress)
 
     async def _map_save(self, command: api.MapSave) -> api.MapEntryInfo:
-        return api.MapEntryInfo.of(await self._control.save_map(command.name))
+        try:
+            return api.MapEntryInfo.of(await self._control.save_map(command.name))
+        except MapError as error:
+            if self._control.status.map_id is None:
+                raise
+            raise ServerError(ErrorCode.REFUSED, str(error)) from error  # there is a map, but no room for it
 
     async def _map_load(self, command: api.MapLoad) -> api.MapEntryInfo:
         pose = command.robot_in_map.pose if command.robot_in_map else None

@@ -38,11 +38,11 @@ async def test_every_method_of_the_async_client(serving: Serving, tmp_path: Path
         await robot.arm()
         assert control.armed
         assert phases(await robot.make_map("lab", ((1.0, 2.0),), Pose2(0.0, 1.0, 0.5), Legs.STRAIGHT))[-1] == "done"
-        assert (await robot.localize(0.25)).state is PoseState.LOCALIZED
+        assert (await robot.localize(0.25, tie=False)).state is PoseState.LOCALIZED
         assert phases(await robot.drive_to(3.0, 4.0)) == ["started", "done"]
         assert control.asked == [
             MapMission("lab", ((1.0, 2.0),), Pose2(0.0, 1.0, 0.5), Legs.STRAIGHT),
-            LocalizeMission(0.25),
+            LocalizeMission(0.25, tie=False),
             DriveMission(3.0, 4.0),
         ]
         assert (await robot.map_save("lab")).name == "lab"
@@ -68,7 +68,7 @@ async def test_every_method_of_the_sync_client(serving: Serving, tmp_path: Path)
             assert "lease_s" in robot.config()
             robot.arm()
             assert phases(robot.make_map("lab", ((1.0, 2.0),)))[-1] == "done"
-            assert robot.localize(0.25).state is PoseState.LOCALIZED
+            assert robot.localize(0.25, tie=False).state is PoseState.LOCALIZED
             assert phases(robot.drive_to(3.0, 4.0)) == ["started", "done"]
             assert robot.map_save("lab").name == "lab"
             assert robot.map_load("lab", 2, Pose2(1.0, 2.0, 0.0)).version == 2
@@ -86,7 +86,11 @@ async def test_every_method_of_the_sync_client(serving: Serving, tmp_path: Path)
 
     async with serving() as control:
         await asyncio.to_thread(use)
-        assert control.asked == [MapMission("lab", ((1.0, 2.0),)), LocalizeMission(0.25), DriveMission(3.0, 4.0)]
+        assert control.asked == [
+            MapMission("lab", ((1.0, 2.0),)),
+            LocalizeMission(0.25, tie=False),
+            DriveMission(3.0, 4.0),
+        ]
 
 
 async def test_a_mission_is_told_from_its_start_to_its_end(serving: Serving, tmp_path: Path) -> None:

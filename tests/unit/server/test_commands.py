@@ -3,11 +3,13 @@
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from robotd.core.errors import ServerError
+from robotd.core.errors import MapError, ServerError
+from robotd.maps.store import MapEntry
 from robotd.mission.requests import LocalizeMission
 from robotd.server import api
 from robotd.server.commands import Commands
@@ -207,6 +209,24 @@ async def test_errors_of_the_daemon_become_codes(make_control: Any, caplog: pyte
         await asyncio.sleep(1)
         assert socket.outcome == {1: "not_found", 2: "refused", 3: "internal", 4: "bad_argument"}
     assert "a bug in the daemon" in caplog.text
+
+
+async def test_a_map_that_cannot_be_saved_is_not_one_that_is_not_there(
+    make_control: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def full(name: str | None) -> MapEntry:
+        raise MapError("cannot save map a: No space left on device")
+
+    control = make_control()
+    status = control.status
+    monkeypatch.setattr(control, "save_map", full)
+    async with served(control) as socket:
+        socket.ask(1, api.MapSave())
+        await asyncio.sleep(1)
+        monkeypatch.setattr(type(control), "status", property(lambda _: replace(status, map_id="d1")))
+        socket.ask(2, api.MapSave())
+        await asyncio.sleep(1)
+        assert socket.outcome == {1: "not_found", 2: "refused"}
 
 
 async def test_the_envelope_of_a_req_socket_goes_back_with_the_reply(make_control: Any) -> None:
