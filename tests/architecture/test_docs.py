@@ -7,12 +7,15 @@ import argparse
 import re
 import shlex
 import subprocess
+import sys
+from dataclasses import fields
 from functools import cache
 from pathlib import Path
 
 import pytest
 
 from robotd.cli.main import WORDS, build_parser, verbs_of
+from robotd.config import Config
 from tests.integration.test_quickstart import commands
 
 ROOT = Path(__file__).parents[2]
@@ -27,6 +30,7 @@ PAGES = sorted(
 )
 FILE = re.compile(r"(?:[\w-]+/)+[\w.-]*|[\w-]+\.(?:py|md|toml|service|rules)")
 """What looks like a file or a folder of the project: with a slash inside, or with the ending of our own sources."""
+ENDINGS = ("py", "md", "toml", "service", "rules", "sock")
 ROOMS = ("", "robotd", "firmware_proto", "tests", "docs", "systemd")
 """Where a path may begin: prose about a room leaves its name out."""
 MADE = {
@@ -128,6 +132,39 @@ def test_every_link_leads_somewhere(page: Path) -> None:
 def test_every_file_that_is_named_exists(page: Path) -> None:
     named = [text for text in in_backticks(page) if FILE.fullmatch(text)]
     assert [text for text in named if not exists(text)] == []
+
+
+@pages
+def test_every_key_of_the_configuration_that_is_named_exists(page: Path) -> None:
+    config = Config()
+    sections = {field.name: getattr(config, field.name) for field in fields(config)}
+    named = [text.split(".") for text in in_backticks(page) if re.fullmatch(r"[a-z]+\.[a-z0-9_]+", text)]
+    keys = [(section, key) for section, key in named if section in sections and key not in ENDINGS]
+    assert [(section, key) for section, key in keys if not hasattr(sections[section], key)] == []
+
+
+@pages
+def test_every_variable_of_the_environment_that_is_named_is_read(page: Path) -> None:
+    sources = "".join(
+        file.read_text(encoding="utf-8") for file in [*ROOT.glob("robotd/**/*.py"), ROOT / "tests/conftest.py"]
+    )
+    named = set(re.findall(r"\bROBOTD_[A-Z_]+", page.read_text(encoding="utf-8")))
+    assert {variable for variable in named if f'"{variable}"' not in sources} == set()
+
+
+@pages
+def test_every_run_of_pytest_that_is_named_finds_tests(page: Path) -> None:
+    for typed in [text for text in in_backticks(page) if text.startswith("python -m pytest")]:
+        words = [
+            sys.executable,
+            *shlex.split(typed.replace("=N", "=1"))[1:],
+            "--collect-only",
+            "-q",
+            "-p",
+            "no:cacheprovider",
+        ]
+        found = subprocess.run(words, check=False, cwd=ROOT, capture_output=True, text=True)
+        assert found.returncode == 0, found.stdout + found.stderr
 
 
 def test_the_example_of_every_verb_is_a_command_line_that_it_takes() -> None:
