@@ -1,5 +1,6 @@
 """One daemon per runtime directory: a second bind would silently steal the first one's sockets."""
 
+import contextlib
 import fcntl
 import os
 from collections.abc import Iterator
@@ -38,5 +39,6 @@ def _lock(descriptor: int, directory: Path) -> None:
     except BlockingIOError:
         holder = os.pread(descriptor, 32, 0).decode(errors="replace").strip() or "unknown"
         raise TransportError(f"another robotd (process {holder}) serves from {directory}") from None
-    os.ftruncate(descriptor, 0)
-    os.pwrite(descriptor, f"{os.getpid()}\n".encode(), 0)
+    with contextlib.suppress(OSError):  # a full disk: the lock holds all the same, only nobody learns whose it is
+        os.ftruncate(descriptor, 0)
+        os.pwrite(descriptor, f"{os.getpid()}\n".encode(), 0)

@@ -133,7 +133,8 @@ class Server:
             for socket in sockets:
                 socket.close(_LINGER_MS)
             await asyncio.to_thread(context.term)  # waits for the lingering, which the loop must not
-            self._remove_sockets()
+            with contextlib.suppress(TransportError):  # the next one to serve here will see to it, and complain
+                self._remove_sockets()
 
     def _set_up(self, commands: zmq.asyncio.Socket, state: zmq.asyncio.Socket, maps: zmq.asyncio.Socket) -> None:
         settings = self._settings
@@ -148,7 +149,10 @@ class Server:
 
     def _remove_sockets(self) -> None:
         for path in self._endpoints.paths:
-            path.unlink(missing_ok=True)
+            try:
+                path.unlink(missing_ok=True)
+            except OSError as error:
+                raise TransportError(f"socket {path}: cannot be removed: {error.strerror}") from error
 
 
 def _bind(socket: zmq.asyncio.Socket, path: Path) -> None:

@@ -315,6 +315,26 @@ async def test_a_runtime_directory_that_cannot_be_is_named(tmp_path: Path) -> No
         await Server(ServerSettings(runtime_dir=str(tmp_path / "file" / "run")), unreached_control()).run()
 
 
+async def test_what_stands_in_a_sockets_place_is_named(tmp_path: Path) -> None:
+    (tmp_path / "state.sock").mkdir()
+    server = Server(ServerSettings(runtime_dir=str(tmp_path)), unreached_control())
+    with pytest.raises(TransportError, match=r"state.sock: cannot be removed: Is a directory"):
+        await server.run()
+
+
+async def test_a_lock_holds_though_there_is_no_room_for_its_owners_number(
+    serving: Serving, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> int:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.pwrite", full)
+    async with serving():
+        second = Server(ServerSettings(runtime_dir=str(tmp_path)), unreached_control())
+        with pytest.raises(TransportError, match=r"another robotd \(process unknown\)"):
+            await second.run()
+
+
 async def test_a_restart_shows_as_a_gap_and_clients_stay(serving: Serving, tmp_path: Path) -> None:
     async with AsyncClient(tmp_path, retry_s=0.05) as client:
         with client.subscribe("status") as events:
