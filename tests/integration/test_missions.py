@@ -1,0 +1,145 @@
+"""What missions do with stops that cannot be reached, and what the journal's requests do when they are asked again."""
+
+import asyncio
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from robotd.config import Config
+from robotd.core.errors import MapError, MissionError, RecordingError
+from robotd.mission.events import MissionPhase, MissionProgress
+from robotd.mission.modes import Mode
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.mission.stop_and_sweep import SweepSettings
+from robotd.recording.entries import CommandEntry
+from robotd.sim.robot import SimulatedRobot
+from robotd.sim.world import load_world
+from tests.integration.conftest import Live, Living
+
+QUICK = replace(Config(), sweep=SweepSettings(readings=120))
+
+
+def office(seed: int = 5) -> SimulatedRobot:
+    return SimulatedRobot(load_world("office"), seed=seed)
+
+
+def last_command(it: Living) -> CommandEntry:
+    return [entry for entry in it.journal.remembered if isinstance(entry, CommandEntry)][-1]
+
+
+async def test_a_stop_that_cannot_be_reached_is_left_out_and_named(live: Live) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it:
+        said = await it.done(MapMission("office", ((-3.0, -3.0), robot.stops_m[0]), robot.start))
+        assert it.daemon.supervisor.place is not None
+        generation = it.daemon.supervisor.place.generation
+    progress = [event for event in said if isinstance(event, MissionProgress)]
+    assert progress[-1].message.startswith("2 stops swept; not reached: stop 1: (-3.00, -3.00) m cannot be reached")
+    assert [event.stop for event in progress if event.phase is MissionPhase.SWEEPING] == [0, 2]
+    assert generation == 2
+
+
+async def test_nobody_drives_on_a_map_on_which_the_robot_is_not(live: Live) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it:
+        await it.done(MapMission("office", (), robot.start))
+        await it.daemon.control.save_map(None)
+        await it.daemon.control.load_map("office", None, None)
+        _, end = await it.do(DriveMission(1.0, 1.0, Legs.STRAIGHT))
+        assert "not localized on it" in end.message
+        assert it.daemon.supervisor.mode is Mode.IDLE
+
+
+async def test_stops_too_far_apart_for_one_map_are_refused_before_anything_moves(live: Live) -> None:
+    async with live(office(), QUICK) as it:
+        _, end = await it.do(MapMission("world", ((5000.0, 0.0),)))
+        assert "do not fit on one map" in end.message
+        assert it.daemon.supervisor.place is None
+
+
+async def test_requests_are_noted_so_that_they_can_be_asked_again(live: Live) -> None:
+    robot = office()
+    async with live(robot, QUICK, armed=False) as it:
+        control, supervisor = it.daemon.control, it.daemon.supervisor
+        await control.repeat("arm", {})
+        assert supervisor.mode is Mode.IDLE
+        mission = MapMission("office", (), robot.start, Legs.STRAIGHT)
+        mission_id = control.start(mission, 0.5)
+        noted = last_command(it)
+        await control.repeat("renew", {"mission_id": mission_id})
+        await control.repeat("stop", {"reason": "enough"})
+        assert supervisor.mode.value == "disarmed"
+        assert supervisor.status.reason == "enough"
+        await control.repeat("clear", {})
+        await control.repeat("arm", {})
+        await control.repeat(noted.name, noted.arguments)
+        assert last_command(it).arguments == noted.arguments
+        assert msgspec.convert(noted.arguments["mission"], MapMission) == mission
+        with pytest.raises(MissionError, match="unknown request 'fly'"):
+            await control.repeat("fly", {})
+
+
+async def test_a_map_taken_into_use_comes_whole_out_of_the_journal(live: Live) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it:
+        control, supervisor = it.daemon.control, it.daemon.supervisor
+        await it.done(MapMission("office", (), robot.start))
+        await control.save_map("kept")
+        await control.load_map("kept", None, robot.start)
+        loaded, noted = supervisor.place, last_command(it)
+        assert loaded is not None
+        await control.repeat(noted.name, noted.arguments)
+        again = supervisor.place
+        assert again is not None
+        assert again is not loaded
+        assert (again.map_id, again.name, again.grid.spec) == (loaded.map_id, loaded.name, loaded.grid.spec)
+        assert np.array_equal(again.grid.cells, loaded.grid.cells)
+        assert again.map_from_odom == loaded.map_from_odom
+        control.start(LocalizeMission(), 1000.0)
+        with pytest.raises(MissionError, match="while a mission is under way"):
+            await control.load_map("kept", None, None)
+        assert supervisor.place is again
+
+
+async def test_what_is_not_there_is_refused(live: Live, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    async with live(office(), QUICK) as it:
+        control = it.daemon.control
+        with pytest.raises(MapError, match="no map is in use"):
+            await control.save_map(None)
+        with pytest.raises(MapError, match="no map is in use"):
+            control.whole_map()
+        with pytest.raises(MapError):
+            await control.load_map("nowhere", None, None)
+        with pytest.raises(RecordingError, match="cannot record"):
+            await control.start_recording(str(tmp_path / "file" / "below" / "a.mcap"))
+        assert control.status.recording is None
+        assert await control.stop_recording() is None
+        assert await control.start_recording(None)
+        with pytest.raises(RecordingError, match="already recording"):
+            await control.start_recording(None)
+        assert await control.stop_recording()
+
+
+async def test_a_board_that_restarts_while_mapping_ends_the_mission_and_leaves_no_jump(live: Live) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it:
+        control, drive = it.daemon.control, it.daemon.robot.drive
+        control.start(MapMission("office", robot.stops_m, robot.start, Legs.STRAIGHT), 1000.0)
+        async for event in it.events:
+            if isinstance(event, MissionProgress) and event.phase is MissionPhase.DRIVING:
+                break
+        await asyncio.sleep(1.0)
+        before = drive.odometry.latest
+        robot.boards["drive"].reboot(99)
+        await asyncio.sleep(4.0)
+        after = drive.odometry.latest
+        assert before is not None
+        assert after is not None
+        assert after.time_ns > before.time_ns
+        assert after.in_odom.distance_m(before.in_odom) < 0.1
+        assert it.daemon.supervisor.mode is Mode.DISARMED
+        assert not it.daemon.robot.absent

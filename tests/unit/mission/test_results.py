@@ -1,0 +1,57 @@
+"""A result's digest stands for all of it but its time."""
+
+from dataclasses import replace
+
+from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepDone
+from robotd.mission.map_in_use import MapInUse
+from robotd.mission.prediction import unlocalized
+from robotd.mission.results import note_result
+from robotd.recording.entries import ResultEntry
+from robotd.recording.journal import MemoryJournal
+
+READING = RangeReading(10, 0.5, ReadingStatus.OK, 2.0)
+SWEEP = Sweep(0, IDENTITY, (READING, RangeReading(20, 1.5, ReadingStatus.WEAK, None)))
+END = MissionProgress(1, 7, "map", MissionPhase.DONE, 2, 2, "2 stops swept")
+
+
+def noted(event: Event, place: MapInUse | None = None) -> ResultEntry | None:
+    journal = MemoryJournal()
+    note_result(journal, event, place)
+    entries = [entry for entry in journal.entries if isinstance(entry, ResultEntry)]
+    assert len(entries) <= 1
+    return entries[0] if entries else None
+
+
+def digest(event: Event, place: MapInUse | None = None) -> str:
+    entry = noted(event, place)
+    assert entry is not None
+    return entry.digest
+
+
+def test_times_are_left_out_of_a_digest_and_everything_else_is_in_it() -> None:
+    later = tuple(replace(reading, time_ns=reading.time_ns + 5) for reading in SWEEP.readings)
+    other = (replace(READING, range_m=2.000001), SWEEP.readings[1])
+    assert digest(SweepDone(1, SWEEP)) == digest(SweepDone(9, replace(SWEEP, readings=later)))
+    assert digest(SweepDone(1, SWEEP)) != digest(SweepDone(1, replace(SWEEP, readings=other)))
+    assert digest(unlocalized(1, "m")) == digest(unlocalized(2, "m")) != digest(unlocalized(1, "n"))
+    assert digest(END) == digest(replace(END, time_ns=9)) != digest(replace(END, message="1 stop swept"))
+
+
+def test_a_map_is_noted_whenever_it_changes() -> None:
+    place = MapInUse(
+        "m", "m", OccupancyGrid(GridSettings(rows=60, cols=60).spec_covering(((0.0, 0.0),), 1.0)), IDENTITY
+    )
+    before = digest(place.whole(1), place)
+    grid, cells = place.grid_with(SWEEP)
+    place.take(grid)
+    assert digest(place.changes(2, cells), place) == place.grid.digest() != before
+
+
+def test_what_is_no_result_is_not_noted() -> None:
+    predicted = PoseEstimate(1, PoseState.PREDICTED, IDENTITY, (), 0, 0, True, "m")
+    for event in (Odometry(1, IDENTITY, STANDSTILL), predicted, replace(END, phase=MissionPhase.SWEEPING)):
+        assert noted(event) is None
