@@ -168,5 +168,11 @@ def _command_of(fields: dict[str, Any]) -> Command[Any]:
     try:
         command: Command[Any] = msgspec.convert(fields.get("args", {}), kind, strict=True)
     except msgspec.ValidationError as error:
-        raise ServerError(ErrorCode.BAD_ARGUMENT, f"{name}: {error}") from error
+        raise ServerError(ErrorCode.BAD_ARGUMENT, f"{name}: {_in_words(error)}") from error
     return command
+
+
+def _in_words(error: msgspec.ValidationError) -> str:
+    """Return what is wrong with which argument; msgspec names it last, as a path from ``$``."""
+    what, _, path = str(error).partition(" - at `$")
+    return f"{path.strip('.`')}: {what}" if path else what

@@ -158,6 +158,27 @@ def test_a_bad_argument_is_answered_under_its_number() -> None:
     assert decoded.id == 5
 
 
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"args": {"x_m": 1.0, "y_m": "2"}}, "drive_to: y_m: Expected `float`, got `str`"),
+        ({"args": {"x_m": 1.0}}, "drive_to: Object missing required field `y_m`"),
+        (
+            {"cmd": "map_start", "args": {"name": "a", "stops_m": [[1, 2], [1, 1e6]]}},
+            "map_start: stops_m[1][1]: Expected `float` <= 100000.0",
+        ),
+        (
+            {"cmd": "map_start", "args": {"name": "a", "start": {"x_m": 0, "y_m": 0, "heading_rad": 90}}},
+            "map_start: start.heading_rad: Expected `float` <= 6.283185307179586",
+        ),
+    ],
+)
+def test_a_bad_argument_is_called_by_its_name(fields: dict[str, Any], message: str) -> None:
+    decoded = decode_request(request(**fields), LIMIT)
+    assert isinstance(decoded, BadRequest)
+    assert decoded.error.message == message
+
+
 VALUES = st.recursive(
     st.none() | st.booleans() | st.integers(-(2**63), 2**64 - 1) | st.floats() | st.text(max_size=20) | st.binary(),
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4),
