@@ -27,8 +27,7 @@ async def run_localizing(
     context: MissionContext, place: MapInUse, mission: LocalizeMission, report: Reporter, number: int
 ) -> PoseEstimate:
     """Carry out a :class:`LocalizeMission`: sweep, estimate, and tie odometry to the map if the answer is unique."""
-    driving = context.settings.driving
-    here = await settle(context.robot.drive, context.settings.sweep.settle_s, driving.silence_s)
+    here = await settle(context.robot.drive, context.settings.sweep.settle_s, context.settings.driving)
     heading_rad = _heading(place, mission, here)
     report.at(MissionPhase.SWEEPING)
     narrowing = await Narrowing.begin(context, place, heading_rad)
@@ -78,7 +77,8 @@ class Narrowing:
 
     def end(self) -> None:
         """Say that the sweep is whole."""
-        self._flush()
+        if self._batch:
+            self._flush()
         self._batches.put_nowait(None)
 
     def _flush(self) -> None:

@@ -66,21 +66,26 @@ async def drive_leg(drive: Drive, x_m: float, y_m: float, settings: DrivingSetti
     return await translate_to(drive, x_m, y_m, settings)
 
 
-async def settle(drive: Drive, settle_s: float, silence_s: float) -> Odometry:
+async def settle(drive: Drive, settle_s: float, settings: DrivingSettings) -> Odometry:
     """Wait until odometry has reported standstill for ``settle_s`` by its own times; return the last report.
 
     Raises:
         LinkTimeout: odometry fell silent.
+        DeviceError: the base does not come to rest.
     """
+    began_ns: int | None = None
     since_ns: int | None = None
     with drive.odometry.subscribe() as stream:
-        async for now in _within(stream, silence_s):
-            if not now.twist.is_zero:
-                since_ns = None
-            elif since_ns is None:
-                since_ns = now.time_ns
-            elif now.time_ns - since_ns >= settle_s * NS_PER_S:
-                return now
+        async for now in _within(stream, settings.silence_s):
+            began_ns = now.time_ns if began_ns is None else began_ns
+            if now.twist.is_zero:
+                since_ns = now.time_ns if since_ns is None else since_ns
+                if now.time_ns - since_ns >= settle_s * NS_PER_S:
+                    return now
+                continue
+            since_ns = None
+            if now.time_ns - began_ns > settings.stall_s * NS_PER_S:
+                raise DeviceError(drive.name, "restless", f"it does not stand still within {settings.stall_s:g} s")
     raise AssertionError("a subscription never ends")
 
 

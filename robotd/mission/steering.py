@@ -32,7 +32,7 @@ class DrivingSettings:
     silence_s: float = 0.5
     """Odometry silent for so long means stop."""
     stall_s: float = 3.0
-    """No nearer to the goal for so long means that something is wrong."""
+    """No nearer to the goal, or to standstill, for so long means that something is wrong."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be driven."""

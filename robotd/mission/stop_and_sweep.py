@@ -70,7 +70,7 @@ class Sweeper:
             min(limits.pan_max_rad - _LIMIT_MARGIN_RAD, math.pi),
             clockwise=number % 2 == 1,
         )
-        start = await settle(self.robot.drive, self.settings.settle_s, self.driving.silence_s)
+        start = await settle(self.robot.drive, self.settings.settle_s, self.driving)
         readings: list[RangeReading] = []
         await self.robot.rangefinder.switch_laser(on=True)
         for part in parts:
@@ -87,7 +87,7 @@ class Sweeper:
         if part.base_turn_rad == 0.0:
             return start
         await rotate_to(self.robot.drive, start.in_odom.heading_rad + part.base_turn_rad, self.driving)
-        return await settle(self.robot.drive, self.settings.settle_s, self.driving.silence_s)
+        return await settle(self.robot.drive, self.settings.settle_s, self.driving)
 
     async def _read(self, pan_rad: float, start: Odometry, here: Odometry) -> RangeReading:
         aim = await self.robot.pantilt.aim(pan_rad, self.settings.tilt_rad, timeout_s=self.settings.aim_timeout_s)

@@ -80,10 +80,10 @@ class Link:
                 silence_s=SILENCE_S,
             )
             async with session:
-                await shake_hands(session, self.terms, self.rng.getrandbits(32), self.dictionaries)
-                self.counters.sessions += 1
-                listener.link_ready(session)
                 try:
+                    await shake_hands(session, self.terms, self.rng.getrandbits(32), self.dictionaries)
+                    self.counters.sessions += 1
+                    listener.link_ready(session)
                     await session.serve()
                 finally:
                     session.stop_now()  # whatever ended it, nothing must go on moving

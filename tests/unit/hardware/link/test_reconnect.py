@@ -29,6 +29,7 @@ from robotd.hardware.link.handshake import Terms
 from robotd.hardware.link.reconnect import Link
 from robotd.hardware.link.session import LinkCounters, Session
 from robotd.hardware.link.tap import Direction
+from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES, BoardWire
 from robotd.sim.boards.board import Board
@@ -272,3 +273,15 @@ async def test_another_device_on_the_port_is_refused_and_named() -> None:
         await run_for(link_to(connect["pantilt"]), diary, 1.0)
     assert diary.reasons[0].startswith("drive: the board is a pantilt, not a drive")
     assert "ready" not in diary.words
+
+
+async def test_a_link_that_ends_before_the_board_answered_says_stop_all_the_same() -> None:
+    near, far = memory_pair()
+
+    async def connect() -> Transport:
+        return near
+
+    tape = Tape()
+    await run_for(link_to(connect, tape), Diary(), 0.2)
+    far.close()
+    assert bytes(tape.bytes_by_direction[Direction.TO_BOARD]).endswith(STOP_BYTES)
