@@ -1,0 +1,65 @@
+"""Real readings: the unmodified daemon maps a recorded building, and is found at stops that were kept out of the map."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from robotd.config import Config
+from robotd.core.reading import ReadingStatus
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.events import SweepDone
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.sim.building import load_recorded_building, write_recorded_building
+from robotd.sim.recorded_building import OdometrySource, RecordedRobot
+from tests.integration.conftest import Live
+
+pytestmark = [pytest.mark.slow, pytest.mark.real_data]
+
+LOGS = {"intel": "intel/intel.corrected.log.gz", "fr079": "fr079/fr079.corrected.log.gz"}
+
+
+def robot_of(log: Path, tmp_path: Path, odometry: OdometrySource) -> RecordedRobot:
+    file = tmp_path / "building.json.gz"
+    write_recorded_building(log, file, spacing_m=0.5, keep_out_every=4, limit=16)
+    return RecordedRobot(load_recorded_building(file), seed=1, odometry=odometry)
+
+
+def config() -> Config:
+    seeing_far = Config()
+    return replace(seeing_far, rangefinder=replace(seeing_far.rangefinder, range_max_m=10.0))
+
+
+@pytest.mark.parametrize("name", LOGS)
+async def test_it_is_found_at_stops_that_were_kept_out_of_the_map(
+    live: Live, laser_data: Path, tmp_path: Path, name: str
+) -> None:
+    robot = robot_of(laser_data / LOGS[name], tmp_path, OdometrySource.CORRECTED)
+    async with live(robot, config()) as it:
+        said = await it.done(MapMission(name, robot.stops_m, robot.start, Legs.STRAIGHT))
+        sweeps = [event.sweep for event in said if isinstance(event, SweepDone)]
+        assert len(sweeps) == 12
+        for sweep in sweeps:
+            assert len(sweep.readings) == 300
+            assert 140 <= sweep.count(ReadingStatus.NOT_MEASURED) <= 160
+        errors_m = []
+        for probe_m in reversed(robot.probes_m):
+            await it.done(DriveMission(*probe_m, legs=Legs.STRAIGHT))
+            here = robot.truth
+            found = [e for e in await it.done(LocalizeMission(tie=False)) if isinstance(e, PoseEstimate)][-1]
+            if found.state is PoseState.LOCALIZED:
+                assert found.best is not None
+                errors_m.append(found.best.distance_m(here))
+        # A scan of half a circle may look where no stop of so small a map looked: then it is lost, and says so.
+        assert errors_m, "not one of the stops was localized"
+        assert max(errors_m) < 0.3
+
+
+async def test_raw_odometry_drifts_away_from_the_corrected_one(live: Live, laser_data: Path, tmp_path: Path) -> None:
+    robot = robot_of(laser_data / LOGS["intel"], tmp_path, OdometrySource.RAW)
+    async with live(robot, config()) as it:
+        await it.done(MapMission("raw", robot.stops_m[:3], robot.start, Legs.STRAIGHT))
+        odometry = it.daemon.robot.drive.odometry.latest
+        assert odometry is not None
+        believed = robot.start @ odometry.in_odom
+        assert 0.0 < believed.distance_m(robot.truth) < 1.0
