@@ -5,8 +5,9 @@ Times are left out of the digests: they are what a replay may change, by the tim
 
 import hashlib
 import json
-from dataclasses import asdict
 from typing import Any
+
+import msgspec
 
 from robotd.core.reading import Sweep
 from robotd.localization.estimate import PoseEstimate, PoseState
@@ -21,12 +22,12 @@ def note_result(journal: Journal, event: Event, place: MapInUse | None) -> None:
         case SweepDone():
             _note(journal, event.time_ns, "sweep", _sweep(event.sweep))
         case PoseEstimate() if event.state is not PoseState.PREDICTED:
-            _note(journal, event.time_ns, "estimate", _without_time(asdict(event)))
+            _note(journal, event.time_ns, "estimate", _without_time(msgspec.to_builtins(event)))
         case MapChanged() if place is not None:
             content = {"map_id": event.map_id, "generation": event.generation}
             journal.result(event.time_ns, "map", content, place.grid.digest())
         case MissionProgress() if event.is_last:
-            _note(journal, event.time_ns, "mission", _without_time(asdict(event)))
+            _note(journal, event.time_ns, "mission", _without_time(msgspec.to_builtins(event)))
 
 
 def _note(journal: Journal, time_ns: int, kind: str, content: dict[str, Any]) -> None:
@@ -35,7 +36,8 @@ def _note(journal: Journal, time_ns: int, kind: str, content: dict[str, Any]) ->
 
 
 def _sweep(sweep: Sweep) -> dict[str, Any]:
-    return _without_time(asdict(sweep)) | {"readings": [_without_time(asdict(reading)) for reading in sweep.readings]}
+    content: dict[str, Any] = msgspec.to_builtins(sweep)
+    return content | {"readings": [_without_time(reading) for reading in content["readings"]]}
 
 
 def _without_time(content: dict[str, Any]) -> dict[str, Any]:
