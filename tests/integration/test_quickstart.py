@@ -29,7 +29,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.real_clock, pytest.mark.timeout(300)
 ROOT = Path(__file__).parents[2]
 BIN = Path(sys.executable).parent
 IN_THE_TEST = {
-    "make demo": "",  # makes an environment over the network; that the target exists is tested with the other prose
+    "make demo": "",  # a test of its own, below
     "source .venv/bin/activate": "",  # the tests run in such an environment already
     "robotctl map start office --world office": "robotctl map start office --world office --stop 2.1 1.7",  # of 5 stops
     "robotctl config check /etc/robotd/robotd.toml": f"robotctl config check {ROOT / 'systemd' / 'robotd.toml'}",
@@ -194,3 +194,23 @@ def test_the_quick_start_can_be_typed_from_its_first_line_to_its_last(tmp_path: 
         end = person.end()
     assert set(re.findall(r"exit code (\S+)", end)) == {"0"}, end
     assert "0 requests were not the recorded ones" in end, end
+
+
+def test_what_make_demo_runs_shows_the_main_job(tmp_path: Path) -> None:
+    """A smaller room with fewer stops; the environment that ``make demo`` makes first needs a network."""
+    recipe = subprocess.run(
+        ["make", "-n", "-o", ".venv/.demo", "demo"], check=True, cwd=ROOT, capture_output=True, text=True
+    )
+    assert recipe.stdout.strip() == ".venv/bin/robotctl demo room laboratory --seed 1 --out demo"
+    with terminals(tmp_path) as person:
+        said = person.type("robotctl demo room office --seed 1 --out demo --stops 1 --localizations 1")
+    assert re.search(r"2 stops, 600 readings taken: \d+ hits, \d+ misses, \d+ rejected", said)
+    assert re.search(r"map saved: \S+/demo/maps/office/1 ", said)
+    assert re.search(r"truth \[m\] +estimate \[m\](.|\n)+ \d+ / 300 +1 +localized", said)
+    assert re.search(r"1 of 1 localized; median error \d{1,2} mm", said)
+    assert sorted(file.name for file in (tmp_path / "demo").glob("*.png")) == [
+        "localization.png",
+        "map.png",
+        "room.png",
+    ]
+    assert (tmp_path / "demo" / "recording.mcap").stat().st_size > 100_000

@@ -6,6 +6,7 @@ from statistics import median
 from typing import Self
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from robotd.cli.progress import MissionBars
@@ -90,14 +91,16 @@ def print_readings(console: Console, sweeps: tuple[Sweep, ...]) -> None:
 
 def print_trials(console: Console, trials: list[Trial]) -> None:
     """Print truth, estimate and error of each localization, and the median error."""
-    table = Table("", "truth [m]", "estimate [m]", "error [mm]", "heading [deg]", "rank / readings", "regions", "state")
+    # Eighty columns are what many terminals have.
+    headers = ("", "truth [m]", "estimate [m]", "error\n[mm]", "error\n[deg]", "rank /\nreadings", "regions", "state")
+    table = Table(*map(escape, headers), box=None, pad_edge=False, header_style="bold")
     for number, trial in enumerate(trials, 1):
         best, error_m = trial.estimate.best, trial.error_m
         heading = "-" if best is None else f"{math.degrees(wrap_rad(best.heading_rad - trial.truth.heading_rad)):+.2f}"
         table.add_row(
             str(number),
-            f"({trial.truth.x_m:.3f}, {trial.truth.y_m:.3f})",
-            "-" if best is None else f"({best.x_m:.3f}, {best.y_m:.3f})",
+            f"{trial.truth.x_m:.3f}, {trial.truth.y_m:.3f}",
+            "-" if best is None else f"{best.x_m:.3f}, {best.y_m:.3f}",
             "-" if error_m is None else f"{1000 * error_m:.0f}",
             heading,
             f"{trial.estimate.best_rank} / {trial.estimate.readings}",
