@@ -46,6 +46,13 @@ for what it does not need.
 """
 
 
+class _Help(RawDescriptionRichHelpFormatter):
+    """Words as they are written: ``[m]`` is a unit, not markup."""
+
+    text_markup = False
+    help_markup = False
+
+
 def verbs_of(word: str) -> tuple[Verb, ...]:
     """Return the verbs that begin with a word: one, or a family."""
     verbs: tuple[Verb, ...] = importlib.import_module(f"robotd.cli.{WORDS[word][0]}").VERBS
@@ -58,7 +65,7 @@ def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
         prog="robotctl",
         description="Talk to robotd: missions, maps, poses, recordings, and robots that are not there.",
         epilog="robotctl VERB --help tells more, with an example.",
-        formatter_class=RawDescriptionRichHelpFormatter,
+        formatter_class=_Help,
     )
     parser.add_argument("--version", action="version", version=f"robotctl {__version__}")
     words = parser.add_subparsers(metavar="VERB", required=True)

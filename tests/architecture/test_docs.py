@@ -171,3 +171,9 @@ def test_the_example_of_every_verb_is_a_command_line_that_it_takes() -> None:
     examples = [verb.example.partition(" > ")[0] for word in WORDS for verb in verbs_of(word)]
     assert len(examples) >= 20
     assert [example for example in examples if not robotctl_accepts(example)] == []
+
+
+def test_the_help_of_a_verb_tells_its_units(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        build_parser(["drive-to"]).parse_args(["drive-to", "--help"])
+    assert "map x [m]" in capsys.readouterr().out
