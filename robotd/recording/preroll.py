@@ -66,7 +66,10 @@ class PrerollJournal(Journal):
                 f"the daemon has run past its pre-roll of {self._limit_bytes} bytes, and a recording must begin where"
                 " the daemon began: restart it, or set recording.from_start = true"
             )
-        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise RecordingError(f"cannot record to {path}: {error.strerror}") from error
         self._recorder = Recorder(path, self.header, tuple(self._remembered))
 
     def stop(self) -> Callable[[], None]:
