@@ -119,6 +119,17 @@ async def test_settling_takes_as_long_as_it_should_from_when_it_stands() -> None
         assert 1.2 <= stood.time_ns / NS_PER_S <= 1.2 + 3 * PERIOD_S
 
 
+async def test_standstill_counts_anew_after_each_move() -> None:
+    async with base() as (one, drive, _):
+        settling = asyncio.create_task(settle(drive, 0.5, SETTINGS))
+        await asyncio.sleep(0.3)
+        one.jitters = True
+        await asyncio.sleep(0.1)
+        one.jitters = False
+        stood = await settling
+        assert 0.9 <= stood.time_ns / NS_PER_S <= 0.9 + 3 * PERIOD_S
+
+
 async def test_a_base_that_never_stands_is_noticed() -> None:
     async with base() as (one, drive, _):
         one.jitters = True

@@ -309,6 +309,14 @@ async def test_a_lost_device_stops_the_others(lost: int) -> None:
             await r.supervisor.arm()
 
 
+async def test_a_device_that_disarms_by_itself_stops_the_others() -> None:
+    async with rig() as r:
+        r.pantilt.change(armed=False)
+        await turns()
+        assert (r.mode, r.reason) == (Mode.DISARMED, "pantilt is no longer armed")
+        assert not any(device.status.armed for device in r.devices)
+
+
 async def test_what_a_lost_drive_said_last_is_not_shown_as_if_it_were_now() -> None:
     async with rig() as r:
         r.drive.readouts.publish(DriveReadout(now_ns(), 25.0, (0.0,)))

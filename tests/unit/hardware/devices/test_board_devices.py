@@ -187,8 +187,13 @@ async def test_a_stop_that_gets_lost_is_said_again_until_the_board_has_heard_it(
         assert (r.drive.status.armed, r.robot.boards["drive"].state.name) == (True, "ARMED")
 
 
-async def test_a_board_that_somebody_else_armed_is_stopped() -> None:
-    async with rig(armed=False) as r:
+@pytest.mark.parametrize("was_armed_before_it_was_lost", [False, True])
+async def test_a_board_that_somebody_else_armed_is_stopped(was_armed_before_it_was_lost: bool) -> None:
+    async with rig(armed=was_armed_before_it_was_lost) as r:
+        if was_armed_before_it_was_lost:
+            r.lines["drive"].close()
+            await r.wait(r.drive, LinkState.ABSENT)
+            await r.wait(r.drive, LinkState.READY)
         r.robot.boards["drive"]._beneath = BoardState.ARMED
         await asyncio.sleep(0.1)
         assert r.robot.boards["drive"].state is BoardState.CONFIGURED
