@@ -39,7 +39,7 @@ def ray_cells(
         ``row * cols + col``, from start to end. Time and memory are O(m), however long the rays are.
     """
     steps = ray_steps(bearings_rad)
-    first, last = _inside_along_dominant_axis(starts, steps, _sample_counts(bearings_rad, lengths_cells), shape)
+    first, last = _inside_along_dominant_axis(starts, steps, sample_counts(bearings_rad, lengths_cells), shape)
     counts = last - first
     ray = np.repeat(np.arange(len(counts)), counts)
     k = np.arange(len(ray)) - np.repeat(np.cumsum(counts) - counts - first, counts)
@@ -57,7 +57,7 @@ def ray_offsets(bearing_rad: float, length_cells: float) -> NDArray[np.intp]:
     [[0, 0], [0, 1], [1, 2], [1, 3]]
     """
     bearing = np.array([bearing_rad])
-    count = max(1, int(_sample_counts(bearing, np.array([length_cells]))[0]))
+    count = max(1, int(sample_counts(bearing, np.array([length_cells]))[0]))
     offsets: NDArray[np.intp] = np.floor(_CENTRE + np.arange(count)[:, None] * ray_steps(bearing)).astype(np.intp)
     return offsets
 
@@ -69,8 +69,8 @@ def ray_steps(bearings_rad: NDArray[np.float64]) -> NDArray[np.float64]:
     return steps
 
 
-def _sample_counts(bearings_rad: NDArray[np.float64], lengths_cells: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How many samples lie nearer than the length, whole numbers as floats so that no length overflows."""
+def sample_counts(bearings_rad: NDArray[np.float64], lengths_cells: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how many samples lie nearer than the length, whole numbers as floats so that no length overflows."""
     per_cell = np.maximum(np.abs(np.cos(bearings_rad)), np.abs(np.sin(bearings_rad)))
     counts: NDArray[np.float64] = np.ceil(np.maximum(lengths_cells, 0.0) * per_cell)
     return counts

@@ -1,0 +1,133 @@
+"""The smallest error radius: one pass against feasible poses at every eps, and against the binary search."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from numpy.typing import NDArray
+
+from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.grid.binary import BinaryMap
+from robotd.grid.distance import distance_transform
+from robotd.grid.spec import GridSpec
+from robotd.localization.feasible import Obstacles, feasible_poses
+from robotd.localization.probe import probe_of
+from robotd.localization.smallest_error import (
+    errors_for_share,
+    errors_needed,
+    smallest_error,
+    smallest_error_by_search,
+)
+
+RESOLUTION_M = 0.25
+maps = hnp.arrays(
+    np.bool_, hnp.array_shapes(min_dims=2, max_dims=2, max_side=10), elements=st.sampled_from([False] * 6 + [True])
+).map(lambda occupied: BinaryMap(GridSpec(RESOLUTION_M, 0.0, 0.0, occupied.shape), occupied))
+bearings = st.one_of(st.floats(-math.pi, math.pi), st.builds(math.atan2, st.integers(-4, 4), st.integers(-4, 4)))
+ranges = st.one_of(st.floats(0.01, 4.0), st.integers(1, 12).map(lambda cells: cells * RESOLUTION_M), st.just(1e6))
+readings = st.builds(
+    RangeReading,
+    st.just(0),
+    bearings,
+    st.sampled_from([ReadingStatus.OK, ReadingStatus.OK, ReadingStatus.MISS]),
+    ranges,
+    origin_x_m=st.sampled_from([0.0, 0.0, 0.25, 0.3]),
+    origin_y_m=st.sampled_from([0.0, 0.0, -0.4]),
+)
+near_readings = readings.filter(lambda reading: (reading.range_m or 0.0) < 10.0)
+shares = st.sampled_from([0.1, 0.5, 0.6, 0.9, 1.0])
+
+
+def feasible_at(binary: BinaryMap, reading: RangeReading, heading_rad: float, error_cells: int) -> NDArray[np.bool_]:
+    probe = probe_of(
+        reading,
+        heading_rad,
+        resolution_m=RESOLUTION_M,
+        error_radius_cells=error_cells,
+        reach_cells=3 * max(binary.spec.shape),
+    )
+    return feasible_poses(Obstacles.of(binary.occupied, error_cells), probe)
+
+
+@settings(max_examples=120)
+@given(maps, near_readings, bearings)
+def test_a_reading_is_feasible_from_its_own_smallest_eps_on_and_not_before_120_cases(
+    binary: BinaryMap, reading: RangeReading, heading_rad: float
+) -> None:
+    distances = distance_transform(binary.occupied, outside=True)
+    needed = errors_needed(binary, distances, reading, heading_rad)
+    for error_cells in range(20):
+        assert np.array_equal(needed <= error_cells, feasible_at(binary, reading, heading_rad, error_cells))
+
+
+@settings(max_examples=120)
+@given(maps, st.lists(near_readings, min_size=1, max_size=6), bearings, shares)
+def test_for_a_share_each_cell_has_the_eps_at_which_so_many_are_feasible_120_cases(
+    binary: BinaryMap, several: list[RangeReading], heading_rad: float, share: float
+) -> None:
+    errors = errors_for_share(binary, several, heading_rad, share)
+    for error_cells in range(18):
+        rank = sum(feasible_at(binary, reading, heading_rad, error_cells).astype(int) for reading in several)
+        assert np.array_equal(errors <= error_cells, rank >= math.ceil(share * len(several) - 1e-9))
+
+
+@settings(max_examples=120)
+@given(maps, st.lists(readings, min_size=1, max_size=6), bearings, shares)
+def test_one_pass_finds_what_the_search_finds_120_cases(
+    binary: BinaryMap, several: list[RangeReading], heading_rad: float, share: float
+) -> None:
+    one_pass = smallest_error(binary, several, heading_rad, share)
+    search = smallest_error_by_search(binary, several, heading_rad, share)
+    if one_pass is None or search is None:
+        assert one_pass is search
+        return
+    assert one_pass.error_cells == search.error_cells
+    assert np.array_equal(one_pass.cells, search.cells)
+
+
+ROOM = BinaryMap(
+    GridSpec(RESOLUTION_M, 0.0, 0.0, (7, 9)),
+    np.pad(np.zeros((5, 7), np.bool_), 1, constant_values=True),
+)
+
+
+def measured(bearing_deg: float, range_cells: float) -> RangeReading:
+    return RangeReading(0, math.radians(bearing_deg), ReadingStatus.OK, range_cells * RESOLUTION_M)
+
+
+def test_readings_without_error_need_none_and_find_the_cell() -> None:
+    """From cell (2, 3): five cells to the wall ahead, four up, three back, two down."""
+    sweep = [measured(0, 5), measured(90, 4), measured(180, 3), measured(-90, 2)]
+    found = smallest_error(ROOM, sweep, 0.0)
+    assert found is not None
+    assert (found.error_cells, found.cells.tolist()) == (0, [[2, 3]])
+
+
+def test_a_reading_that_contradicts_the_others_costs_error_or_a_smaller_share() -> None:
+    sweep = [measured(0, 2), measured(90, 4), measured(180, 3), measured(-90, 2)]
+    strict, lenient = (smallest_error(ROOM, sweep, 0.0, share) for share in (1.0, 0.75))
+    assert strict is not None
+    assert lenient is not None
+    assert strict.error_cells == 1  # beside the lower wall: it is one cell from the ends of both beams along it
+    assert set(strict.cells[:, 0].tolist()) == {1}
+    assert (lenient.error_cells, lenient.cells.tolist()) == (0, [[2, 3], [2, 6]])
+
+
+def test_where_nothing_is_free_no_error_is_great_enough() -> None:
+    solid = BinaryMap(GridSpec(RESOLUTION_M, 0.0, 0.0, (3, 3)), np.ones((3, 3), np.bool_))
+    assert smallest_error(solid, [measured(0, 2)], 0.0) is None
+    assert smallest_error_by_search(solid, [measured(0, 2)], 0.0) is None
+
+
+def test_what_makes_no_sense_is_refused() -> None:
+    weak = RangeReading(0, 0.0, ReadingStatus.WEAK, None)
+    with pytest.raises(ValueError, match="at least one"):
+        smallest_error(ROOM, [], 0.0)
+    with pytest.raises(ValueError, match="share"):
+        smallest_error(ROOM, [measured(0, 2)], 0.0, 0.0)
+    for find in (smallest_error, smallest_error_by_search):
+        with pytest.raises(ValueError, match="weak"):
+            find(ROOM, [weak], 0.0)
