@@ -23,6 +23,7 @@ from robotd.server.health import Notifier, feed_watchdog, watchdog_s
 from robotd.server.server import Server
 
 EXIT_CONFIG = 78
+EXIT_INTERRUPTED = 130
 
 log = logging.getLogger(__name__)
 
@@ -44,6 +45,8 @@ def main(argv: list[str] | None = None) -> int:
         for one in _one_by_one(errors):
             log.error("%s", one)  # noqa: TRY400  # as above
         exit_code = 1
+    except* KeyboardInterrupt:  # before there was anything to stop
+        exit_code = EXIT_INTERRUPTED
     return exit_code
 
 

@@ -136,7 +136,7 @@ class Control:
         if arguments["robot_in_map"] is not None:
             if here is None:
                 raise MissionError("there is no odometry yet to tie to the map")
-            place.tie(msgspec.convert(arguments["robot_in_map"], Pose2), here)
+            place.tie(msgspec.convert(arguments["robot_in_map"], Pose2), here.in_odom)
         self._supervisor.use(place)
 
     async def start_recording(self, path: str | None) -> str:
@@ -148,7 +148,7 @@ class Control:
         file = self._recordings_dir / f"{now_ns() + wall_offset_ns()}.mcap" if path is None else Path(path)
         await self._compute.run("make directory", _make_directory, file.parent)
         self._journal.start(file)
-        self._recording_changed(str(file))
+        self._recording_changed()
         return str(file)
 
     async def stop_recording(self) -> str | None:
@@ -157,7 +157,7 @@ class Control:
         if path is None:
             return None
         finish = self._journal.stop()
-        self._recording_changed(None)
+        self._recording_changed()
         await self._compute.run("end recording", finish)
         return str(path)
 
@@ -186,8 +186,7 @@ class Control:
             raise MapError("no map is in use: make one, or load one")
         return place
 
-    def _recording_changed(self, path: str | None) -> None:
-        self._supervisor.recording = path
+    def _recording_changed(self) -> None:
         self._supervisor.publish(self._supervisor.status)
 
 

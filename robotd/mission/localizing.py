@@ -12,7 +12,7 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import RangeReading
-from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.localization.estimate import PoseEstimate, PoseState, Region
 from robotd.localization.localizer import Localizer
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import MissionPhase
@@ -40,18 +40,33 @@ async def run_localizing(
     finally:
         narrowed.cancel()
         await asyncio.wait((narrowed,))
-    if mission.tie and estimate.state is PoseState.LOCALIZED and estimate.best is not None:
-        place.map_from_odom = estimate.best @ sweep.in_odom.inverse()
+    if mission.tie:
+        _learn(place, sweep.in_odom, estimate, context.settings.localization.unique_within_m)
     return estimate
+
+
+def _learn(place: MapInUse, in_odom: Pose2, estimate: PoseEstimate, near_m: float) -> None:
+    """Tie odometry to the map where the robot was found; doubt the tie if it was found nowhere near that."""
+    if estimate.state is PoseState.LOCALIZED and estimate.best is not None:
+        place.tie(estimate.best, in_odom)
+    elif place.map_from_odom is not None:
+        believed = place.map_from_odom @ in_odom
+        place.is_doubted |= not any(_reaches(region, believed, near_m) for region in estimate.regions)
+
+
+def _reaches(region: Region, pose: Pose2, near_m: float) -> bool:
+    beside_m = max(region.x_min_m - pose.x_m, pose.x_m - region.x_max_m)
+    above_m = max(region.y_min_m - pose.y_m, pose.y_m - region.y_max_m)
+    return max(beside_m, above_m) <= near_m
 
 
 def _heading(place: MapInUse, mission: LocalizeMission, here: Odometry) -> float:
     if mission.heading_rad is not None:
         return wrap_rad(mission.heading_rad)
-    pose = place.pose_of(here)
-    if pose is None:
+    heading_rad = place.heading_of(here)
+    if heading_rad is None:
         raise MissionError("the heading is unknown: odometry is not tied to this map; give heading_rad")
-    return pose.heading_rad
+    return heading_rad
 
 
 class Narrowing:

@@ -29,14 +29,22 @@ class MapInUse:
     """Where the odometry frame lies on the map; None while nothing ties them."""
     generation: int = 0
     """Counts its changes since it came into use."""
+    is_doubted: bool = False
+    """Whether the tie is no longer believed: a robot that looked and did not find itself, or was out of sight of
+    its wheels, does not know where it is, though it may still know which way it looks."""
 
     def pose_of(self, odometry: Odometry) -> Pose2 | None:
-        """Return where odometry places the robot on the map, if anything ties them."""
-        return None if self.map_from_odom is None else self.map_from_odom @ odometry.in_odom
+        """Return where odometry places the robot on the map, if anything ties them that is believed."""
+        return None if self.map_from_odom is None or self.is_doubted else self.map_from_odom @ odometry.in_odom
 
-    def tie(self, map_from_robot: Pose2, odometry: Odometry) -> None:
-        """Note that the robot was at ``map_from_robot`` when odometry said ``odometry``."""
-        self.map_from_odom = map_from_robot @ odometry.in_odom.inverse()
+    def heading_of(self, odometry: Odometry) -> float | None:
+        """Return the robot's heading in the map frame [rad], if anything ever tied odometry to the map."""
+        return None if self.map_from_odom is None else (self.map_from_odom @ odometry.in_odom).heading_rad
+
+    def tie(self, map_from_robot: Pose2, in_odom: Pose2) -> None:
+        """Note that the robot was at ``map_from_robot`` when odometry placed it at ``in_odom``."""
+        self.map_from_odom = map_from_robot @ in_odom.inverse()
+        self.is_doubted = False
 
     def grid_with(self, sweep: Sweep) -> tuple[OccupancyGrid, NDArray[np.intp]]:
         """Return the grid with a sweep laid in where odometry places it, and the changed cells as flat indices.

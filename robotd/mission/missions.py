@@ -82,7 +82,7 @@ async def _begin_map(context: MissionContext, mission: MapMission, report: Repor
         raise MissionError(f"these stops do not fit on one map: {error}") from error
     here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
     place = MapInUse(f"new-{report.mission_id}", mission.name, grid, None)
-    place.tie(mission.start, here)
+    place.tie(mission.start, here.in_odom)
     return place
 
 

@@ -38,12 +38,20 @@ class Supervisor:
         robot: Robot,
         make_context: Callable[[Callable[[Event], None]], MissionContext],
         note: Callable[[Event, MapInUse | None], None],
+        recording: Callable[[], str | None] = lambda: None,
     ) -> None:
+        """Prepare; nothing happens before :meth:`run`.
+
+        Args:
+            robot: what to watch over.
+            make_context: makes what missions work with, given where to publish.
+            note: told every event, and the map in use at that moment, before the world is.
+            recording: says which file is being recorded to.
+        """
         self.robot = robot
         self.events: Broadcast[Event] = Broadcast()
         self.place: MapInUse | None = None
-        self.recording: str | None = None
-        """File being recorded to, as shown in the status."""
+        self._recording = recording
         self._context = make_context(self.publish)
         self._note = note
         self._mode = Mode.DISARMED
@@ -75,7 +83,7 @@ class Supervisor:
             mission_id=self._mission_id if self._mode in UNDER_WAY else None,
             map_id=self.place.map_id if self.place else None,
             map_name=self.place.name if self.place else None,
-            recording=self.recording,
+            recording=self._recording(),
         )
 
     @property
@@ -217,7 +225,8 @@ class Supervisor:
 
     def _require(self, occasion: Occasion) -> None:
         if next_mode(self._mode, occasion) is None:
-            raise MissionError(f"cannot {occasion.replace('_', ' ')} while {self._mode}: {self._reason}")
+            why = f": {self._reason}" if self._mode in {Mode.DISARMED, Mode.FAULT} else ""
+            raise MissionError(f"cannot {occasion.replace('_', ' ')} while {self._mode}{why}")
 
     def _apply(self, occasion: Occasion, reason: str) -> None:
         mode = next_mode(self._mode, occasion)
@@ -264,6 +273,8 @@ class Supervisor:
                 self._device_changed(status)
 
     def _device_changed(self, status: DeviceStatus) -> None:
+        if status.name == self.robot.drive.name and status.link is LinkState.ABSENT:
+            self._doubt()
         if status.faults and self._mode is not Mode.FAULT:
             self.halt(Occasion.FAULT, f"{status.name}: {', '.join(status.faults)}")
         elif self._mode in {Mode.DISARMED, Mode.FAULT}:
@@ -274,6 +285,14 @@ class Supervisor:
             self.halt(Occasion.STOP, f"{status.name} is no longer armed")
         else:
             self.publish(self.status)
+
+    def _doubt(self) -> None:
+        """Believe odometry no longer: nobody saw where the base went while its line was down."""
+        if self.place is None or self.place.map_from_odom is None or self.place.is_doubted:
+            return
+        self.place.is_doubted = True
+        self._predictor.said = None
+        self.publish(unlocalized(now_ns(), self.place.map_id))
 
     async def _follow_odometry(self) -> None:
         with self.robot.drive.odometry.subscribe() as stream:

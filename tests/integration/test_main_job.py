@@ -1,5 +1,6 @@
 """The main job, end to end, in memory: map a room, be found in it, say so when that is not possible."""
 
+import asyncio
 import math
 from statistics import median
 
@@ -9,6 +10,7 @@ import pytest
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
+from robotd.hardware.devices.device import LinkState
 from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import Event, MapChanged, MissionPhase, SweepDone, SweepProgress
 from robotd.mission.map_in_use import MapInUse
@@ -16,7 +18,7 @@ from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
-from tests.integration.conftest import Live, Living
+from tests.integration.conftest import Live, Living, until_ready
 
 pytestmark = pytest.mark.slow
 
@@ -111,6 +113,40 @@ async def test_a_robot_taken_off_its_map_is_lost(live: Live) -> None:
         found = final_estimates(await it.done(LocalizeMission(0.0)))[-1]
     assert found.state is PoseState.LOST
     assert found.best is None
+
+
+async def test_a_robot_that_is_lost_does_not_drive_until_it_is_found(live: Live) -> None:
+    robot = SimulatedRobot(load_world("office"), seed=1)
+    async with live(robot) as it:
+        await it.done(MapMission("office", robot.stops_m, robot.start))
+        here = robot.truth
+        lost = final_estimates(await it.done(LocalizeMission(here.heading_rad + 0.5)))[-1]
+        assert lost.state is PoseState.LOST
+        _, end = await it.do(DriveMission(*robot.probes_m[0]))
+        assert end.phase is MissionPhase.FAILED
+        assert "not localized" in end.message
+        assert robot.truth.distance_m(here) < 0.01
+        found = final_estimates(await it.done(LocalizeMission(robot.truth.heading_rad)))[-1]
+        assert found.state is PoseState.LOCALIZED
+        await it.done(DriveMission(*robot.probes_m[0]))
+
+
+async def test_a_base_that_was_out_of_sight_is_not_believed(live: Live) -> None:
+    robot = SimulatedRobot(load_world("office"), seed=1)
+    async with live(robot) as it:
+        await it.done(MapMission("office", robot.stops_m[:2], robot.start))
+        robot.boards["drive"].reboot(4711)
+        async with asyncio.timeout(10.0):
+            with it.daemon.robot.drive.status_changes.subscribe() as changes:
+                while (await changes.get()).link is not LinkState.ABSENT:
+                    pass
+        await until_ready(it.daemon)
+        await it.daemon.control.arm()
+        _, end = await it.do(DriveMission(*robot.stops_m[0]))
+        assert "not localized" in end.message
+        found = final_estimates(await it.done(LocalizeMission()))[-1]
+        assert found.state is PoseState.LOCALIZED
+        await it.done(DriveMission(*robot.stops_m[0]))
 
 
 async def test_an_unreachable_place_is_said_at_once_and_nothing_moves(live: Live) -> None:

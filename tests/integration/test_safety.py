@@ -180,7 +180,7 @@ def use_blank_map(rig: Rig) -> None:
     grid = OccupancyGrid(GridSettings().spec_covering(((start.x_m, start.y_m),), 3.0))
     place = MapInUse("blank", "blank", grid, None)
     assert here is not None
-    place.tie(start, here)
+    place.tie(start, here.in_odom)
     rig.daemon.supervisor.use(place)
 
 

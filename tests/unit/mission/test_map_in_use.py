@@ -52,7 +52,7 @@ def test_a_sweep_needs_to_know_where_it_was_taken() -> None:
 def test_a_tie_puts_the_robot_where_it_is_said_to_be_and_carries_it_on() -> None:
     here = place(None)
     assert here.pose_of(at(1.0)) is None
-    here.tie(Pose2(2.0, 3.0, math.pi / 2), at(1.0))
+    here.tie(Pose2(2.0, 3.0, math.pi / 2), at(1.0).in_odom)
     assert here.pose_of(at(1.0)) == Pose2(2.0, 3.0, math.pi / 2)
     moved = here.pose_of(at(1.5))
     assert moved is not None
