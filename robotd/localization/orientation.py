@@ -1,0 +1,197 @@
+"""Heading first, then translation: separated orientation ([BrownDonald2000]_ sec. 2.2.3).
+
+In uncluttered rooms most walls run along two axes at right angles. The readings show those axes in the robot's frame,
+the map shows them in its own; where both do so clearly, the heading is the difference, up to quarter turns: four
+headings instead of the hundreds of theta slices. Choose it for rooms and corridors of such walls. It fails where walls
+run in many directions or where clutter hides them, and it says so: then no axis holds the share asked for, and
+localization must try theta slices instead.
+
+Directions of walls are those of lines fitted to the surroundings of each hit, and of each wall cell at the outside of
+an obstacle. Each counts modulo 90 degrees, by the length of wall it stands for and by the fourth power of how straight
+it is, so that corners count little.
+
+Measured with 300 readings, sigma 2 cm, 5 % outliers, cut-off 2.1 or 6 m: in the three simulated rooms the axis of the
+readings held a share of 0.63 at least and was off by at most 1.8 degrees, 0.4 in the mean; among short walls in random
+directions it held 0.39 at most, in a round room 0.15.
+"""
+
+import enum
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.angles import wrap_rad
+from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.grid.footprints import dilate, disk_footprint
+
+QUARTER_TURN_RAD = math.pi / 2.0
+_HISTOGRAM_BINS = 180
+_FIT_POINTS_MIN = 3
+_STRAIGHTNESS_POWER = 4
+
+
+@dataclass(frozen=True, slots=True)
+class OrientationSettings:
+    """What counts as a dominant axis."""
+
+    window_m: float = 0.3
+    """Radius of the surroundings of a point that a line is fitted to."""
+    tolerance_rad: float = 0.0873
+    """Walls within so much of an axis belong to it."""
+    share_min: float = 0.5
+    """Share of all walls, by length and straightness, that the dominant axis must hold; evenly spread walls give an
+    axis ``2 tolerance_rad`` in a quarter turn, 0.11."""
+    hits_min: int = 24
+    """With fewer hits than this nothing is said."""
+
+    def __post_init__(self) -> None:
+        """Refuse impossible values."""
+        if not self.window_m > 0.0:
+            raise ValueError(f"window_m must be positive, got {self.window_m}")
+        if not 0.0 < self.tolerance_rad < QUARTER_TURN_RAD / 2.0:
+            raise ValueError(f"tolerance_rad must lie in (0, pi / 4), got {self.tolerance_rad}")
+        if not 0.0 < self.share_min <= 1.0:
+            raise ValueError(f"share_min must lie in (0, 1], got {self.share_min}")
+        if self.hits_min < 1:
+            raise ValueError(f"hits_min must be at least 1, got {self.hits_min}")
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """The direction that most walls run in, or at right angles to."""
+
+    angle_rad: float
+    """In ``[0, pi/2)``."""
+    share: float
+    """Of all walls, 0 to 1."""
+
+
+class Verdict(enum.StrEnum):
+    """Whether separated orientation may be used."""
+
+    USABLE = "usable"
+    FEW_HITS = "too few readings hit anything"
+    READINGS_CLUTTERED = "the walls that the readings show run along no dominant axis"
+    MAP_CLUTTERED = "the walls of the map run along no dominant axis"
+
+
+@dataclass(frozen=True, slots=True)
+class SeparatedOrientation:
+    """The headings to try, or why there are none."""
+
+    verdict: Verdict
+    headings_rad: tuple[float, ...]
+    """Four, a quarter turn apart, in ``[-pi, pi)`` ascending; none unless usable."""
+    support: float
+    """Share of the walls on the dominant axis, of the map's or of the readings', whichever is less."""
+
+
+def separated_orientation(
+    readings: Sequence[RangeReading], map_axis: Axis | None, settings: OrientationSettings
+) -> SeparatedOrientation:
+    """Return the headings under which the walls that the readings show run as those of the map do.
+
+    Args:
+        readings: of one stop, in the robot's frame; only hits count.
+        map_axis: of :func:`map_axis`, once per map.
+        settings: what counts as dominant.
+    """
+    if map_axis is None or map_axis.share < settings.share_min:
+        return SeparatedOrientation(Verdict.MAP_CLUTTERED, (), map_axis.share if map_axis else 0.0)
+    if sum(reading.status is ReadingStatus.OK for reading in readings) < settings.hits_min:
+        return SeparatedOrientation(Verdict.FEW_HITS, (), 0.0)
+    axis = readings_axis(readings, settings)
+    support = min(map_axis.share, axis.share) if axis else 0.0
+    if axis is None or axis.share < settings.share_min:
+        return SeparatedOrientation(Verdict.READINGS_CLUTTERED, (), support)
+    turn = map_axis.angle_rad - axis.angle_rad
+    headings = sorted(wrap_rad(turn + quarter * QUARTER_TURN_RAD) for quarter in range(4))
+    return SeparatedOrientation(Verdict.USABLE, tuple(headings), support)
+
+
+def readings_axis(readings: Sequence[RangeReading], settings: OrientationSettings) -> Axis | None:
+    """Return the dominant axis of the walls that were hit, in the robot's frame; None if no line can be fitted.
+
+    A hit counts with its range, as does the piece of wall between it and the next one. O(hits^2).
+    """
+    hits = [reading for reading in readings if reading.status is ReadingStatus.OK]
+    ranges = np.array([reading.range_m for reading in hits], np.float64)
+    bearings = np.array([reading.bearing_rad for reading in hits])
+    origins = np.array([(reading.origin_x_m, reading.origin_y_m) for reading in hits]).reshape(-1, 2)
+    points = origins + ranges[:, None] * np.stack((np.cos(bearings), np.sin(bearings)), axis=1)
+    offsets = points[None, :, :] - points[:, None, :]
+    near = np.hypot(offsets[..., 0], offsets[..., 1]) <= settings.window_m
+    x, y = np.moveaxis(np.where(near[..., None], offsets, 0.0), -1, 0)
+    sums = np.array([near, x, y, x * x, x * y, y * y]).sum(axis=2)
+    angles, straightness = _lines(sums)
+    return _dominant(angles, straightness**_STRAIGHTNESS_POWER * ranges, settings.tolerance_rad)
+
+
+def map_axis(walls: NDArray[np.bool_], resolution_m: float, settings: OrientationSettings) -> Axis | None:
+    """Return the dominant axis of a map's walls, in its frame; None if no line can be fitted.
+
+    Args:
+        walls: ``bool[rows, cols]``, cells known to be occupied. Unknown ones are no walls: their edge is where seeing
+            ended.
+        resolution_m: side of one cell.
+        settings: what counts as dominant.
+    """
+    # Solid obstacles have the directions of their outlines.
+    outline = walls & dilate(~walls, disk_footprint(1.0), outside=True)
+    window_cells = max(1, round(settings.window_m / resolution_m))
+    rows, cols = np.argwhere(outline).T
+    sums = np.zeros((6, len(rows)))
+    around = np.pad(outline, window_cells)
+    for y, x in np.argwhere(disk_footprint(window_cells)) - window_cells:
+        near = around[rows + window_cells + y, cols + window_cells + x]
+        sums += np.array([[1.0], [x], [y], [x * x], [x * y], [y * y]]) * near
+    angles, straightness = _lines(sums)
+    return _dominant(angles, straightness**_STRAIGHTNESS_POWER, settings.tolerance_rad)
+
+
+def _lines(sums: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Fit lines to sets of points by total least squares.
+
+    Args:
+        sums: ``float64[6, n]``, over each set, of 1, x, y, x x, x y and y y.
+
+    Returns:
+        Directions ``float64[n]``, and how straight they are, from 0 (a blob) to 1 (a line).
+    """
+    n, x, y = sums[:3]
+    xx, xy, yy = sums[3:] - np.array([x * x, x * y, y * y]) / n
+    length = np.hypot(xx - yy, 2.0 * xy)
+    total = xx + yy
+    enough = (n >= _FIT_POINTS_MIN) & (total > 0.0)
+    straightness = np.divide(length, total, out=np.zeros_like(total), where=enough)
+    return np.arctan2(2.0 * xy, xx - yy) / 2.0, straightness
+
+
+def _dominant(angles_rad: NDArray[np.float64], weights: NDArray[np.float64], tolerance_rad: float) -> Axis | None:
+    """Return the axis, modulo 90 degrees, with the most weight within the tolerance of it."""
+    total = float(weights.sum())
+    if total == 0.0:
+        return None
+    folded = np.mod(angles_rad, QUARTER_TURN_RAD)
+    bin_rad = QUARTER_TURN_RAD / _HISTOGRAM_BINS
+    bins = np.minimum((folded / bin_rad).astype(np.intp), _HISTOGRAM_BINS - 1)
+    histogram = np.bincount(bins, weights, _HISTOGRAM_BINS)
+    centres = np.linspace(0.0, QUARTER_TURN_RAD, _HISTOGRAM_BINS, endpoint=False) + bin_rad / 2.0
+    held = (np.abs(_apart(centres[:, None], centres)) <= tolerance_rad) @ histogram
+    best = float(centres[held.argmax()])
+    off = _apart(folded, best)
+    # What the fullest bins hold may lie half a bin beyond the tolerance.
+    near = np.abs(off) <= tolerance_rad + bin_rad
+    angle = math.fmod(best + float(np.average(off[near], weights=weights[near])) + QUARTER_TURN_RAD, QUARTER_TURN_RAD)
+    within = np.abs(_apart(folded, angle)) <= tolerance_rad
+    return Axis(angle, float(weights[within].sum()) / total)
+
+
+def _apart(angles_rad: NDArray[np.float64], from_rad: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    """Return how far angles are from others modulo 90 degrees, in ``[-45, 45)`` degrees."""
+    half = QUARTER_TURN_RAD / 2.0
+    apart: NDArray[np.float64] = np.mod(angles_rad - from_rad + half, QUARTER_TURN_RAD) - half
+    return apart
