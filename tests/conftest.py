@@ -4,6 +4,7 @@ import asyncio
 import gc
 import inspect
 import os
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,8 @@ import pytest
 
 from robotd.core.clock import VirtualClockLoop
 
+_TEST_FILES = f"{tempfile.gettempdir()}/pytest-of-"
+"""Where ``tmp_path`` is; libraries may keep files of their own open elsewhere."""
 DATA_DIR = Path(os.environ.get("ROBOTD_DATA", Path(__file__).parents[2] / "shared" / "data"))
 
 
@@ -58,7 +61,7 @@ def _open_descriptors() -> set[tuple[str, str]]:
             target = str(link.readlink())
         except OSError:
             continue
-        if target.startswith(("/dev/pts", "/dev/ptmx", "socket:", "pipe:", "/tmp", "anon_inode:[event")):
+        if target.startswith(("/dev/pts", "/dev/ptmx", "socket:", "pipe:", _TEST_FILES, "anon_inode:[event")):
             found.add((link.name, target))
     return found
 

@@ -199,7 +199,11 @@ def test_the_quick_start_can_be_typed_from_its_first_line_to_its_last(tmp_path: 
 def test_what_make_demo_runs_shows_the_main_job(tmp_path: Path) -> None:
     """A smaller room with fewer stops; the environment that ``make demo`` makes first needs a network."""
     recipe = subprocess.run(
-        ["make", "-n", "-o", ".venv/.demo", "demo"], check=True, cwd=ROOT, capture_output=True, text=True
+        ["make", "-n", "--no-print-directory", "-o", ".venv/.demo", "demo"],
+        check=True,
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
     )
     assert recipe.stdout.strip() == ".venv/bin/robotctl demo room laboratory --seed 1 --out demo"
     with terminals(tmp_path) as person:
