@@ -55,7 +55,7 @@ def directional_flood(
     against the direction of the chain, out to its length. The numbered cells are the convolution of the sources with
     the chain, and what a shorter piece of the chain numbers are the numbers less than its length.
 
-    O(cells), however long the chain is. [BrownDonald2000]_ sec. 2.3.2, figs. 16, 19.
+    O(cells), however long the chain is, if it is straight (:func:`is_ray`). [BrownDonald2000]_ sec. 2.3.2, fig. 19.
 
     Args:
         sources: ``bool[rows, cols]``.
@@ -67,21 +67,36 @@ def directional_flood(
     Raises:
         ValueError: the chain is none, or the grid has more than 4096 cells along its dominant axis.
     """
-    steps = np.diff(chain, axis=0)
-    _refuse_if_no_chain(chain, steps)
+    if not _is_chain(chain):
+        raise ValueError("a chain begins at (0, 0), goes on by one cell along one axis, and by at most one aside")
     # Seen so that the chain runs along +col.
-    along, aside = (0, 1) if _is_straight(steps[:, 0]) and not _is_straight(steps[:, 1]) else (1, 0)
-    forward = int(steps[0, along]) if len(steps) else 1
+    along = _dominant_axis(chain)
+    forward = int(chain[1, along]) if len(chain) > 1 else 1
     seen = (sources if along == 1 else sources.T)[:, ::forward]
-    numbers = _flood_along_cols(seen, chain[:, aside], outside=outside)[:, ::forward]
+    numbers = _flood_along_cols(seen, chain[:, 1 - along], outside=outside)[:, ::forward]
     return np.ascontiguousarray(numbers if along == 1 else numbers.T)
 
 
-def _refuse_if_no_chain(chain: NDArray[np.intp], steps: NDArray[np.intp]) -> None:
-    if not len(chain) or chain[0].any():
-        raise ValueError("a chain begins at (0, 0)")
-    if np.abs(steps).max(initial=0) > 1 or not (_is_straight(steps[:, 0]) or _is_straight(steps[:, 1])):
-        raise ValueError("a chain goes on by one cell along one axis, and by at most one aside")
+def is_ray(offsets: NDArray[np.intp]) -> bool:
+    """Return whether offsets ``intp[n, 2]`` are those of a straight line from the centre of cell (0, 0).
+
+    The chains that are flooded in O(cells); others are flooded too, but may take as long as the convolution.
+    """
+    if not _is_chain(offsets):
+        return False
+    low, high = _slope_bounds(offsets[:, 1 - _dominant_axis(offsets)])
+    return low <= high
+
+
+def _is_chain(offsets: NDArray[np.intp]) -> bool:
+    steps = np.diff(offsets, axis=0)
+    begins = len(offsets) > 0 and not offsets[0].any()
+    straight = _is_straight(steps[:, 0]) or _is_straight(steps[:, 1])
+    return begins and straight and bool(np.abs(steps).max(initial=0) <= 1)
+
+
+def _dominant_axis(chain: NDArray[np.intp]) -> int:
+    return 1 if _is_straight(np.diff(chain[:, 1])) else 0
 
 
 def _is_straight(steps: NDArray[np.intp]) -> bool:
@@ -94,7 +109,7 @@ def _flood_along_cols(sources: NDArray[np.bool_], aside: NDArray[np.intp], *, ou
     rows, cols = sources.shape
     if cols > CELLS_MAX:
         raise ValueError(f"expected at most {CELLS_MAX} cells along the flood, got {cols}")
-    drift = _slope(aside[:cols]) * np.arange(cols)
+    drift = sum(_slope_bounds(aside[:cols])) / 2.0 * np.arange(cols)
     anchors = np.ceil(drift).astype(np.intp)
     lines = _Lines(sources, anchors, outside=outside)
     # The edge itself is a source a column beyond the last one, or there is none.
@@ -107,12 +122,12 @@ def _flood_along_cols(sources: NDArray[np.bool_], aside: NDArray[np.intp], *, ou
     return numbers
 
 
-def _slope(aside: NDArray[np.intp]) -> float:
-    """Return a slope whose pixelized line this is, as well as rounding lets one."""
+def _slope_bounds(aside: NDArray[np.intp]) -> tuple[float, float]:
+    """Return the least and the greatest slope with which a line from the centre of a cell runs through these cells."""
     if len(aside) < 2:
-        return 0.0
+        return 0.0, 0.0
     steps = np.arange(1, len(aside))
-    return float((((aside[1:] - 0.5) / steps).max() + ((aside[1:] + 0.5) / steps).min()) / 2.0)
+    return float(((aside[1:] - 0.5) / steps).max()), float(((aside[1:] + 0.5) / steps).min())
 
 
 class _Lines:

@@ -12,7 +12,7 @@ up to 23 it differs only within one cell of the boundary of D.
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.directional_flood import directional_flood
+from robotd.grid.directional_flood import directional_flood, is_ray
 from robotd.grid.floods import UNREACHED, Metric, grown
 from robotd.grid.translation import translated
 from robotd.localization.probe import Probe
@@ -51,9 +51,9 @@ def flooded_blocked_set(occupied: NDArray[np.bool_], body: NDArray[np.intp]) -> 
         body: of a :class:`~robotd.localization.probe.Probe`: the robot's own cell, and then the chain of a ray,
             wherever that begins.
     """
-    if len(body) == 1:
-        return occupied.copy()
-    start = body[1]
-    numbers = directional_flood(occupied, body[1:] - start, outside=True)
+    # The beam begins in the robot's own cell, or else in the next cell of the body.
+    ray = body if is_ray(body) else body[1:]
+    start = ray[0]
+    numbers = directional_flood(occupied, ray - start, outside=True)
     blocked: NDArray[np.bool_] = occupied | translated(numbers != UNREACHED, int(start[0]), int(start[1]), outside=True)
     return blocked

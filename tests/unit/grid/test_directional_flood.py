@@ -10,7 +10,7 @@ from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
 from robotd.grid import directional_flood as module
-from robotd.grid.directional_flood import directional_flood
+from robotd.grid.directional_flood import directional_flood, is_ray
 from robotd.grid.ray import ray_offsets
 
 sources_of_any_shape = hnp.arrays(
@@ -91,6 +91,16 @@ def test_the_work_does_not_grow_with_the_length(
     monkeypatch.setattr(module._Lines, "_set_column", counted)
     directional_flood(np.zeros((256, 256), np.bool_), ray_offsets(bearing_rad, min(length_cells, 600.0)))
     assert len(moves) <= 9 * 256
+
+
+@given(bearings, st.floats(0.0, 300.0))
+def test_what_is_drawn_from_the_centre_of_a_cell_is_a_ray(bearing_rad: float, length_cells: float) -> None:
+    assert is_ray(ray_offsets(bearing_rad, length_cells))
+
+
+def test_what_bends_is_no_ray() -> None:
+    assert not is_ray(np.array([[0, 0], [0, 1], [0, 2], [1, 3], [2, 4]]))
+    assert not is_ray(np.array([[0, 0], [2, 3], [2, 4]]))
 
 
 def test_what_is_no_chain_is_refused() -> None:
