@@ -68,20 +68,28 @@ def off_rad(one_rad: float, other_rad: float, modulo_rad: float) -> float:
     return abs((one_rad - other_rad + modulo_rad / 2.0) % modulo_rad - modulo_rad / 2.0)
 
 
-@pytest.mark.parametrize("cut_off_m", [2.1, 6.0])
+@pytest.mark.parametrize(("cut_off_m", "usable_share"), [(2.1, 0.6), (6.0, 1.0)])
 @pytest.mark.parametrize("name", ["office", "laboratory", "corridor"])
-def test_in_simulated_rooms_one_of_the_four_headings_is_right_within_two_degrees(name: str, cut_off_m: float) -> None:
+def test_in_simulated_rooms_one_of_the_four_headings_is_right_within_two_degrees(
+    name: str, cut_off_m: float, usable_share: float
+) -> None:
+    """With the short cut-off there are places where too little wall is in sight; there it says so."""
     world, turn = load_world(name), 0.35
     axis = axis_of(drawn(world.walls, turn).occupied)
     places = [(world.start.x_m, world.start.y_m), *world.stops_m, *world.probes_m]
+    usable = 0
     for number, (x_m, y_m) in enumerate(places):
         heading = -3.0 + 0.7 * number
         sweep = swept(world.walls, x_m, y_m, heading, cut_off_m=cut_off_m, seed=number)
         result = separated_orientation(sweep, axis, SETTINGS)
+        if result.verdict is Verdict.LITTLE_IN_SIGHT:
+            continue
+        usable += 1
         assert (result.verdict, len(result.headings_rad)) == (Verdict.USABLE, 4)
+        assert result.support > 0.6
         errors = [off_rad(found, heading + turn, math.tau) for found in result.headings_rad]
         assert min(errors) < math.radians(2.0)
-        assert result.support > 0.6
+    assert usable >= usable_share * len(places)
 
 
 @pytest.mark.parametrize("turn_deg", [0, 1, 20, 45, 69, 89.7])
@@ -156,17 +164,18 @@ def test_solid_obstacles_have_the_directions_of_their_outlines() -> None:
     assert off_rad(axis.angle_rad, 0.0, math.pi / 2.0) < math.radians(0.5)
 
 
-def test_few_hits_or_none_and_a_map_without_walls_are_no_reason_to_guess() -> None:
-    sweep = swept(load_world("office").walls, 1.6, 1.4, 0.0, count=20)
-    assert separated_orientation(sweep, Axis(0.0, 1.0), SETTINGS).verdict is Verdict.FEW_HITS
+def test_little_in_sight_and_a_map_without_walls_are_no_reason_to_guess() -> None:
+    sweep = swept(load_world("laboratory").walls, 3.0, 4.0, 0.0, cut_off_m=0.5)
+    for readings in (sweep, sweep[:1], []):
+        assert separated_orientation(readings, Axis(0.0, 1.0), SETTINGS).verdict is Verdict.LITTLE_IN_SIGHT
     assert readings_axis([], SETTINGS) is None
     assert map_axis(np.zeros((5, 5), np.bool_), RESOLUTION_M, SETTINGS) is None
     assert separated_orientation(sweep, None, SETTINGS).verdict is Verdict.MAP_CLUTTERED
 
 
 @pytest.mark.parametrize(
-    ("field", "value"), [("window_m", 0.0), ("tolerance_rad", 0.8), ("share_min", 1.1), ("hits_min", 0)]
+    ("field", "value"), [("window_m", 0.0), ("tolerance_rad", 0.8), ("share_min", 1.1), ("walls_min_m", 0.0)]
 )
 def test_impossible_settings_are_refused(field: str, value: float) -> None:
     with pytest.raises(ValueError, match=field):
-        OrientationSettings(**{field: value})  # type: ignore[arg-type]  # one field at a time, whatever its type
+        OrientationSettings(**{field: value})
