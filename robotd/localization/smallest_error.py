@@ -51,7 +51,9 @@ def smallest_error(
 ) -> SmallestError | None:
     """Return the smallest eps in one pass, None if no pose explains enough readings at any.
 
-    O(n^2 m), without the search's factor O(log n). Arguments as of :func:`errors_for_share`.
+    O(n^2 m), without the search's factor O(log n) and whatever the ranges are; but at 256 x 256 and small eps the
+    search by shifted bitmaps is some ten times faster in NumPy (60 readings: 60 ms against 700). What only the one pass
+    gives is the smallest eps of every cell. Arguments as of :func:`errors_for_share`.
     """
     errors = errors_for_share(binary, readings, heading_rad, share)
     least = float(errors.min())
