@@ -3,116 +3,36 @@
 import asyncio
 import math
 import random
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, suppress
+from contextlib import suppress
 from typing import TypeVar
 
 import pytest
 
 from firmware_proto.common import Arm, BoardState, Fault
-from firmware_proto.framing import Deframer, RawFrame, encode_frame
 from firmware_proto.pantilt import Aim, AimReport, Motion
+from firmware_proto.schema import REPLY
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
-from robotd.hardware.devices.board_device import BoardDevice
 from robotd.hardware.devices.board_drive import BoardDrive
 from robotd.hardware.devices.board_pantilt import BoardPanTilt
 from robotd.hardware.devices.board_rangefinder import BoardRangefinder
-from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
+from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
-from robotd.hardware.transport.transport import Connect, Transport
 from robotd.sim.head import HeadSettings
 from robotd.sim.noise import NOISELESS
-from robotd.sim.robot import SimSettings, SimulatedRobot
-from robotd.sim.runtime import connectors
-from robotd.sim.world import load_world
+from robotd.sim.robot import SimSettings
+from tests.unit.hardware.conftest import lose
+from tests.unit.hardware.devices.conftest import nowhere, rig
 
 T = TypeVar("T")
 MS = 1_000_000
-
-
-class Losing:
-    """A transport on which frames of one type from the board are lost, and stops garbled, as long as a count lasts."""
-
-    def __init__(self, line: Transport) -> None:
-        self.name = line.name
-        self.losing: dict[int, int] = {}
-        self.garbled_stops = 0
-        self._line = line
-        self._deframer = Deframer()
-
-    def _keeps(self, frame: RawFrame) -> bool:
-        left = self.losing.get(frame.type, 0)
-        self.losing[frame.type] = max(0, left - 1)
-        return left == 0
-
-    async def read(self) -> bytes:
-        while True:
-            frames = self._deframer.feed(await self._line.read())
-            if kept := b"".join(encode_frame(frame) for frame in frames if self._keeps(frame)):
-                return kept
-
-    def write(self, data: bytes) -> None:
-        self._line.write(data)
-
-    def write_urgent(self, data: bytes) -> None:
-        self._line.write_urgent(data[:-3] if self.garbled_stops else data)
-        self.garbled_stops = max(0, self.garbled_stops - 1)
-
-    def close(self) -> None:
-        self._line.close()
-
-
-class Rig:
-    """A simulated robot and the three devices that talk to it."""
-
-    def __init__(self, robot: SimulatedRobot, connect: dict[str, Connect], pantilt: PanTiltSettings) -> None:
-        self.robot = robot
-        self.lines: dict[str, Losing] = {}
-        self._connect = connect
-        self.drive = BoardDrive(DriveSettings(), self._wiring("drive"))
-        self.pantilt = BoardPanTilt(pantilt, self._wiring("pantilt"))
-        self.rangefinder = BoardRangefinder(RangefinderSettings(range_bias_m=0.01), self._wiring("rangefinder"))
-        self.devices: tuple[BoardDevice, ...] = (self.drive, self.pantilt, self.rangefinder)
-
-    def _wiring(self, device: str) -> Wiring:
-        async def connect() -> Transport:
-            self.lines[device] = Losing(await self._connect[device]())
-            return self.lines[device]
-
-        return Wiring(connect, NoTap(), random.Random(device))
-
-    async def wait(self, device: Device, link: LinkState) -> DeviceStatus:
-        with device.status_changes.subscribe() as changes:
-            while device.status.link is not link:
-                await changes.get()
-        return device.status
-
-
-@asynccontextmanager
-async def rig(
-    *, armed: bool = True, sim: SimSettings | None = None, pantilt: PanTiltSettings | None = None
-) -> AsyncIterator[Rig]:
-    robot = SimulatedRobot(load_world("laboratory"), seed=1, settings=sim or SimSettings(noise=NOISELESS))
-    async with connectors(robot) as connect:
-        rig = Rig(robot, connect, pantilt or PanTiltSettings())
-        tasks = [asyncio.create_task(device.run()) for device in rig.devices]
-        for device in rig.devices:
-            await rig.wait(device, LinkState.READY)
-            if armed:
-                await device.arm()
-        yield rig
-        for task in tasks:
-            task.cancel()
-            with suppress(asyncio.CancelledError):
-                await task
 
 
 async def next_of(broadcast: Broadcast[T]) -> T:
@@ -133,10 +53,6 @@ async def drive_for(drive: BoardDrive, twist: Twist2, seconds: float) -> Odometr
             if now.twist.is_zero:
                 return now
     raise AssertionError
-
-
-async def nowhere() -> Transport:
-    raise TransportError("nowhere")
 
 
 # Every device
@@ -245,7 +161,7 @@ async def test_a_status_is_published_only_when_something_changed() -> None:
 
 async def test_an_arm_that_got_lost_leaves_no_trace_of_a_lie() -> None:
     async with rig(armed=False) as r:
-        r.lines["drive"].losing[Arm.TYPE | 0x80] = 10**9
+        r.lines["drive"].from_board = lose(10**9, Arm.TYPE | REPLY)
         with pytest.raises(LinkTimeout):
             await r.drive.arm()
         assert r.drive.status.armed == (r.robot.boards["drive"].state is BoardState.ARMED)
@@ -344,7 +260,7 @@ async def test_aiming_outside_the_limits_or_disarmed_is_refused() -> None:
 async def test_a_lost_motion_done_is_made_up_for_by_the_next_report() -> None:
     async with rig() as r:
         await r.pantilt.aim(0.0, 0.0, timeout_s=5.0)
-        r.lines["pantilt"].losing[AimReport.TYPE] = 2
+        r.lines["pantilt"].from_board = lose(2, AimReport.TYPE)
         began_ns = now_ns()
         await r.pantilt.aim(0.01, 0.0, timeout_s=5.0)
         assert now_ns() - began_ns < 130 * MS
@@ -352,7 +268,7 @@ async def test_a_lost_motion_done_is_made_up_for_by_the_next_report() -> None:
 
 async def test_without_any_report_the_head_is_asked() -> None:
     async with rig() as r:
-        r.lines["pantilt"].losing[AimReport.TYPE] = 10**9
+        r.lines["pantilt"].from_board = lose(10**9, AimReport.TYPE)
         aim = await r.pantilt.aim(0.5, 0.0, timeout_s=5.0)
         assert aim.pan_rad == pytest.approx(0.5, abs=0.001)
 
@@ -410,7 +326,7 @@ async def test_three_hundred_aims_cost_no_more_than_the_head_needs() -> None:
 
 async def test_a_repeated_aim_turns_the_head_once() -> None:
     async with rig() as r:
-        r.lines["pantilt"].losing[Aim.TYPE | 0x80] = 1
+        r.lines["pantilt"].from_board = lose(1, Aim.TYPE | REPLY)
         await r.pantilt.aim(0.5, 0.0, timeout_s=5.0)
         assert dict(r.pantilt.status.counters)["retries"] == 1
         assert r.robot.boards["pantilt"]._aim_seq == 0  # type: ignore[attr-defined]  # a PanTiltBoard

@@ -5,19 +5,14 @@ from typing import Any
 
 import pytest
 
-from robotd.core.errors import ConfigError, TransportError
+from robotd.core.errors import ConfigError
 from robotd.hardware.devices import catalogue
 from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, RangefinderCalibration
 from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
-from robotd.hardware.transport.transport import Transport
-
-
-async def nowhere() -> Transport:
-    raise TransportError("nowhere")
-
+from tests.unit.hardware.devices.conftest import nowhere
 
 WIRING = Wiring(nowhere, NoTap(), random.Random(0))
 

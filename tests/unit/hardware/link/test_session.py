@@ -9,7 +9,7 @@ import pytest
 
 from firmware_proto.common import Ack, Arm, BoardKind, BoardState, BoardStatus, Disarm, Ping, Pong
 from firmware_proto.drive import SetVelocity
-from firmware_proto.framing import Deframer, RawFrame, encode_frame
+from firmware_proto.framing import RawFrame, encode_frame
 from firmware_proto.pantilt import Aim, Limits, ReadLimits
 from firmware_proto.rangefinder import SetLaser, Shoot, Shot
 from firmware_proto.schema import REPLY, Message
@@ -22,71 +22,15 @@ from robotd.hardware.link.session import LinkCounters, Session
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.memory import memory_pair
-from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.board import STOP_BYTES, BoardWire, Received
 from robotd.sim.boards.board import Board, Outcome
 from robotd.sim.laser import LaserSettings
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
+from tests.unit.hardware.conftest import FaultyLine, lose, never, once
 
-Choice = Callable[[RawFrame], int]
 MS = 1_000_000
-
-
-def once(_: RawFrame) -> int:
-    return 1
-
-
-def never(_: RawFrame) -> int:
-    return 0
-
-
-def lose(count: int, message: type[Message]) -> Choice:
-    """Lose the first ``count`` frames of a type."""
-    left = [count]
-
-    def choose(frame: RawFrame) -> int:
-        if frame.type == message.TYPE and left[0]:
-            left[0] -= 1
-            return 0
-        return 1
-
-    return choose
-
-
-class FaultyLine:
-    """A transport that passes each frame as often as it is told to."""
-
-    def __init__(self, line: Transport) -> None:
-        self.name = line.name
-        self.to_board: Choice = once
-        self.from_board: Choice = once
-        self.noise: Callable[[], bytes] = bytes
-        self.sent: list[RawFrame] = []
-        self._line = line
-        self._deframer = Deframer()
-
-    async def read(self) -> bytes:
-        while True:
-            frames = self._deframer.feed(await self._line.read())
-            if kept := b"".join(self.noise() + encode_frame(one) * self.from_board(one) for one in frames):
-                return kept
-
-    def write(self, data: bytes) -> None:
-        for frame in Deframer().feed(data):
-            self.sent.append(frame)
-            self._line.write((self.noise() + data) * self.to_board(frame))
-
-    def write_urgent(self, data: bytes) -> None:
-        self.sent.extend(Deframer().feed(data))
-        self._line.write_urgent(data)
-
-    def close(self) -> None:
-        self._line.close()
-
-    def count(self, message: type[Message]) -> int:
-        return sum(frame.type == message.TYPE for frame in self.sent)
 
 
 class Bench:
@@ -174,7 +118,7 @@ async def test_telemetry_is_handed_on_while_serving_and_not_before() -> None:
 
 async def test_a_lost_request_is_repeated_with_the_same_seq_and_executed_once() -> None:
     async with bench(BoardKind.DRIVE) as b:
-        b.line.to_board = lose(2, Arm)
+        b.line.to_board = lose(2, Arm.TYPE)
         await b.session.command(Arm())
         assert b.board.state is BoardState.ARMED
         assert len({frame.seq for frame in b.line.sent if frame.type == Arm.TYPE}) == 1
@@ -184,7 +128,7 @@ async def test_a_lost_request_is_repeated_with_the_same_seq_and_executed_once() 
 async def test_a_lost_reply_is_given_again_and_the_shot_is_taken_once() -> None:
     async with bench(BoardKind.RANGEFINDER) as b:
         await b.session.command(SetLaser(1))
-        b.line.from_board = lose(1, Shot)
+        b.line.from_board = lose(1, Shot.TYPE)
         taken: list[int] = []
         shoot = b.board._handlers[Shoot]
 
@@ -290,7 +234,7 @@ async def test_requests_wait_for_each_other() -> None:
 
 async def test_set_points_are_never_repeated_and_refusals_are_counted() -> None:
     async with bench(BoardKind.DRIVE) as b:
-        b.line.to_board = lose(1, SetVelocity)
+        b.line.to_board = lose(1, SetVelocity.TYPE)
         for speed in (100, 200, 300):
             b.session.post(SetVelocity(speed, 0, 200))
         await asyncio.sleep(0.5)
