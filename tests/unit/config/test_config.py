@@ -11,12 +11,6 @@ from robotd.config import Config, default_path, effective_text, load, loads
 from robotd.core.errors import ConfigError
 
 
-@pytest.fixture(autouse=True)
-def _no_directories_of_systemd(monkeypatch: pytest.MonkeyPatch) -> None:
-    for variable in ("ROBOTD_CONFIG", "STATE_DIRECTORY", "RUNTIME_DIRECTORY"):
-        monkeypatch.delenv(variable, raising=False)
-
-
 def complaints(text: str) -> list[str]:
     with pytest.raises(ConfigError) as caught:
         loads(text, file="r.toml")

@@ -3,19 +3,11 @@
 from dataclasses import asdict
 from pathlib import Path
 
-import pytest
-
 from robotd.config import Config, loads
 from robotd.config.lines import key_lines
 from robotd.config.problems import UNITS
 
 FILE = Path(__file__).parents[3] / "systemd" / "robotd.toml"
-
-
-@pytest.fixture(autouse=True)
-def _no_directories_of_systemd(monkeypatch: pytest.MonkeyPatch) -> None:
-    for variable in ("STATE_DIRECTORY", "RUNTIME_DIRECTORY"):
-        monkeypatch.delenv(variable, raising=False)
 
 
 def test_it_has_every_key_with_its_default() -> None:
