@@ -10,7 +10,6 @@ from robotd.cli.quantities import positive
 
 OK: Final = 0
 FAILED: Final = 1
-USAGE: Final = 2
 BAD_CONFIG: Final = 78
 INTERRUPTED: Final = 130
 

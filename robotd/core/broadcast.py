@@ -10,16 +10,14 @@ T = TypeVar("T")
 
 
 class Subscription(Generic[T]):
-    """One reader's bounded queue; when it is full the oldest item gives way and ``dropped`` counts it."""
+    """One reader's bounded queue; when it is full the oldest item gives way."""
 
     def __init__(self, depth: int) -> None:
         self._items: deque[T] = deque(maxlen=depth)
         self._ready = asyncio.Event()
-        self.dropped = 0
 
     def offer(self, item: T) -> None:
         """Queue an item."""
-        self.dropped += len(self._items) == self._items.maxlen
         self._items.append(item)
         self._ready.set()
 

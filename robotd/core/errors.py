@@ -14,7 +14,6 @@
     ├── MissionError           the request cannot be done now; says why
     ├── MapError               a stored map is missing or damaged; says what
     ├── RecordingError         a recording is missing or damaged; says what and where
-    ├── ReplayMismatch         the same bytes gave another answer; says where
     ├── ServerError            the server refused; carries its error code
     └── RequestTimeout         the server did not answer in time
 
@@ -89,10 +88,6 @@ class MapError(RobotdError):
 
 class RecordingError(RobotdError):
     """A recording is missing or damaged; the message says what and where."""
-
-
-class ReplayMismatch(RobotdError):
-    """The same bytes gave another answer."""
 
 
 class ServerError(RobotdError):

@@ -67,10 +67,6 @@ class GridSpec:
             self.origin_y_m + (row + 0.5) * self.resolution_m,
         )
 
-    def cells_at(self, points_m: NDArray[np.float64]) -> NDArray[np.intp]:
-        """Return the cells ``intp[n, 2]`` as ``(row, col)`` of map-frame points ``float64[n, 2]`` as ``(x, y)``."""
-        return np.floor(self.positions_at(points_m)).astype(np.intp)
-
     def positions_at(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return map-frame points ``float64[n, 2]`` as ``(x, y)`` in cells, ``float64[n, 2]`` as ``(row, col)``."""
         origin = np.array([self.origin_x_m, self.origin_y_m])

@@ -36,7 +36,7 @@ class Journal(ABC):
 
 
 class MemoryJournal(Journal):
-    """Keeps the entries in a list: for replay and tests."""
+    """Keeps the entries in a list."""
 
     def __init__(self) -> None:
         self.entries: list[Entry] = []

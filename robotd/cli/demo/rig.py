@@ -26,7 +26,6 @@ class Rig:
 
     client: Client
     truth_file: Path
-    log_file: Path
 
 
 def wired(config: Config, directory: Path) -> Config:
@@ -67,7 +66,7 @@ def rig(directory: Path, config: Config, emulator: list[str]) -> Iterator[Rig]:
         process = stack.enter_context(_running(daemon, output.fileno()))
         client = stack.enter_context(Client(config.server.runtime_dir))
         _wait(lambda: _all_ready(client), "the daemon and its devices", process, log)
-        yield Rig(client, truth, log)
+        yield Rig(client, truth)
 
 
 def _program(module: str) -> list[str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from robotd.cli.main import main
-from robotd.core.errors import ReplayMismatch
+from robotd.core.errors import RecordingError
 from robotd.hardware.link.tap import Direction
 from robotd.recording.comparison import Difference
 from robotd.recording.entries import BytesEntry, RecordingHeader, ResultEntry
@@ -102,8 +102,8 @@ def test_a_replay_that_cannot_go_on_is_one_line(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def fail(path: Path) -> Report:
-        raise ReplayMismatch("it went another way")
+        raise RecordingError("it holds nothing")
 
     monkeypatch.setattr("robotd.app.replay_recording", fail)
     assert main(["replay", "a.mcap"]) == 1
-    assert capsys.readouterr().err == "robotctl: it went another way\n"
+    assert capsys.readouterr().err == "robotctl: it holds nothing\n"

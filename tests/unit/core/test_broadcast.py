@@ -15,12 +15,11 @@ async def test_every_reader_gets_every_item_in_order() -> None:
     assert broadcast.latest == 4
 
 
-async def test_a_slow_reader_loses_the_oldest_and_knows_how_many() -> None:
+async def test_a_slow_reader_loses_the_oldest() -> None:
     broadcast: Broadcast[int] = Broadcast()
     with broadcast.subscribe(depth=3) as slow:
         for item in range(10):
             broadcast.publish(item)
-        assert slow.dropped == 7
         assert [await slow.get() for _ in range(3)] == [7, 8, 9]
 
 
@@ -38,5 +37,4 @@ def test_a_closed_subscription_gets_nothing_more() -> None:
     with broadcast.subscribe() as reader:
         pass
     broadcast.publish(1)
-    assert reader.dropped == 0
     assert not reader._items
