@@ -17,7 +17,7 @@ import numpy as np
 
 from robotd.core.errors import MapError
 from robotd.grid.image import encode_pgm, trinary_from_cells
-from robotd.grid.map_yaml import MapYaml
+from robotd.grid.map_yaml import map_yaml
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.grid.spec import GridSpec
 from robotd.maps.atomic import make_directory, publish_directory, remove_leftover, withdraw_directory
@@ -175,15 +175,13 @@ def _disk_errors(what: str) -> Iterator[None]:
 def _files_of(
     name: str, version: int, grid: OccupancyGrid, metadata: dict[str, Any], created_unix_ns: int
 ) -> tuple[dict[str, bytes], Manifest]:
-    spec = grid.spec
-    yaml = MapYaml(IMAGE, spec.resolution_m, spec.origin_x_m, spec.origin_y_m)
     files = {
         CELLS: grid.cells.tobytes(),
         IMAGE: encode_pgm(trinary_from_cells(grid.cells)),
-        YAML: yaml.text().encode(),
+        YAML: map_yaml(IMAGE, grid.spec).encode(),
     }
     sums = {file: FileSum.of(data) for file, data in files.items()}
-    manifest = Manifest(name, version, created_unix_ns, grid.digest(), spec, sums, metadata)
+    manifest = Manifest(name, version, created_unix_ns, grid.digest(), grid.spec, sums, metadata)
     return {**files, MANIFEST: manifest.encode()}, manifest
 
 
