@@ -1,6 +1,7 @@
 """Everything that can be asked of the robot, in one place; the server and a replay both ask here.
 
-Each request is noted in the journal before it is carried out, so a replay can ask the same again.
+Each request that concerns the robot is noted in the journal before it is carried out (only a stop is on the wires
+first), so a replay can ask the same again.
 """
 
 import base64

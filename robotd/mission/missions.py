@@ -1,4 +1,4 @@
-"""The kinds of mission, each a row: its name, what it does to the mode, and how it is carried out."""
+"""The kinds of mission, each a row: its name, what it does to the mode, its stops; and how each is carried out."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,10 +1,10 @@
 """The supervisor's modes as a table.
 
 Theory of operation: everything that changes the mode is an :class:`Occasion`; the table says where it
-leads; what the table does not name is refused, and nothing else in the daemon assigns a mode. Two
-occasions are never refused: ``STOP`` and ``DEVICE_LOST`` lead to ``DISARMED`` from everywhere, and
-``FAULT`` leads to ``FAULT`` from everywhere. There is no way from ``DISARMED`` to motion that does not
-pass through an explicit ``ARM``, and none out of ``FAULT`` but ``CLEAR``.
+leads; what the table does not name is refused, and nothing else in the daemon assigns a mode. Three
+occasions are never refused: ``STOP`` and ``DEVICE_LOST`` lead to ``DISARMED`` from everywhere but
+``FAULT``, which stays; ``FAULT`` leads to ``FAULT`` from everywhere. There is no way from ``DISARMED``
+to motion that does not pass through an explicit ``ARM``, and none out of ``FAULT`` but ``CLEAR``.
 """
 
 import enum
