@@ -10,8 +10,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from robotd.core.clock import VirtualClockLoop
+
+settings.register_profile(
+    "house",
+    deadline=None,  # how long an example takes is the machine's business
+    derandomize="CI" in os.environ,  # what lands must not depend on luck; everybody else keeps looking
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.load_profile("house")
 
 _TEST_FILES = f"{tempfile.gettempdir()}/pytest-of-"
 """Where ``tmp_path`` is; libraries may keep files of their own open elsewhere."""

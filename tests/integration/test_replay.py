@@ -66,9 +66,9 @@ def test_one_reading_that_differs_is_found_with_time_and_what_was_expected(recor
     Recorder(tmp_path / "other.mcap", recording.header, entries).close()
     report = replay_recording(tmp_path / "other.mcap")
     assert report.digest != report.recorded_digest
-    first = report.differences[0]
+    first = next(difference for difference in report.differences if difference.expected.startswith("sweep "))
+    assert first.time_ns == report.differences[0].time_ns
     assert first.device == RESULTS
     assert first.time_ns > entry.time_ns
-    assert first.expected.startswith("sweep ")
     assert first.actual.startswith("sweep ")
     assert first.expected != first.actual

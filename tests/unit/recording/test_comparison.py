@@ -69,3 +69,23 @@ def test_what_boards_said_is_not_compared() -> None:
 def test_a_difference_reads_as_a_line() -> None:
     text = str(Difference(1_500_000_000, "pantilt", "Aim(100)", "Aim(101)"))
     assert text == "1.500000 s pantilt: expected Aim(100), got Aim(101)"
+
+
+def test_which_of_two_kinds_of_results_came_first_is_no_difference() -> None:
+    one = (
+        ResultEntry(1, "estimate", {}, "e1"),
+        ResultEntry(2, "sweep", {}, "s1"),
+        ResultEntry(3, "estimate", {}, "e2"),
+    )
+    other = (
+        ResultEntry(1, "estimate", {}, "e1"),
+        ResultEntry(2, "estimate", {}, "e2"),
+        ResultEntry(3, "sweep", {}, "s1"),
+    )
+    swapped = (
+        ResultEntry(1, "estimate", {}, "e2"),
+        ResultEntry(2, "estimate", {}, "e1"),
+        ResultEntry(3, "sweep", {}, "s1"),
+    )
+    assert results_digest(one) == results_digest(other)
+    assert results_digest(one) != results_digest(swapped)
