@@ -46,7 +46,7 @@ def probe_of(
     if reading.range_m is None:
         raise ValueError(f"a {reading.status} reading has no range")
     bearing = heading_rad + reading.bearing_rad
-    cos, sin = math.cos(heading_rad), math.sin(heading_rad)
+    cos, sin = float(np.cos(heading_rad)), float(np.sin(heading_rad))
     start_row = (sin * reading.origin_x_m + cos * reading.origin_y_m) / resolution_m
     start_col = (cos * reading.origin_x_m - sin * reading.origin_y_m) / resolution_m
     range_cells = reading.range_m / resolution_m
@@ -57,8 +57,8 @@ def probe_of(
     if reading.status is ReadingStatus.MISS:
         return Probe(body, None)
     head = (
-        _nearest(start_row + range_cells * math.sin(bearing)),
-        _nearest(start_col + range_cells * math.cos(bearing)),
+        _nearest(start_row + range_cells * float(np.sin(bearing))),
+        _nearest(start_col + range_cells * float(np.cos(bearing))),
     )
     return Probe(body, head)
 

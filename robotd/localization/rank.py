@@ -1,6 +1,7 @@
-"""How many readings each pose explains: the paper's rnk(M, Z, p), counted reading by reading.
+"""How many readings each pose explains: the paper's rnk(M, Z, p), counted reading by reading or many at once.
 
-[BrownDonald2000]_ sec. 2.2.1 (consistent readings), 2.2.3 (theta slices), 2.3.3.
+[BrownDonald2000]_ sec. 2.2.1 (consistent readings), 2.2.3 (theta slices), 2.3.3. What is counted is defined by
+:mod:`robotd.localization.feasible`; how, by :mod:`robotd.grid.kernels`.
 """
 
 import math
@@ -10,11 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading
+from robotd.grid import kernels
 from robotd.grid.binary import BinaryMap
-from robotd.localization.feasible import Obstacles, feasible_poses
-from robotd.localization.probe import probe_of
+from robotd.grid.kernels.layout import TILE_ROWS, WORD_CELLS, PackedMap, Words, unpack
+from robotd.localization.beams import draw_beams
+from robotd.localization.feasible import Obstacles
 
 _READINGS_MAX = int(np.iinfo(np.uint16).max)
+_BITS_AT_FIRST = 9
+"""A sweep of 300 readings fits; counters that must hold more are widened."""
 
 
 class RankGrid:
@@ -24,69 +29,112 @@ class RankGrid:
     unknown explains no reading and its rank stays 0.
     """
 
-    def __init__(self, binary: BinaryMap, headings_rad: Sequence[float], error_radius_cells: float) -> None:
+    def __init__(
+        self, binary: BinaryMap, headings_rad: Sequence[float], error_radius_cells: float, *, threads: int = 1
+    ) -> None:
         """Begin with no readings.
 
         Args:
             binary: the map.
             headings_rad: the headings to try, map frame: one where it is known, else the theta slices.
             error_radius_cells: the paper's eps.
+            threads: how many threads may share the counting; the counts do not depend on it.
         """
         self.spec = binary.spec
         self.headings_rad = tuple(headings_rad)
         self.readings = 0
+        self._headings = np.array(self.headings_rad, np.float64)
         self._error_radius_cells = error_radius_cells
+        self._threads = threads
         self._window = _bounds(~binary.occupied)
         # What lies outside the bounds of the free cells is all occupied, as is what lies outside a grid.
         occupied = np.ascontiguousarray(binary.occupied[self._window])
         self._free = ~occupied
-        self._obstacles = Obstacles.of(occupied, error_radius_cells)
-        self._rank = np.zeros((len(self.headings_rad), *occupied.shape), np.uint16)
+        self._map = PackedMap.of(occupied, Obstacles.of(occupied, error_radius_cells).grown)
+        self._counters = self._map.blank_counters(len(self.headings_rad), _BITS_AT_FIRST)
 
-    def add(self, reading: RangeReading) -> None:
-        """Count one measured reading, hit or miss; O(headings x cells x length of the beam in cells).
+    def add(self, *readings: RangeReading) -> None:
+        """Count measured readings, hits or misses; many at once cost less than one after the other.
+
+        O(directions x cells / 64 x length of the longest beam in cells + readings x headings x cells / 64), where the
+        directions are those of all readings at all headings.
 
         Raises:
-            ValueError: the reading measured nothing, or it is the 65536th.
+            ValueError: a reading measured nothing, or it is the 65536th; then none was counted.
         """
-        if self.readings == _READINGS_MAX:
+        if self.readings + len(readings) > _READINGS_MAX:
             raise ValueError(f"a rank grid counts {_READINGS_MAX} readings")
-        for slice_number, heading_rad in enumerate(self.headings_rad):
-            probe = probe_of(
-                reading,
-                heading_rad,
-                resolution_m=self.spec.resolution_m,
-                error_radius_cells=self._error_radius_cells,
-                reach_cells=2 * max(self._free.shape),
-            )
-            self._rank[slice_number] += feasible_poses(self._obstacles, probe)
-        self.readings += 1
+        self._count(readings, subtract=False)
+
+    def remove(self, *readings: RangeReading) -> None:
+        """Take back readings that were added, in any order; costs what adding them did.
+
+        Which readings were added is not remembered: taking back others leaves counts that mean nothing.
+
+        Raises:
+            ValueError: a reading measured nothing, or more are taken back than were added; then nothing was.
+        """
+        if len(readings) > self.readings:
+            raise ValueError(f"{len(readings)} readings cannot be taken back of {self.readings}")
+        self._count(readings, subtract=True)
+
+    def _count(self, readings: Sequence[RangeReading], *, subtract: bool) -> None:
+        if not readings:
+            return
+        groups = draw_beams(
+            readings,
+            self._headings,
+            resolution_m=self.spec.resolution_m,
+            error_radius_cells=self._error_radius_cells,
+            reach_cells=2 * max(self._free.shape),
+        )
+        self.readings += -len(readings) if subtract else len(readings)
+        self._counters = _widened(self._counters, self.readings.bit_length())
+        kernels.count_feasible(self._counters, self._map, groups, subtract=subtract, threads=self._threads)
 
     @property
     def rank(self) -> NDArray[np.uint16]:
         """The count, a new array ``uint16[headings, rows, cols]``."""
         whole = np.zeros((len(self.headings_rad), *self.spec.shape), np.uint16)
-        whole[:, *self._window] = self._rank
+        inside = whole[:, *self._window]
+        tiled = np.zeros((len(self.headings_rad), self._map.rows, self._map.words), np.uint64)
+        blocks = tiled.reshape(len(self.headings_rad), -1, TILE_ROWS, self._map.words)
+        for bit in range(self._counters.shape[2]):
+            blocks[:, self._map.tiles[:, 1] // TILE_ROWS, :, self._map.tiles[:, 0]] = self._counters[:, :, bit]
+            inside |= self._cells(tiled).astype(np.uint16) << bit
         return whole
 
     @property
     def best_rank(self) -> int:
         """The greatest count (the paper's kappa)."""
-        return int(self._rank.max(initial=0))
+        return kernels.greatest(self._counters)
 
     def cells_of_rank(self, least: int) -> NDArray[np.intp]:
         """Return the poses that explain at least so many readings, ``intp[n, 3]`` as ``(heading, row, col)``, in order.
 
         Only free cells are poses, even for a rank of 0.
         """
-        poses: NDArray[np.intp] = np.argwhere((self._rank >= least) & self._free)
+        reached = kernels.at_least(self._counters, self._map, max(least, 0))
+        heading, row, word = np.nonzero(reached)
+        which, bit = np.nonzero(unpack(reached[heading, row, word][:, None], WORD_CELLS))
+        poses = np.stack((heading[which], row[which], word[which] * WORD_CELLS + bit), axis=1)
+        if least <= 0:
+            inside = (poses[:, 1:] < self._free.shape).all(axis=1)
+            poses = poses[inside]
+            poses = poses[self._free[poses[:, 1], poses[:, 2]]]
         poses += np.array([0, self._window[0].start, self._window[1].start])
         return poses
 
     def rank_at(self, poses: NDArray[np.intp]) -> NDArray[np.uint16]:
         """Return the counts ``uint16[n]`` of poses that :meth:`cells_of_rank` returned."""
         heading, row, col = poses.T
-        ranks: NDArray[np.uint16] = self._rank[heading, row - self._window[0].start, col - self._window[1].start]
+        row, col = row - self._window[0].start, col - self._window[1].start
+        number = np.zeros((self._map.words, self._map.rows // TILE_ROWS), np.intp)
+        number[self._map.tiles[:, 0], self._map.tiles[:, 1] // TILE_ROWS] = np.arange(len(self._map.tiles))
+        tile = number[col // WORD_CELLS, row // TILE_ROWS]
+        words = self._counters[tile, heading, :, row % TILE_ROWS]
+        bits = words >> (col % WORD_CELLS).astype(np.uint64)[:, None] & np.uint64(1)
+        ranks: NDArray[np.uint16] = (bits << np.arange(bits.shape[1], dtype=np.uint64)).sum(axis=1).astype(np.uint16)
         return ranks
 
     @property
@@ -94,10 +142,21 @@ class RankGrid:
         """The poses of greatest rank (the paper's loc), as :meth:`cells_of_rank`."""
         return self.cells_of_rank(self.best_rank)
 
+    def _cells(self, words: Words) -> NDArray[np.bool_]:
+        """Return ``bool[headings, rows, cols]`` of the window from words ``uint64[headings, rows, words]``."""
+        rows, cols = self._free.shape
+        return unpack(words[:, :rows], cols)
+
 
 def even_headings(count: int) -> tuple[float, ...]:
     """Return theta slices all round, ``2 pi k / count`` ([BrownDonald2000]_ sec. 2.2.3)."""
     return tuple(math.tau * k / count for k in range(count))
+
+
+def _widened(counters: Words, bits: int) -> Words:
+    """Return counters that can hold numbers of so many bits."""
+    missing = bits - counters.shape[2]
+    return counters if missing <= 0 else np.pad(counters, ((0, 0), (0, 0), (0, missing), (0, 0)))
 
 
 def _bounds(cells: NDArray[np.bool_]) -> tuple[slice, slice]:

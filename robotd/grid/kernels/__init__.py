@@ -1,0 +1,38 @@
+"""The hot loops: in C where they were compiled, else in NumPy, with identical results.
+
+The only place that chooses. Everybody else imports the functions from here; tests also compare
+:mod:`~robotd.grid.kernels.native` with :mod:`~robotd.grid.kernels.twins` directly.
+"""
+
+from dataclasses import dataclass
+
+from robotd.grid.kernels import twins
+
+
+@dataclass(frozen=True, slots=True)
+class KernelsInUse:
+    """Which kernels these are, for logs and for people."""
+
+    compiled: bool
+    instructions: str
+    """What the counting uses: ``avx512``, ``avx2``, ``portable`` or, where nothing was compiled, ``numpy``."""
+    reason: str
+    """Why these."""
+
+    def __str__(self) -> str:
+        """Return one line."""
+        return f"{'C' if self.compiled else 'NumPy'} kernels ({self.instructions}): {self.reason}"
+
+
+try:
+    from robotd.grid.kernels import native
+except ImportError as error:
+    IN_USE = KernelsInUse(compiled=False, instructions="numpy", reason=f"no C kernels were installed ({error})")
+    count_feasible, greatest, at_least = twins.count_feasible, twins.greatest, twins.at_least
+else:
+    IN_USE = KernelsInUse(
+        compiled=True, instructions=native.instruction_set(), reason="compiled when robotd was installed"
+    )
+    count_feasible, greatest, at_least = native.count_feasible, native.greatest, native.at_least
+
+__all__ = ["IN_USE", "KernelsInUse", "at_least", "count_feasible", "greatest"]

@@ -1,0 +1,90 @@
+"""How a map is packed for the kernels: 64 cells a word, words of one column together, ones all round.
+
+Bit ``b`` of word ``w`` of a row is column ``64 w + b``. Words that lie above each other are neighbours in memory, so
+that a vector holds the same word of successive rows, and the map shifted by any offset is two loads and one funnel
+shift. Two columns of words and 32 rows of ones lie round the map: whatever is outside is occupied, without a branch.
+A tile is 32 rows of one column of words; counts are kept for tiles, in bit-sliced counters ``uint64[tiles, headings,
+bits, 32]``: plane ``p`` holds bit ``p`` of all counts.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+TILE_ROWS = 32
+WORD_CELLS = 64
+PAD_WORDS = 2
+"""Columns of words on either side: what is two words outside is all outside, and so is its right neighbour."""
+BITS_MIN = 3
+"""Seven planes are added at once: their sum needs three bits."""
+
+Words = NDArray[np.uint64]
+
+
+def pack(mask: NDArray[np.bool_]) -> Words:
+    """Return a mask ``bool[rows, cols]`` packed as above, ``uint64[words + 4, rows + padding]``, ones outside."""
+    rows, cols = mask.shape
+    padding = (
+        (TILE_ROWS, TILE_ROWS + -rows % TILE_ROWS),
+        (PAD_WORDS * WORD_CELLS, PAD_WORDS * WORD_CELLS + -cols % WORD_CELLS),
+    )
+    padded = np.pad(mask, padding, constant_values=True)
+    return np.ascontiguousarray(np.packbits(padded, axis=1, bitorder="little").view("<u8").astype(np.uint64).T)
+
+
+def unpack(words: Words, cols: int) -> NDArray[np.bool_]:
+    """Return ``bool[..., cols]`` of rows of words ``uint64[..., words]``."""
+    octets = np.ascontiguousarray(words.astype("<u8")).view(np.uint8)
+    return np.unpackbits(octets, axis=-1, count=cols, bitorder="little").view(np.bool_)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PackedMap:
+    """The obstacles and the grown obstacles of one map, packed, and the tiles that have free cells."""
+
+    occupied: Words
+    grown: Words
+    tiles: NDArray[np.int32]
+    """``int32[tiles, 2]``: column of words, and first row, of every tile with a free cell."""
+
+    @classmethod
+    def of(cls, occupied: NDArray[np.bool_], grown: NDArray[np.bool_]) -> "PackedMap":
+        """Pack a map ``bool[rows, cols]`` and the same grown by the error radius."""
+        packed = pack(occupied)
+        inner = ~packed[PAD_WORDS:-PAD_WORDS, TILE_ROWS:-TILE_ROWS]
+        blocks = inner.reshape(inner.shape[0], -1, TILE_ROWS).any(axis=2)
+        return cls(packed, pack(grown), (np.argwhere(blocks) * (1, TILE_ROWS)).astype(np.int32))
+
+    @property
+    def words(self) -> int:
+        """Columns of words, without the padding."""
+        return self.occupied.shape[0] - 2 * PAD_WORDS
+
+    @property
+    def rows(self) -> int:
+        """Rows, a multiple of the tile's."""
+        return self.occupied.shape[1] - 2 * TILE_ROWS
+
+    def blank_counters(self, headings: int, bits: int) -> Words:
+        """Return counters that have counted nothing."""
+        return np.zeros((len(self.tiles), headings, max(bits, BITS_MIN), TILE_ROWS), np.uint64)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BeamGroups:
+    """Beams drawn on the grid, those with one chain of cells together.
+
+    The body of a beam is the first so many cells of its group's chain.
+    """
+
+    chains: NDArray[np.int32]
+    """``int32[n, 2]``, ``(row, col)`` offsets from the robot's cell; each chain begins with ``(0, 0)``."""
+    groups: NDArray[np.int32]
+    """``int32[groups + 1, 2]``: first offset and first beam of each, and the ends of the last."""
+    beams: NDArray[np.int32]
+    """``int32[beams, 4]``: heading, length of the body (at least 1), row and col of the head; ascending by length
+    within a group. The row of a head that is not there is ``NO_HEAD``."""
+
+
+NO_HEAD = int(np.iinfo(np.int32).min)

@@ -1,0 +1,25 @@
+"""Compile the C kernels where there is a compiler; everything else is in pyproject.toml."""
+
+import sys
+from typing import Any
+
+from setuptools import setup
+from setuptools.command.build_ext import build_ext
+
+
+class BuildIfPossible(build_ext):
+    """A machine without a compiler gets the NumPy twins, and is told so."""
+
+    def build_extension(self, ext: Any) -> None:
+        """Compile, or say in one line why not."""
+        try:
+            super().build_extension(ext)
+        except Exception as error:  # noqa: BLE001  # whatever a missing or broken compiler raises, robotd works without
+            print(f"robotd: no C kernels, the slower NumPy twins will be used: {error}", file=sys.stderr)
+
+
+setup(
+    cffi_modules=["robotd/grid/kernels/c/build.py:builder"],
+    cmdclass={"build_ext": BuildIfPossible},
+    options={"bdist_wheel": {"py_limited_api": "cp311"}},
+)
