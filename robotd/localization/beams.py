@@ -117,8 +117,8 @@ def _grouped(drawn: _Drawn, directions: NDArray[np.int64]) -> tuple[BeamGroups, 
     differs = np.add.reduceat((low != high).any(axis=1), np.cumsum(sizes) - sizes) > 0
     split = np.zeros(len(keys), np.bool_)
     split[order] = np.repeat(differs, last + 1 - first)
-    beams = np.column_stack((order % drawn.headings, lengths[order], drawn.heads[order])).astype(np.int32)
-    bounds = np.column_stack((np.append(0, np.cumsum(sizes)), np.append(first, len(keys)))).astype(np.int32)
+    beams = np.ascontiguousarray(np.column_stack((order % drawn.headings, lengths[order], drawn.heads[order])), np.int32)
+    bounds = np.ascontiguousarray(np.column_stack((np.append(0, np.cumsum(sizes)), np.append(first, len(keys)))), np.int32)
     return BeamGroups(low, bounds, beams), split
 
 
@@ -129,7 +129,7 @@ def _chains(
     k = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes + elsewhere, sizes)
     cells = np.floor(0.5 + k[:, None] * np.repeat(steps, sizes, axis=0)) + np.repeat(starts, sizes, axis=0)
     cells[k < 0] = 0.0
-    return cells.astype(np.int32)
+    return np.ascontiguousarray(cells, np.int32)
 
 
 def _numbered(rows: NDArray[np.float64] | NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.intp]]:

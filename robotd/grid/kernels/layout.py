@@ -54,7 +54,7 @@ class PackedMap:
         packed = pack(occupied)
         inner = ~packed[PAD_WORDS:-PAD_WORDS, TILE_ROWS:-TILE_ROWS]
         blocks = inner.reshape(inner.shape[0], -1, TILE_ROWS).any(axis=2)
-        return cls(packed, pack(grown), (np.argwhere(blocks) * (1, TILE_ROWS)).astype(np.int32))
+        return cls(packed, pack(grown), np.ascontiguousarray(np.argwhere(blocks) * (1, TILE_ROWS), np.int32))
 
     @property
     def words(self) -> int:

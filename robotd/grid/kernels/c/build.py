@@ -5,7 +5,7 @@ from pathlib import Path
 from cffi import FFI
 
 HERE = Path(__file__).parent
-SOURCES = ("count.c",)
+SOURCES = ("count.c", "insert.c")
 
 builder = FFI()
 builder.cdef((HERE / "kernels.h").read_text())

@@ -39,10 +39,10 @@ uint32_t greatest(const uint64_t *counters, int64_t n, int32_t bits);
 void at_least(const uint64_t *counters, const int32_t *tiles, int32_t tile_count, int32_t headings, int32_t bits,
               uint32_t least, int32_t rows, int32_t words, uint64_t *masks);
 
-/* Lower the cells that beams run through and raise those they end in (occupancy.py). Returns how many cells changed. */
+/* Lower the cells that beams run through and raise those they end in (occupancy.py), and put the cells whose value
+ * changed into `changed`, ascending. Returns how many. `before` is scratch, as large as `cells`. */
 int64_t insert_beams(uint8_t *cells, int32_t rows, int32_t cols, const double *beams, const int64_t *hits, int32_t count,
-                     const uint8_t *lower, const uint8_t *raise, int32_t per_sweep, uint8_t *seen, int64_t *touched,
-                     int64_t *changed);
+                     const uint8_t *lower, const uint8_t *raise, int32_t all_at_once, uint8_t *before, int64_t *changed);
 
 /* Which instructions the counting uses on this processor. */
 const char *instruction_set(void);
