@@ -14,7 +14,7 @@ class BuildIfPossible(build_ext):
         """Compile, or say in one line why not."""
         try:
             super().build_extension(ext)
-        except Exception as error:  # noqa: BLE001  # whatever a missing or broken compiler raises, robotd works without
+        except Exception as error:  # whatever a missing or broken compiler raises, robotd works without
             print(f"robotd: no C kernels, the slower NumPy twins will be used: {error}", file=sys.stderr)
 
 

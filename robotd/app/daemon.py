@@ -16,6 +16,7 @@ from robotd.config import Config, default_path, effective_text, load
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import ConfigError, RobotdError
 from robotd.core.log import configure
+from robotd.grid import kernels
 from robotd.mission.compute import ThreadCompute
 from robotd.recording.entries import RecordingHeader
 from robotd.recording.preroll import PrerollJournal
@@ -38,6 +39,7 @@ def main(argv: list[str] | None = None) -> int:
             print(problem, file=sys.stderr)
         return EXIT_CONFIG
     configure(arguments.log_level)
+    log.info("%s", kernels.IN_USE)
     exit_code = 0
     try:
         asyncio.run(run(config))

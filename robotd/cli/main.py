@@ -37,6 +37,7 @@ WORDS = {
         "run the daemon again on recorded bytes, and compare every result; exit code 1 if one differs",
     ),
     "config": ("configuration", "check and show configurations"),
+    "doctor": ("doctor", "say what this installation consists of, which kernels it uses and why, and what it can see"),
     "demo": ("demo.verbs", "show the main job, end to end, on a robot that is not there"),
 }
 """The first words of the command line: the module with the verbs that begin so, and what they do.

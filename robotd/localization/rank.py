@@ -10,11 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.core.reading import RangeReading
+from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid import kernels
 from robotd.grid.binary import BinaryMap
-from robotd.grid.kernels.layout import TILE_ROWS, WORD_CELLS, PackedMap, Words, unpack
-from robotd.localization.beams import draw_beams
+from robotd.grid.kernels.layout import TILE_ROWS, WORD_CELLS, BeamSettings, PackedMap, Words, unpack
 from robotd.localization.feasible import Obstacles
 
 _READINGS_MAX = int(np.iinfo(np.uint16).max)
@@ -44,13 +43,13 @@ class RankGrid:
         self.headings_rad = tuple(headings_rad)
         self.readings = 0
         self._headings = np.array(self.headings_rad, np.float64)
-        self._error_radius_cells = error_radius_cells
         self._threads = threads
         self._window = _bounds(~binary.occupied)
         # What lies outside the bounds of the free cells is all occupied, as is what lies outside a grid.
         occupied = np.ascontiguousarray(binary.occupied[self._window])
         self._free = ~occupied
         self._map = PackedMap.of(occupied, Obstacles.of(occupied, error_radius_cells).grown)
+        self._how = BeamSettings(self.spec.resolution_m, error_radius_cells, reach_cells=2 * max(occupied.shape))
         self._counters = self._map.blank_counters(len(self.headings_rad), _BITS_AT_FIRST)
 
     def add(self, *readings: RangeReading) -> None:
@@ -81,16 +80,11 @@ class RankGrid:
     def _count(self, readings: Sequence[RangeReading], *, subtract: bool) -> None:
         if not readings:
             return
-        groups = draw_beams(
-            readings,
-            self._headings,
-            resolution_m=self.spec.resolution_m,
-            error_radius_cells=self._error_radius_cells,
-            reach_cells=2 * max(self._free.shape),
-        )
+        numbers = np.array([_numbers(reading) for reading in readings], np.float64)
+        beams = kernels.draw_beams(numbers, self._headings, self._how)
         self.readings += -len(readings) if subtract else len(readings)
         self._counters = _widened(self._counters, self.readings.bit_length())
-        kernels.count_feasible(self._counters, self._map, groups, subtract=subtract, threads=self._threads)
+        kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=self._threads)
 
     @property
     def rank(self) -> NDArray[np.uint16]:
@@ -151,6 +145,13 @@ class RankGrid:
 def even_headings(count: int) -> tuple[float, ...]:
     """Return theta slices all round, ``2 pi k / count`` ([BrownDonald2000]_ sec. 2.2.3)."""
     return tuple(math.tau * k / count for k in range(count))
+
+
+def _numbers(reading: RangeReading) -> tuple[float, float, float, float, bool]:
+    if reading.range_m is None:
+        raise ValueError(f"a {reading.status} reading has no range")
+    is_miss = reading.status is ReadingStatus.MISS
+    return reading.bearing_rad, reading.range_m, reading.origin_x_m, reading.origin_y_m, is_miss
 
 
 def _widened(counters: Words, bits: int) -> Words:

@@ -28,11 +28,13 @@ try:
     from robotd.grid.kernels import native
 except ImportError as error:
     IN_USE = KernelsInUse(compiled=False, instructions="numpy", reason=f"no C kernels were installed ({error})")
-    count_feasible, greatest, at_least = twins.count_feasible, twins.greatest, twins.at_least
+    draw_beams, count_feasible = twins.draw_beams, twins.count_feasible
+    greatest, at_least = twins.greatest, twins.at_least
 else:
     IN_USE = KernelsInUse(
         compiled=True, instructions=native.instruction_set(), reason="compiled when robotd was installed"
     )
-    count_feasible, greatest, at_least = native.count_feasible, native.greatest, native.at_least
+    draw_beams, count_feasible = native.draw_beams, native.count_feasible
+    greatest, at_least = native.greatest, native.at_least
 
-__all__ = ["IN_USE", "KernelsInUse", "at_least", "count_feasible", "greatest"]
+__all__ = ["IN_USE", "KernelsInUse", "at_least", "count_feasible", "draw_beams", "greatest"]

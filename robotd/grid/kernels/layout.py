@@ -59,12 +59,12 @@ class PackedMap:
     @property
     def words(self) -> int:
         """Columns of words, without the padding."""
-        return self.occupied.shape[0] - 2 * PAD_WORDS
+        return int(self.occupied.shape[0]) - 2 * PAD_WORDS
 
     @property
     def rows(self) -> int:
         """Rows, a multiple of the tile's."""
-        return self.occupied.shape[1] - 2 * TILE_ROWS
+        return int(self.occupied.shape[1]) - 2 * TILE_ROWS
 
     def blank_counters(self, headings: int, bits: int) -> Words:
         """Return counters that have counted nothing."""
@@ -72,19 +72,41 @@ class PackedMap:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BeamGroups:
-    """Beams drawn on the grid, those with one chain of cells together.
+class BeamSettings:
+    """How readings are drawn on the grid."""
 
-    The body of a beam is the first so many cells of its group's chain.
+    resolution_m: float
+    """Side of one cell."""
+    error_radius_cells: float
+    """The paper's eps: bodies end so much before their heads."""
+    reach_cells: int
+    """Where bodies end at the latest; more than the grid is wide and high changes nothing."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Beams:
+    """Readings drawn on the grid at all headings; what shares a chain of cells is together.
+
+    The body of a beam is the beginning of a chain. Chains are taken in batches, so that what is free up to the ends of
+    all bodies of a batch, one slot for each, stays in the cache.
     """
 
     chains: NDArray[np.int32]
-    """``int32[n, 2]``, ``(row, col)`` offsets from the robot's cell; each chain begins with ``(0, 0)``."""
+    """``int32[cells, 3]``: ``(row, col)`` offset from the robot's cell, and the slot of the bodies that end here, -1 if
+    none does. Each chain begins with ``(0, 0)``."""
     groups: NDArray[np.int32]
-    """``int32[groups + 1, 2]``: first offset and first beam of each, and the ends of the last."""
+    """``int32[groups + 1]``: first cell of each chain, and the end of the last."""
+    batches: NDArray[np.int32]
+    """``int32[batches + 1]``: first group of each batch, and the end of the last."""
+    lists: NDArray[np.int32]
+    """``int32[batches * headings + 1]``: first beam of each batch and heading, and the end of the last."""
     beams: NDArray[np.int32]
-    """``int32[beams, 4]``: heading, length of the body (at least 1), row and col of the head; ascending by length
-    within a group. The row of a head that is not there is ``NO_HEAD``."""
+    """``int32[beams, 3]``: slot of the body, ``(row, col)`` of the head. A miss has its head ``FAR_CELLS`` away, outside
+    every grid, where all is occupied."""
+    slots: int
+    """No batch has more than so many."""
 
 
-NO_HEAD = int(np.iinfo(np.int32).min)
+FAR_CELLS = 1 << 28
+SLOTS = 2048
+"""Half a mebibyte for each thread: a batch fits into the second-level cache with room to spare."""

@@ -1,12 +1,22 @@
 """The kernels in NumPy: what the ones in C must do, and what does it where they were not compiled."""
 
+import itertools
+
 import numpy as np
 
-from robotd.grid.kernels.layout import NO_HEAD, PAD_WORDS, TILE_ROWS, WORD_CELLS, BeamGroups, PackedMap, Words
+from robotd.grid.kernels.drawing import draw_beams
+from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, Beams, PackedMap, Words
+
+__all__ = ["at_least", "count_feasible", "draw_beams", "greatest"]
 
 
 def count_feasible(
-    counters: Words, the_map: PackedMap, groups: BeamGroups, *, subtract: bool = False, threads: int = 1
+    counters: Words,
+    the_map: PackedMap,
+    beams: Beams,
+    *,
+    subtract: bool = False,
+    threads: int = 1,  # noqa: ARG001  # one thread is all that this needs
 ) -> None:
     """Count every beam at every cell from which it is feasible, FP = D - E of [BrownDonald2000]_ sec. 2.2.1.
 
@@ -14,22 +24,32 @@ def count_feasible(
         counters: ``uint64[tiles, headings, bits, 32]``, bit-sliced, changed in place; the caller makes sure that no
             count outgrows its bits.
         the_map: the obstacles.
-        groups: the beams; their headings index the counters.
+        beams: drawn for the headings of the counters.
         subtract: take beams back that were counted before.
         threads: how many threads share the work, where it can be shared; the result does not depend on it.
 
     O(cells / 64) for every cell of every chain and for every beam.
     """
-    for group in range(len(groups.groups) - 1):
-        (first_cell, first_beam), (_, last_beam) = groups.groups[group : group + 2].tolist()
+    headings = counters.shape[1]
+    for batch in range(len(beams.batches) - 1):
+        kept = _walk(the_map, beams, range(*beams.batches[batch : batch + 2].tolist()))
+        bounds = beams.lists[batch * headings : (batch + 1) * headings + 1].tolist()
+        for heading, (first, last) in enumerate(itertools.pairwise(bounds)):
+            for slot, row, col in beams.beams[first:last].tolist():
+                feasible = _seen_from(the_map.grown, row, col) & kept[slot]
+                _ripple(counters[:, heading], _tiles(feasible, the_map), subtract=subtract)
+
+
+def _walk(the_map: PackedMap, beams: Beams, groups: range) -> dict[int, Words]:
+    """Return by slot the cells that the bodies of a batch do not block, ``uint64[words, rows]``."""
+    kept = {}
+    for group in groups:
         blocked = np.zeros((the_map.words, the_map.rows), np.uint64)
-        walked = 0
-        for heading, length, head_row, head_col in groups.beams[first_beam:last_beam].tolist():
-            for row, col in groups.chains[first_cell + walked : first_cell + length].tolist():
-                blocked |= _seen_from(the_map.occupied, row, col)
-            walked = length
-            feasible = ~blocked if head_row == NO_HEAD else _seen_from(the_map.grown, head_row, head_col) & ~blocked
-            _ripple(counters[:, heading], _tiles(feasible, the_map), subtract=subtract)
+        for row, col, slot in beams.chains[beams.groups[group] : beams.groups[group + 1]].tolist():
+            blocked |= _seen_from(the_map.occupied, row, col)
+            if slot >= 0:
+                kept[slot] = ~blocked
+    return kept
 
 
 def greatest(counters: Words) -> int:
@@ -50,7 +70,7 @@ def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
         the_map: the map that they belong to.
         least: not negative.
     """
-    tiles, headings, bits, _ = counters.shape
+    _, headings, bits, _ = counters.shape
     masks = np.zeros((headings, the_map.rows, the_map.words), np.uint64)
     if least >> bits:
         return masks
@@ -72,10 +92,11 @@ def _seen_from(packed: Words, row: int, col: int) -> Words:
     shift = np.uint64(col % WORD_CELLS)
     rows_there = np.clip(np.arange(rows) + row, -1, rows) + TILE_ROWS
     low_words = np.clip(np.arange(words) + col // WORD_CELLS, -PAD_WORDS, words) + PAD_WORDS
-    low = packed[low_words[:, None], rows_there]
+    low: Words = packed[low_words[:, None], rows_there]
     if shift == 0:
         return low
-    return (low >> shift) | (packed[low_words[:, None] + 1, rows_there] << np.uint64(WORD_CELLS - shift))
+    high: Words = packed[low_words[:, None] + 1, rows_there]
+    return (low >> shift) | (high << np.uint64(WORD_CELLS - shift))
 
 
 def _tiles(plane: Words, the_map: PackedMap) -> Words:

@@ -5,7 +5,7 @@ from pathlib import Path
 from cffi import FFI
 
 HERE = Path(__file__).parent
-SOURCES = ("count.c", "insert.c")
+SOURCES = ("count.c", "draw.c", "insert.c")
 
 builder = FFI()
 builder.cdef((HERE / "kernels.h").read_text())
@@ -15,7 +15,7 @@ builder.set_source(
     sources=[f"robotd/grid/kernels/c/{name}" for name in SOURCES],
     include_dirs=["robotd/grid/kernels/c"],
     depends=[f"robotd/grid/kernels/c/{name}" for name in ("kernels.h", "count_body.h")],
-    # Contraction would round differently from NumPy; no -march: a wheel must run elsewhere (count.c chooses at run time).
+    # Contraction would round differently from NumPy; no -march: a wheel must run elsewhere.
     extra_compile_args=["-std=gnu99", "-O3", "-ffp-contract=off", "-fvisibility=hidden", "-Wall", "-Wextra"],
     extra_link_args=["-pthread"],
     optional=True,

@@ -1,8 +1,9 @@
 /* Rank over all poses: bit-packed planes shared by direction, carry-save adders, tiles that stay in the cache.
  *
- * For one direction the bodies of all beams are prefixes of one chain of cells: the chain is walked once per tile, and
- * every beam takes the blocked set as it is after its own length. Its plane of feasible cells waits with the others of
- * its heading until there are seven, which are added to the heading's counters at once.
+ * For one direction the bodies of all beams are prefixes of one chain of cells. Directions are taken in batches: per tile,
+ * the chains of a batch are walked once, and what is free up to the end of each body is kept. Then, heading by heading, the
+ * beams of the batch are counted seven at a time: what is kept of the body, and the grown map seen from the head. So
+ * the counters of one heading stay in the first-level cache, and what is kept of a batch in the second.
  */
 #include <pthread.h>
 #include <stddef.h>
@@ -12,18 +13,32 @@
 #include "kernels.h"
 
 #define TILE 32
-#define NO_HEAD INT32_MIN
 #define THREADS_MAX 16
+
+/* Where to find the plane of one beam in one tile. */
+typedef struct {
+    const uint64_t *head, *body;
+    uint64_t shift;
+} source;
 
 static inline int32_t clamp(int32_t value, int32_t low, int32_t high)
 {
     return value < low ? low : value > high ? high : value;
 }
 
+/* The words that hold, from bit `offset[1] & 63` on, what the cells of a tile see at an offset. */
+static inline const uint64_t *seen_from(const count_job *job, const uint64_t *map, const int32_t *tile,
+                                        const int32_t *offset)
+{
+    const int32_t word = clamp(tile[0] + (offset[1] >> 6), -2, job->words);
+    const int32_t row = clamp(tile[1] + offset[0], -TILE, job->rows);
+    return map + (size_t)(word + 2) * ((size_t)job->rows + 2 * TILE) + (size_t)(row + TILE);
+}
+
 #define NAME(x) x##_portable
 #define TARGET
 #define VECTOR 16
-#define AND_NOT(a, b, c) ((a | b) & ~c)
+#define FUNNEL(a, b, n) ((a) >> (n) | ((b) + (b)) << (63 - (n)))
 #define XOR3(a, b, c) (a ^ b ^ c)
 #define MAJORITY(a, b, c) ((a & b) | (c & (a ^ b)))
 #include "count_body.h"
@@ -35,16 +50,18 @@ static inline int32_t clamp(int32_t value, int32_t low, int32_t high)
 #define NAME(x) x##_avx2
 #define TARGET __attribute__((target("avx2")))
 #define VECTOR 32
-#define AND_NOT(a, b, c) ((a | b) & ~c)
+#define FUNNEL(a, b, n)                                                                                                \
+    ((VEC)_mm256_or_si256(_mm256_srl_epi64((__m256i)(a), _mm_cvtsi64_si128((long long)(n))),                           \
+                          _mm256_sll_epi64((__m256i)(b), _mm_cvtsi64_si128((long long)(64 - (n))))))
 #define XOR3(a, b, c) (a ^ b ^ c)
 #define MAJORITY(a, b, c) ((a & b) | (c & (a ^ b)))
 #include "count_body.h"
 
 #define TERNARY(a, b, c, table) ((VEC)_mm512_ternarylogic_epi64((__m512i)(a), (__m512i)(b), (__m512i)(c), table))
 #define NAME(x) x##_avx512
-#define TARGET __attribute__((target("avx512f")))
+#define TARGET __attribute__((target("avx512f,avx512vbmi2")))
 #define VECTOR 64
-#define AND_NOT(a, b, c) TERNARY(a, b, c, 0x54)
+#define FUNNEL(a, b, n) ((VEC)_mm512_shrdv_epi64((__m512i)(a), (__m512i)(b), _mm512_set1_epi64((long long)(n))))
 #define XOR3(a, b, c) TERNARY(a, b, c, 0x96)
 #define MAJORITY(a, b, c) TERNARY(a, b, c, 0xE8)
 #include "count_body.h"
@@ -55,7 +72,7 @@ typedef enum { PORTABLE, AVX2, AVX512 } level;
 static level best_level(void)
 {
 #ifdef HAS_X86
-    if (__builtin_cpu_supports("avx512f"))
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vbmi2"))
         return AVX512;
     if (__builtin_cpu_supports("avx2"))
         return AVX2;
@@ -89,19 +106,19 @@ static void complement(const count_job *job, int32_t tile)
 static void count_tile(const worker *self, int32_t tile)
 {
     const count_job *job = self->job;
-    uint64_t *pending = job->pending + (size_t)self->number * (size_t)job->headings * 7 * TILE;
-    int32_t *waiting = job->waiting + (size_t)self->number * (size_t)job->headings;
+    uint64_t *kept = job->kept + (size_t)self->number * (size_t)(job->slots + 1) * TILE;
+    memset(kept + (size_t)job->slots * TILE, 0, TILE * sizeof *kept);
 #ifdef HAS_X86
     if (self->level == AVX512) {
-        count_tile_avx512(job, tile, (vec_avx512 *)pending, waiting);
+        count_tile_avx512(job, tile, kept);
         return;
     }
     if (self->level == AVX2) {
-        count_tile_avx2(job, tile, (vec_avx2 *)pending, waiting);
+        count_tile_avx2(job, tile, kept);
         return;
     }
 #endif
-    count_tile_portable(job, tile, (vec_portable *)pending, waiting);
+    count_tile_portable(job, tile, kept);
 }
 
 static void *work(void *argument)
