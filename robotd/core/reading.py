@@ -76,4 +76,4 @@ class Sweep:
     @property
     def measured(self) -> tuple[RangeReading, ...]:
         """The hits and misses, in order."""
-        return tuple(reading for reading in self.readings if reading.is_measured)
+        return tuple(reading for reading in self.readings if reading.range_m is not None)

@@ -2,6 +2,7 @@
 
 import enum
 import hashlib
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,9 +11,11 @@ from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.ray import ray_cells
+from robotd.grid import kernels
+from robotd.grid.kernels.layout import Rays
+from robotd.grid.readings import numbers_of
 from robotd.grid.spec import GridSpec
-from robotd.grid.tables import NO_INFORMATION, UpdateTable, lower_table, raise_table
+from robotd.grid.tables import NO_INFORMATION, lower_table, raise_table
 
 
 class UpdatePolicy(enum.StrEnum):
@@ -114,13 +117,9 @@ class OccupancyGrid:
         Returns:
             Flat indices ``row * cols + col`` of the cells whose value changed, ascending. O(readings x cells a beam).
         """
-        before = self.cells.copy()
-        beams = _Beams.of(self._usable(sweep), map_from_robot, self.spec)
-        if self.settings.policy is UpdatePolicy.PER_SWEEP:
-            self._insert_at_once(beams)
-        else:
-            self._insert_one_by_one(beams)
-        return np.flatnonzero(self.cells != before)
+        rays = _rays(self._usable(sweep), map_from_robot, self.spec)
+        at_once = self.settings.policy is UpdatePolicy.PER_SWEEP
+        return kernels.insert_rays(self.cells, rays, self._lower, self._raise, at_once=at_once)
 
     def snapshot(self) -> "OccupancyGrid":
         """Return a copy that nobody changes any more: its cells are read-only, ``insert`` into it fails."""
@@ -139,40 +138,15 @@ class OccupancyGrid:
             return sweep.measured
         return tuple(reading for reading in sweep.measured if reading.status is ReadingStatus.OK)
 
-    def _insert_at_once(self, beams: "_Beams") -> None:
-        hit = np.unique(beams.hit_cells[beams.hit_cells >= 0])
-        self._apply(self._lower, np.setdiff1d(beams.passed_cells, hit))
-        self._apply(self._raise, hit)
 
-    def _insert_one_by_one(self, beams: "_Beams") -> None:
-        bounds = np.searchsorted(beams.passed_rays, np.arange(len(beams.hit_cells) + 1))
-        for ray, hit in enumerate(beams.hit_cells):
-            passed = beams.passed_cells[bounds[ray] : bounds[ray + 1]]
-            self._apply(self._lower, passed[passed != hit])
-            if hit >= 0:
-                self._apply(self._raise, np.array([hit]))
-
-    def _apply(self, table: UpdateTable, cells: NDArray[np.intp]) -> None:
-        flat = self.cells.reshape(-1)
-        flat[cells] = table[flat[cells]]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Beams:
-    """The cells that the beams of one sweep touch, as flat indices."""
-
-    passed_rays: NDArray[np.intp]
-    passed_cells: NDArray[np.intp]
-    """Cells that beam ``passed_rays[i]`` ran through; its hit cell may be among them."""
-    hit_cells: NDArray[np.intp]
-    """Per beam the cell in which it ended, -1 if it met nothing or ended outside the grid."""
-
-    @classmethod
-    def of(cls, readings: tuple[RangeReading, ...], map_from_robot: Pose2, spec: GridSpec) -> "_Beams":
-        origins_m = np.array([map_from_robot.transform(r.origin_x_m, r.origin_y_m) for r in readings]).reshape(-1, 2)
-        bearings = np.array([map_from_robot.heading_rad + r.bearing_rad for r in readings], np.float64)
-        ranges_m = np.array([r.range_m for r in readings], np.float64)
-        is_hit = np.array([r.status is ReadingStatus.OK for r in readings], np.bool_)
-        rays, cells = ray_cells(spec.positions_at(origins_m), bearings, ranges_m / spec.resolution_m, spec.shape)
-        ends_m = origins_m + ranges_m[:, None] * np.stack((np.cos(bearings), np.sin(bearings)), axis=1)
-        return cls(rays, cells, np.where(is_hit, spec.flat_at(ends_m), -1))
+def _rays(readings: tuple[RangeReading, ...], map_from_robot: Pose2, spec: GridSpec) -> Rays:
+    """Draw the beams of one sweep on the grid."""
+    bearing_rad, range_m, x_m, y_m, is_miss = np.ascontiguousarray(numbers_of(readings).T)
+    cos, sin = math.cos(map_from_robot.heading_rad), math.sin(map_from_robot.heading_rad)
+    origins_m = np.stack(
+        (map_from_robot.x_m + cos * x_m - sin * y_m, map_from_robot.y_m + sin * x_m + cos * y_m), axis=1
+    )
+    bearings_rad = map_from_robot.heading_rad + bearing_rad
+    ends_m = origins_m + range_m[:, None] * np.stack((np.cos(bearings_rad), np.sin(bearings_rad)), axis=1)
+    hits = np.where(is_miss > 0.0, -1, spec.flat_at(ends_m))
+    return Rays(spec.positions_at(origins_m), bearings_rad, range_m / spec.resolution_m, hits)

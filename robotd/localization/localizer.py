@@ -68,7 +68,16 @@ class LocalizationSettings:
 class Localizer:
     """Localizes on one map, stop after stop; an estimate may be asked for after any reading."""
 
-    def __init__(self, binary: BinaryMap, settings: LocalizationSettings, map_id: str) -> None:
+    def __init__(self, binary: BinaryMap, settings: LocalizationSettings, map_id: str, *, threads: int = 1) -> None:
+        """Prepare for a map.
+
+        Args:
+            binary: the map.
+            settings: what counts as an answer.
+            map_id: what estimates call the map.
+            threads: how many threads may share the work when it is much; no estimate depends on it.
+        """
+        self._threads = threads
         self._binary = binary
         self._settings = settings
         self._map_id = map_id
@@ -87,13 +96,13 @@ class Localizer:
         """
         self._ranks = self._blank(headings_rad)
 
-    def add(self, reading: RangeReading) -> None:
-        """Count a measured reading, a hit or a miss.
+    def add(self, *readings: RangeReading) -> None:
+        """Count measured readings, hits or misses; many at once cost less than one after the other.
 
         Raises:
-            ValueError: the reading measured nothing.
+            ValueError: a reading measured nothing; then none is counted.
         """
-        self._ranks.add(reading)
+        self._ranks.add(*readings)
 
     def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
         """Return what the readings so far say.
@@ -125,7 +134,7 @@ class Localizer:
 
     def _blank(self, headings_rad: Sequence[float]) -> RankGrid:
         error_radius_cells = self._settings.range_error_m / self._binary.spec.resolution_m
-        return RankGrid(self._binary, headings_rad, error_radius_cells)
+        return RankGrid(self._binary, headings_rad, error_radius_cells, threads=self._threads)
 
 
 def _farthest_m(region: Region, best: Region) -> float:

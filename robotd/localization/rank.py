@@ -10,15 +10,19 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.core.reading import RangeReading
 from robotd.grid import kernels
 from robotd.grid.binary import BinaryMap
 from robotd.grid.kernels.layout import TILE_ROWS, WORD_CELLS, BeamSettings, PackedMap, Words, unpack
+from robotd.grid.readings import numbers_of
 from robotd.localization.feasible import Obstacles
 
 _READINGS_MAX = int(np.iinfo(np.uint16).max)
 _BITS_AT_FIRST = 9
 """A sweep of 300 readings fits; counters that must hold more are widened."""
+
+_WORTH_THREADS = 1000
+"""Fewer beams than this are counted sooner than a thread is started."""
 
 
 class RankGrid:
@@ -80,11 +84,11 @@ class RankGrid:
     def _count(self, readings: Sequence[RangeReading], *, subtract: bool) -> None:
         if not readings:
             return
-        numbers = np.array([_numbers(reading) for reading in readings], np.float64)
-        beams = kernels.draw_beams(numbers, self._headings, self._how)
+        beams = kernels.draw_beams(numbers_of(readings), self._headings, self._how)
         self.readings += -len(readings) if subtract else len(readings)
         self._counters = _widened(self._counters, self.readings.bit_length())
-        kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=self._threads)
+        threads = self._threads if len(beams.beams) >= _WORTH_THREADS else 1
+        kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
 
     @property
     def rank(self) -> NDArray[np.uint16]:
@@ -145,13 +149,6 @@ class RankGrid:
 def even_headings(count: int) -> tuple[float, ...]:
     """Return theta slices all round, ``2 pi k / count`` ([BrownDonald2000]_ sec. 2.2.3)."""
     return tuple(math.tau * k / count for k in range(count))
-
-
-def _numbers(reading: RangeReading) -> tuple[float, float, float, float, bool]:
-    if reading.range_m is None:
-        raise ValueError(f"a {reading.status} reading has no range")
-    is_miss = reading.status is ReadingStatus.MISS
-    return reading.bearing_rad, reading.range_m, reading.origin_x_m, reading.origin_y_m, is_miss
 
 
 def _widened(counters: Words, bits: int) -> Words:

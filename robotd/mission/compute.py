@@ -1,6 +1,7 @@
 """Array work, away from the event loop."""
 
 import asyncio
+import os
 from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -29,6 +30,11 @@ class ThreadCompute:
     def close(self) -> None:
         """Wait for the job under way, drop those behind it, and end the thread."""
         self._executor.shutdown(cancel_futures=True)
+
+
+def cores() -> int:
+    """Return how many processor cores this process may use."""
+    return len(os.sched_getaffinity(0))
 
 
 class NotedCompute:

@@ -14,6 +14,7 @@ from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import RangeReading
 from robotd.localization.estimate import PoseEstimate, PoseState, Region
 from robotd.localization.localizer import Localizer
+from robotd.mission.compute import cores
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import MissionPhase
 from robotd.mission.map_in_use import MapInUse
@@ -111,14 +112,12 @@ class Narrowing:
                 return estimate
 
     def _narrow(self, batch: tuple[RangeReading, ...], time_ns: int, final: bool) -> PoseEstimate:
-        for reading in batch:
-            if reading.is_measured:
-                self._localizer.add(reading)
+        self._localizer.add(*(reading for reading in batch if reading.is_measured))
         return self._localizer.estimate(time_ns, final=final)
 
 
 def _prepare(context: MissionContext, place: MapInUse, heading_rad: float) -> Localizer:
-    localizer = Localizer(place.binary(), context.settings.localization, place.map_id)
+    localizer = Localizer(place.binary(), context.settings.localization, place.map_id, threads=cores())
     localizer.begin(context.settings.localization.headings_near(heading_rad))
     return localizer
 

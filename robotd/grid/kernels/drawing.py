@@ -1,9 +1,9 @@
 """Beams drawn on the grid, in NumPy: the twin of the kernel in C.
 
 Readings and headings that are multiples of one step share their directions: 300 x 300 beams run along 300 chains of
-cells. Directions count as one only if that is proved: a coordinate of a chain's cell is ``floor(0.5 + k * step)``, which
-never falls as the step grows, so a chain that is the same for the smallest and for the greatest step of a group is the
-same for all of it.
+cells. Directions count as one only if that is proved: a coordinate of a chain's cell is ``floor(0.5 + k * step)``,
+which never falls as the step grows, so a chain that is the same for the smallest and for the greatest step of a
+group is the same for all of it.
 """
 
 from dataclasses import dataclass

@@ -101,8 +101,8 @@ class Beams:
     lists: NDArray[np.int32]
     """``int32[batches * headings + 1]``: first beam of each batch and heading, and the end of the last."""
     beams: NDArray[np.int32]
-    """``int32[beams, 3]``: slot of the body, ``(row, col)`` of the head. A miss has its head ``FAR_CELLS`` away, outside
-    every grid, where all is occupied."""
+    """``int32[beams, 3]``: slot of the body, ``(row, col)`` of the head. A miss has its head ``FAR_CELLS`` away,
+    outside every grid, where all is occupied."""
     slots: int
     """No batch has more than so many."""
 
@@ -110,3 +110,15 @@ class Beams:
 FAR_CELLS = 1 << 28
 SLOTS = 2048
 """Half a mebibyte for each thread: a batch fits into the second-level cache with room to spare."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rays:
+    """Beams of one sweep into an occupancy grid; positions and lengths in cells, as in :mod:`robotd.grid.ray`."""
+
+    starts: NDArray[np.float64]
+    """``float64[n, 2]``, ``(row, col)``, inside the grid or not."""
+    bearings_rad: NDArray[np.float64]
+    lengths_cells: NDArray[np.float64]
+    hits: NDArray[np.intp]
+    """``intp[n]``: flat index of the cell in which each ended, -1 if it met nothing or ended outside the grid."""

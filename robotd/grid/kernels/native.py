@@ -10,9 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.layout import SLOTS, TILE_ROWS, Beams, BeamSettings, PackedMap, Words
+from robotd.grid.kernels.layout import SLOTS, TILE_ROWS, Beams, BeamSettings, PackedMap, Rays, Words
+from robotd.grid.ray import ray_steps, sample_counts
+from robotd.grid.tables import UpdateTable
 
 INSTRUCTION_SETS = ("portable", "avx2", "avx512")
+_THREADS_MAX = 16
+"""As in count.c."""
 
 
 def instruction_set() -> str:
@@ -68,7 +72,7 @@ def count_feasible(
         ValueError: this processor lacks those instructions.
     """
     tiles, headings, bits, _ = counters.shape
-    kept = np.empty((threads, beams.slots + 1, TILE_ROWS), np.uint64)
+    kept = np.empty((min(threads, _THREADS_MAX), beams.slots + 1, TILE_ROWS), np.uint64)
     job = ffi.new("count_job *")
     job.occupied, job.grown = _words(the_map.occupied), _words(the_map.grown)
     job.words, job.rows = the_map.words, the_map.rows
@@ -79,7 +83,7 @@ def count_feasible(
     job.headings, job.bits = headings, bits
     job.counters, job.kept = _words(counters), _words(kept)
     level = -1 if instructions is None else INSTRUCTION_SETS.index(instructions)
-    if not lib.count_feasible(job, subtract, threads, level):
+    if not lib.count_feasible(job, subtract, min(threads, _THREADS_MAX), level):
         raise ValueError(f"this processor has no {instructions}")
 
 
@@ -97,6 +101,34 @@ def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
         sizes = (tiles, headings, bits, least, the_map.rows, the_map.words)
         lib.at_least(_words(counters), _ints(the_map.tiles), *sizes, _words(masks))
     return masks
+
+
+def insert_rays(
+    cells: NDArray[np.uint8], rays: Rays, lower: UpdateTable, higher: UpdateTable, *, at_once: bool
+) -> NDArray[np.intp]:
+    """See the twin.
+
+    Raises:
+        ValueError: the cells are read-only.
+    """
+    rows, cols = cells.shape
+    samples = sample_counts(rays.bearings_rad, rays.lengths_cells)
+    beams = np.column_stack((rays.starts, ray_steps(rays.bearings_rad), samples))
+    changed = np.empty(min(cells.size, int(np.minimum(samples, cells.size).sum()) + len(samples)), np.int64)
+    number = lib.insert_beams(
+        ffi.from_buffer("uint8_t[]", cells, require_writable=True),
+        rows,
+        cols,
+        _floats(beams),
+        ffi.from_buffer("int64_t[]", rays.hits.astype(np.int64)),
+        len(beams),
+        ffi.from_buffer("uint8_t[]", lower),
+        ffi.from_buffer("uint8_t[]", higher),
+        at_once,
+        ffi.from_buffer("uint8_t[]", np.empty(cells.size, np.uint8)),
+        ffi.from_buffer("int64_t[]", changed),
+    )
+    return changed[:number].astype(np.intp)
 
 
 def _words(array: Words) -> Any:

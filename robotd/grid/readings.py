@@ -1,0 +1,27 @@
+"""Readings as an array, for everything that computes on many at once."""
+
+from collections.abc import Sequence
+from itertools import chain
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.reading import RangeReading, ReadingStatus
+
+
+def numbers_of(readings: Sequence[RangeReading]) -> NDArray[np.float64]:
+    """Return measured readings as ``float64[n, 5]``.
+
+    Per reading: bearing [rad], range [m], x and y of the beam's start [m], all in the robot frame; and 1 for a miss, 0
+    for a hit.
+
+    Raises:
+        ValueError: a reading measured nothing.
+    """
+    miss = ReadingStatus.MISS
+    rows = [(r.bearing_rad, r.range_m, r.origin_x_m, r.origin_y_m, r.status is miss) for r in readings]
+    numbers = np.fromiter(chain.from_iterable(rows), np.float64, 5 * len(rows)).reshape(-1, 5)
+    if np.isnan(numbers[:, 1]).any():
+        unmeasured = next(reading.status for reading in readings if reading.range_m is None)
+        raise ValueError(f"a {unmeasured} reading has no range")
+    return numbers
