@@ -9,7 +9,7 @@ SEED ?= 1
 PYTEST_ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test lint types contracts check clean
+.PHONY: help demo demo-real test bench lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
@@ -24,6 +24,9 @@ demo-real: .venv/.demo  ## The same in a recorded building: make demo-real LOG=p
 test: .venv/.dev  ## Run all tests
 	@echo "robotd: running all tests (about three minutes on two cores)"
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -q $(PYTEST_ARGS)
+
+bench: .venv/.dev  ## Measure the kernels against their NumPy twins and this machine; writes docs/benchmarks
+	@$(BIN)/python -m tests.benchmarks.run
 
 lint: .venv/.dev  ## Check format and style
 	@echo "robotd: ruff"

@@ -90,14 +90,19 @@ def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
 def _seen_from(packed: Words, row: int, col: int) -> Words:
     """Return the map shifted so that each cell holds what lies at an offset from it, ``uint64[words, rows]``."""
     words, rows = packed.shape[0] - 2 * PAD_WORDS, packed.shape[1] - 2 * TILE_ROWS
-    shift = np.uint64(col % WORD_CELLS)
-    rows_there = np.clip(np.arange(rows) + row, -1, rows) + TILE_ROWS
-    low_words = np.clip(np.arange(words) + col // WORD_CELLS, -PAD_WORDS, words) + PAD_WORDS
-    low: Words = packed[low_words[:, None], rows_there]
-    if shift == 0:
-        return low
-    high: Words = packed[low_words[:, None] + 1, rows_there]
-    return (low >> shift) | (high << np.uint64(WORD_CELLS - shift))
+    word, shift = divmod(col, WORD_CELLS)
+    first_word, first_row = max(0, -PAD_WORDS - word), max(0, -TILE_ROWS - row)
+    last_word, last_row = min(words, words + 1 - word), min(rows, rows + TILE_ROWS - row)
+    seen = np.full((words, rows), ~np.uint64(0))
+    if first_word >= last_word or first_row >= last_row:
+        return seen
+    there = slice(first_row + row + TILE_ROWS, last_row + row + TILE_ROWS)
+    low: Words = packed[first_word + word + PAD_WORDS : last_word + word + PAD_WORDS, there]
+    if shift:
+        high: Words = packed[first_word + word + PAD_WORDS + 1 : last_word + word + PAD_WORDS + 1, there]
+        low = (low >> np.uint64(shift)) | (high << np.uint64(WORD_CELLS - shift))
+    seen[first_word:last_word, first_row:last_row] = low
+    return seen
 
 
 def _tiles(plane: Words, the_map: PackedMap) -> Words:

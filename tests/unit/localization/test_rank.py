@@ -66,6 +66,61 @@ def test_the_order_of_readings_does_not_matter(
     assert np.array_equal(one.rank, other.rank)
 
 
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 2**32), st.lists(readings, min_size=1, max_size=6), st.data())
+def test_readings_can_be_added_together_and_taken_back_in_any_order(
+    seed: int, sweep: list[RangeReading], data: st.DataObject
+) -> None:
+    binary = binary_of(np.random.default_rng(seed).random((75, 140)) < 0.05)
+    gone = data.draw(st.lists(st.sampled_from(range(len(sweep))), unique=True))
+    grid, expected = (RankGrid(binary, even_headings(8), 1.5) for _ in range(2))
+    grid.add(*sweep)
+    for number in gone:
+        grid.remove(sweep[number])
+    for number in set(range(len(sweep))) - set(gone):
+        expected.add(sweep[number])
+    assert grid.readings == len(sweep) - len(gone)
+    assert np.array_equal(grid.rank, expected.rank)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 2**32), st.integers(0, 40))
+def test_all_poses_of_a_map_of_many_tiles_are_the_reference_at_samples(seed: int, turned: int) -> None:
+    """Headings and bearings are multiples of one step, so directions are shared; slices are compared whole."""
+    random = np.random.default_rng(seed)
+    occupied = np.kron(random.random((7, 20)) < 0.1, np.ones((12, 9), np.bool_)).astype(np.bool_)
+    sweep = [
+        RangeReading(0, math.tau * (k + turned) / 40, random.choice([ReadingStatus.OK, ReadingStatus.MISS]), length)
+        for k, length in enumerate(random.uniform(0.1, 25.0, 40).tolist())
+    ]
+    ranks = RankGrid(binary_of(occupied), even_headings(40), 1.5, threads=2)
+    ranks.add(*sweep)
+    obstacles = Obstacles.of(occupied, 1.5)
+    rank = ranks.rank
+    for number in random.integers(0, 40, 2).tolist():
+        probes = (
+            probe_of(reading, ranks.headings_rad[number], resolution_m=0.5, error_radius_cells=1.5, reach_cells=400)
+            for reading in sweep
+        )
+        assert np.array_equal(rank[number], sum(feasible_poses(obstacles, probe).astype(int) for probe in probes))
+    assert np.array_equal(ranks.rank_at(ranks.cells_of_rank(3)), rank[rank >= 3])
+    assert np.array_equal(ranks.cells_of_rank(3), np.argwhere(rank >= 3))
+
+
+def test_counters_grow_with_what_they_count() -> None:
+    ranks = RankGrid(binary_of(np.zeros((3, 3), np.bool_)), [0.0], 1.0)
+    one = RangeReading(0, 0.0, ReadingStatus.MISS, 0.1)
+    ranks.add(*[one] * 511)
+    ranks.add(one)
+    assert ranks.best_rank == 512
+    ranks.remove(*[one] * 512)
+    assert ranks.best_rank == 0
+    with pytest.raises(ValueError, match="taken back"):
+        ranks.remove(one)
+    with pytest.raises(ValueError, match="65535"):
+        ranks.add(*[one] * 65536)
+
+
 def test_a_map_without_free_cells_has_no_poses() -> None:
     ranks = RankGrid(binary_of(np.ones((4, 5), np.bool_)), [0.0], 1.0)
     ranks.add(RangeReading(0, 0.0, ReadingStatus.OK, 1.0))
