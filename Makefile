@@ -1,5 +1,6 @@
 # make demo   the main job, end to end, on simulated hardware
 # make test   all tests
+# make bench  measure the kernels
 # make help   the rest
 PYTHON ?= python3
 BIN := .venv/bin
