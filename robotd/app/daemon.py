@@ -39,7 +39,6 @@ def main(argv: list[str] | None = None) -> int:
             print(problem, file=sys.stderr)
         return EXIT_CONFIG
     configure(arguments.log_level)
-    log.info("%s", kernels.IN_USE)
     exit_code = 0
     try:
         asyncio.run(run(config))
@@ -123,6 +122,7 @@ async def _serve(config: Config, daemon: Daemon, stopping: asyncio.Event) -> Non
 def _announce(notifier: Notifier) -> None:
     notifier.ready()
     notifier.status("serving")
+    log.info("%s", kernels.IN_USE)
     log.info("robotd %s is ready", __version__)
 
 
