@@ -121,12 +121,6 @@ class OccupancyGrid:
         at_once = self.settings.policy is UpdatePolicy.PER_SWEEP
         return kernels.insert_rays(self.cells, rays, self._lower, self._raise, at_once=at_once)
 
-    def snapshot(self) -> "OccupancyGrid":
-        """Return a copy that nobody changes any more: its cells are read-only, ``insert`` into it fails."""
-        copy = OccupancyGrid(self.spec, self.cells, self.settings)
-        copy.cells.flags.writeable = False
-        return copy
-
     def digest(self) -> str:
         """Return the SHA-256 of placement and cells, in hexadecimal: equal exactly if the maps are."""
         spec = self.spec

@@ -153,15 +153,6 @@ def test_the_digest_tells_maps_apart_by_cells_and_by_place() -> None:
     assert grid.digest() != same.digest()
 
 
-def test_a_snapshot_stays_as_it_was() -> None:
-    grid = OccupancyGrid(SPEC)
-    snapshot = grid.snapshot()
-    grid.insert(sweep_of(reading(0.0, 1.0)), IDENTITY)
-    assert (snapshot.cells == 128).all()
-    with pytest.raises(ValueError, match="read-only"):
-        snapshot.insert(sweep_of(reading(0.0, 1.0)), IDENTITY)
-
-
 def test_unknown_cells_are_occupied_in_the_binary_map() -> None:
     cells = np.array([[0, 127, 128, 129, 255]], np.uint8)
     binary = BinaryMap.from_grid(OccupancyGrid(GridSpec(1.0, 0.0, 0.0, (1, 5)), cells))
