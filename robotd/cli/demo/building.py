@@ -10,6 +10,7 @@ from robotd.cli.demo.mission import Trial, follow, print_readings, stage
 from robotd.cli.demo.rig import Rig, rig, wired
 from robotd.cli.demo.room import fresh
 from robotd.cli.demo.truth import true_pose
+from robotd.cli.simulate import odometry_argument
 from robotd.cli.verb import OK
 from robotd.config import Config
 from robotd.core.errors import MissionError
@@ -30,12 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--stops", type=int, default=60, metavar="N", help="stops of the map (default: 60)")
     parser.add_argument("--trials", type=int, default=30, metavar="N", help="kept-out stops to visit (default: 30)")
     parser.add_argument("--spacing-m", type=float, default=1.0, metavar="M", help="between stops (default: 1.0)")
-    parser.add_argument(
-        "--odometry",
-        choices=[source.value for source in OdometrySource],
-        default=OdometrySource.CORRECTED.value,
-        help="the log's corrected poses, or what its robot believed (default: corrected)",
-    )
+    odometry_argument(parser)
     parser.add_argument("--out", type=Path, default=Path("demo"), metavar="DIR", help="for the results (default: demo)")
 
 
@@ -59,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
         entry = parts.client.map_save()
         console.print(f"  map saved: {directory / 'maps' / entry.name / str(entry.version)} ({entry.digest[:12]})")
         the_map = parts.client.map_show()
-        # Backwards, from where the map ended: so each leg is one that the recorded robot went.
+        # Backwards, from where the map ended: so the legs keep to the way that the recorded robot went.
         probes_m = tuple(reversed(robot.probes_m))
         trials = [_localize_at(parts, console, number, probe_m) for number, probe_m in enumerate(probes_m, 1)]
     _report(console, trials)
