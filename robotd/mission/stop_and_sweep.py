@@ -27,7 +27,8 @@ class SweepSettings:
     readings: int = 300
     """Readings evenly round the robot."""
     tilt_rad: float = 0.0
-    """Tilt of the beam, up from level; LILY slanted hers to the floor 2 m ahead."""
+    """Tilt of the beam, up from level; LILY slanted hers to the floor 2 m ahead. The cut-off (``range_max_m``) must lie
+    before the floor, or the floor is taken for walls."""
     settle_s: float = 0.2
     """Odometry must report standstill for so long before the first reading."""
     aim_timeout_s: float = 5.0

@@ -2,11 +2,13 @@
 
 import asyncio
 import math
+from dataclasses import replace
 from statistics import median
 
 import numpy as np
 import pytest
 
+from robotd.config import Config
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
@@ -113,6 +115,25 @@ async def test_a_robot_taken_off_its_map_is_lost(live: Live) -> None:
         found = final_estimates(await it.done(LocalizeMission(0.0)))[-1]
     assert found.state is PoseState.LOST
     assert found.best is None
+
+
+async def test_a_beam_slanted_to_the_floor_maps_and_localizes_as_lily_did(live: Live) -> None:
+    level = Config()
+    slanted = replace(
+        level,
+        sweep=replace(level.sweep, tilt_rad=-0.24),
+        rangefinder=replace(level.rangefinder, range_max_m=2.1),
+    )
+    robot = SimulatedRobot(load_world("office"), seed=1)
+    async with live(robot, slanted) as it:
+        said = await it.done(MapMission("office", robot.stops_m, robot.start))
+        misses = [event.sweep.count(ReadingStatus.MISS) for event in said if isinstance(event, SweepDone)]
+        assert min(misses) > 30
+        await it.done(DriveMission(*robot.probes_m[0]))
+        found = final_estimates(await it.done(LocalizeMission()))[-1]
+        assert found.state is PoseState.LOCALIZED
+        assert found.best is not None
+        assert found.best.distance_m(robot.truth) < 0.1
 
 
 async def test_a_robot_that_is_lost_does_not_drive_until_it_is_found(live: Live) -> None:
