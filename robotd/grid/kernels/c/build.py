@@ -5,16 +5,17 @@ from pathlib import Path
 from cffi import FFI
 
 HERE = Path(__file__).parent
-SOURCES = ("count.c", "draw.c", "insert.c")
+KERNELS = ("count", "draw", "insert")
+"""Each a source and the header that declares what Python calls."""
 
 builder = FFI()
-builder.cdef((HERE / "kernels.h").read_text())
+builder.cdef("".join((HERE / f"{name}.h").read_text() for name in KERNELS))
 builder.set_source(
     "robotd.grid.kernels._native",
-    '#include <stdint.h>\n#include "kernels.h"\n',
-    sources=[f"robotd/grid/kernels/c/{name}" for name in SOURCES],
+    "#include <stdint.h>\n" + "".join(f'#include "{name}.h"\n' for name in KERNELS),
+    sources=[f"robotd/grid/kernels/c/{name}.c" for name in KERNELS],
     include_dirs=["robotd/grid/kernels/c"],
-    depends=[f"robotd/grid/kernels/c/{name}" for name in ("kernels.h", "count_body.h")],
+    depends=sorted(f"robotd/grid/kernels/c/{header.name}" for header in HERE.glob("*.h")),
     # Contraction would round differently from NumPy; no -march: a wheel must run elsewhere.
     extra_compile_args=["-std=gnu99", "-O3", "-ffp-contract=off", "-fvisibility=hidden", "-Wall", "-Wextra"],
     extra_link_args=["-pthread"],

@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "kernels.h"
+#include "count.h"
 
 #define TILE 32
 #define THREADS_MAX 16

@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "kernels.h"
+#include "draw.h"
 
 #define FAR_CELLS 268435456.0
 #define DIRECTIONS 1073741824.0

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "kernels.h"
+#include "insert.h"
 
 typedef struct {
     double row, col, row_step, col_step, samples;

@@ -1,14 +1,10 @@
-"""The kernels in NumPy: what the ones in C must do, and what does it where they were not compiled."""
+"""Counting feasible poses, in NumPy: the twin of the kernel in C."""
 
 import itertools
 
 import numpy as np
 
-from robotd.grid.kernels.drawing import draw_beams
-from robotd.grid.kernels.inserting import insert_rays
 from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, Beams, PackedMap, Words
-
-__all__ = ["at_least", "count_feasible", "draw_beams", "greatest", "insert_rays"]
 
 
 def count_feasible(

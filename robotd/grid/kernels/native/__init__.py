@@ -1,0 +1,25 @@
+"""The kernels in C. Importing this fails where they were not compiled; each call releases the GIL.
+
+Every function has a twin of the same name and the same results in :mod:`robotd.grid.kernels.twins`, where it is
+described.
+"""
+
+from robotd.grid.kernels.native.counting import (
+    INSTRUCTION_SETS,
+    at_least,
+    count_feasible,
+    greatest,
+    instruction_set,
+)
+from robotd.grid.kernels.native.drawing import draw_beams
+from robotd.grid.kernels.native.inserting import insert_rays
+
+__all__ = [
+    "INSTRUCTION_SETS",
+    "at_least",
+    "count_feasible",
+    "draw_beams",
+    "greatest",
+    "insert_rays",
+    "instruction_set",
+]

@@ -1,0 +1,63 @@
+"""Counting feasible poses, in C."""
+
+import numpy as np
+
+from robotd.grid.kernels._native import ffi, lib
+from robotd.grid.kernels.layout import TILE_ROWS, Beams, PackedMap, Words
+from robotd.grid.kernels.native.buffers import ints, words
+
+INSTRUCTION_SETS = ("portable", "avx2", "avx512")
+_THREADS_MAX = 16
+"""As in count.c."""
+
+
+def instruction_set() -> str:
+    """Return which instructions this processor lets the counting use."""
+    name: bytes = ffi.string(lib.instruction_set())
+    return name.decode()
+
+
+def count_feasible(
+    counters: Words,
+    the_map: PackedMap,
+    beams: Beams,
+    *,
+    subtract: bool = False,
+    threads: int = 1,
+    instructions: str | None = None,
+) -> None:
+    """See the twin; ``instructions`` is one of ``INSTRUCTION_SETS``, the best one if None.
+
+    Raises:
+        ValueError: this processor lacks those instructions.
+    """
+    tiles, headings, bits, _ = counters.shape
+    kept = np.empty((min(threads, _THREADS_MAX), beams.slots + 1, TILE_ROWS), np.uint64)
+    job = ffi.new("count_job *")
+    job.occupied, job.grown = words(the_map.occupied), words(the_map.grown)
+    job.words, job.rows = the_map.words, the_map.rows
+    job.tiles, job.tile_count = ints(the_map.tiles), tiles
+    job.chains, job.groups = ints(beams.chains), ints(beams.groups)
+    job.batches, job.batch_count = ints(beams.batches), len(beams.batches) - 1
+    job.lists, job.beams, job.slots = ints(beams.lists), ints(beams.beams), beams.slots
+    job.headings, job.bits = headings, bits
+    job.counters, job.kept = words(counters), words(kept)
+    level = -1 if instructions is None else INSTRUCTION_SETS.index(instructions)
+    if not lib.count_feasible(job, subtract, min(threads, _THREADS_MAX), level):
+        raise ValueError(f"this processor has no {instructions}")
+
+
+def greatest(counters: Words) -> int:
+    """See the twin."""
+    tiles, headings, bits, _ = counters.shape
+    return int(lib.greatest(words(counters), tiles * headings, bits))
+
+
+def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
+    """See the twin."""
+    tiles, headings, bits, _ = counters.shape
+    masks = np.zeros((headings, the_map.rows, the_map.words), np.uint64)
+    if least >> bits == 0:
+        sizes = (tiles, headings, bits, least, the_map.rows, the_map.words)
+        lib.at_least(words(counters), ints(the_map.tiles), *sizes, words(masks))
+    return masks
