@@ -10,61 +10,69 @@ Convolving a bitmap with a point set is ORing shifted copies of it. D would take
 but growing M by the disk and then shifting it is the same set, so M is grown once per map and D is one shift. E takes
 one shift for every cell of the body, O(n^2 r).
 
-Whatever lies outside the grid is unknown, and unknown is occupied: a beam that leaves the grid is blocked there, and
-one that ends within eps of the edge may end at it.
+For the paper whatever lies outside the grid is unknown, and unknown is occupied: a beam that leaves the grid is blocked
+there, and one that ends within eps of the edge may end at it. :mod:`robotd.localization.obstacles` knows other readings
+of what nobody has seen.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.footprints import dilate, disk_footprint
+from robotd.localization.obstacles import Obstacles
 from robotd.localization.probe import Probe
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Obstacles:
-    """A binary map and the same grown by the error radius, once for all probes."""
-
-    occupied: NDArray[np.bool_]
-    """``bool[rows, cols]``, M."""
-    grown: NDArray[np.bool_]
-    """``bool[rows, cols]``, M (+) B_eps."""
-
-    @classmethod
-    def of(cls, occupied: NDArray[np.bool_], error_radius_cells: float) -> "Obstacles":
-        """Grow ``bool[rows, cols]`` by a disk."""
-        return cls(occupied, dilate(occupied, disk_footprint(error_radius_cells), outside=True))
-
-
 def feasible_poses(obstacles: Obstacles, probe: Probe) -> NDArray[np.bool_]:
-    """Return FP_eps, ``bool[rows, cols]``: the cells where the robot can get this reading.
+    """Return FP_eps, ``bool[rows, cols]``: the cells where the robot can stand and get this reading.
 
     For a miss these are the cells from which nothing blocks the beam.
     """
-    unblocked = ~blocked_set(obstacles.occupied, probe.body)
-    return unblocked if probe.head is None else unblocked & endpoint_set(obstacles.grown, probe.head)
+    blocked = blocked_set(
+        obstacles.blocking, probe.body, outside=obstacles.outside_blocks, blocked_by=obstacles.blocked_by
+    )
+    unblocked = obstacles.free & ~blocked
+    if probe.head is None:
+        return unblocked
+    return unblocked & endpoint_set(obstacles.grown, probe.head, outside=obstacles.outside_ends)
 
 
-def endpoint_set(grown: NDArray[np.bool_], head: tuple[int, int]) -> NDArray[np.bool_]:
-    """Return D_eps, ``bool[rows, cols]``, of a grown map: the cells from which the head is on it."""
-    endpoints = np.ones_like(grown)
+def endpoint_set(grown: NDArray[np.bool_], head: tuple[int, int], *, outside: bool = True) -> NDArray[np.bool_]:
+    """Return D_eps, ``bool[rows, cols]``, of a grown map: the cells from which the head is on it.
+
+    Args:
+        grown: ``bool[rows, cols]``.
+        head: ``(row, col)`` offset of the head.
+        outside: whether a head beyond the grid is on it.
+    """
+    endpoints = np.full_like(grown, outside)
     here, there = _overlap(grown.shape, *head)
     endpoints[here] = grown[there]
     return endpoints
 
 
-def blocked_set(occupied: NDArray[np.bool_], body: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Return E_eps, ``bool[rows, cols]``: the cells from which any cell of the body ``intp[n, 2]`` is occupied."""
-    blocked = np.zeros_like(occupied)
+def blocked_set(
+    blocking: NDArray[np.bool_], body: NDArray[np.intp], *, outside: bool = True, blocked_by: int = 1
+) -> NDArray[np.bool_]:
+    """Return E_eps, ``bool[rows, cols]``: the cells from which enough cells of the body are blocking.
+
+    Args:
+        blocking: ``bool[rows, cols]``.
+        body: ``intp[n, 2]``, offsets.
+        outside: whether the cells beyond the grid are blocking.
+        blocked_by: how many are enough.
+    """
+    met = np.zeros(blocking.shape, np.int32)
     offsets: Iterable[tuple[int, int]] = body.tolist()
     for row, col in offsets:
-        here, there = _overlap(occupied.shape, row, col)
-        blocked[here] |= occupied[there]
-    _block_where_outside(blocked, body)
-    return blocked
+        here, there = _overlap(blocking.shape, row, col)
+        if outside:
+            met += 1
+            met[here] -= ~blocking[there]
+        else:
+            met[here] += blocking[there]
+    return met >= blocked_by
 
 
 Window = tuple[slice, slice]
@@ -76,14 +84,3 @@ def _overlap(shape: tuple[int, ...], row: int, col: int) -> tuple[Window, Window
     here = (slice(max(0, -row), max(0, rows - row)), slice(max(0, -col), max(0, cols - col)))
     there = (slice(max(0, row), max(0, rows + row)), slice(max(0, col), max(0, cols + col)))
     return here, there
-
-
-def _block_where_outside(blocked: NDArray[np.bool_], body: NDArray[np.intp]) -> None:
-    """Block the cells from which some cell of the body is outside the grid: strips along its four sides."""
-    rows, cols = blocked.shape
-    low_row, low_col = body.min(axis=0).tolist()
-    high_row, high_col = body.max(axis=0).tolist()
-    blocked[: max(0, -low_row)] = True
-    blocked[max(0, rows - high_row) :] = True
-    blocked[:, : max(0, -low_col)] = True
-    blocked[:, max(0, cols - high_col) :] = True

@@ -15,7 +15,7 @@ from robotd.grid import kernels
 from robotd.grid.binary import BinaryMap
 from robotd.grid.kernels.layout import TILE_ROWS, WORD_CELLS, BeamSettings, PackedMap, Words, unpack
 from robotd.grid.readings import numbers_of
-from robotd.localization.feasible import Obstacles
+from robotd.localization.obstacles import Obstacles
 
 _READINGS_MAX = int(np.iinfo(np.uint16).max)
 _BITS_AT_FIRST = 9

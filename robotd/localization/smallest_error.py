@@ -33,7 +33,8 @@ from robotd.grid.distance import distance_transform
 from robotd.grid.floods import UNREACHED
 from robotd.grid.ray import ray_steps, sample_counts
 from robotd.grid.translation import translated
-from robotd.localization.feasible import Obstacles, feasible_poses
+from robotd.localization.feasible import feasible_poses
+from robotd.localization.obstacles import Obstacles
 from robotd.localization.probe import Probe, probe_of
 
 

@@ -22,7 +22,7 @@ from robotd.grid.kernels import twins
 from robotd.grid.kernels.layout import BeamSettings, PackedMap
 from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy, _rays
 from robotd.grid.readings import numbers_of
-from robotd.localization.feasible import Obstacles
+from robotd.localization.obstacles import Obstacles
 from robotd.localization.rank import RankGrid, even_headings
 from tests.benchmarks import workload
 

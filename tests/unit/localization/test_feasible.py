@@ -10,7 +10,8 @@ from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.localization.feasible import Obstacles, blocked_set, endpoint_set, feasible_poses
+from robotd.localization.feasible import blocked_set, endpoint_set, feasible_poses
+from robotd.localization.obstacles import Obstacles
 from robotd.localization.probe import probe_of
 
 RESOLUTION_M = 0.25

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.footprints import dilate, disk_footprint
-from robotd.localization.feasible import Obstacles, blocked_set, endpoint_set, feasible_poses
+from robotd.localization.feasible import blocked_set, endpoint_set, feasible_poses
 from robotd.localization.flooded import flooded_blocked_set, flooded_endpoint_set, flooded_feasible_poses
+from robotd.localization.obstacles import Obstacles
 from robotd.localization.probe import Probe, probe_of
 
 RESOLUTION_M = 0.25

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.spec import GridSpec
-from robotd.localization.feasible import Obstacles, feasible_poses
+from robotd.localization.feasible import feasible_poses
+from robotd.localization.obstacles import Obstacles
 from robotd.localization.probe import probe_of
 from robotd.localization.rank import RankGrid, even_headings
 
