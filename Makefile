@@ -8,6 +8,7 @@ KERNELS := setup.py $(wildcard robotd/grid/kernels/c/*)
 WORLD ?= laboratory
 SEED ?= 1
 PYTEST_ARGS ?=
+ONLY ?=
 
 .DEFAULT_GOAL := help
 .PHONY: help demo demo-real test bench lint types contracts check clean
@@ -26,8 +27,8 @@ test: .venv/.dev  ## Run all tests
 	@echo "robotd: running all tests (about three minutes on two cores)"
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -q $(PYTEST_ARGS)
 
-bench: .venv/.dev  ## Measure the kernels against their NumPy twins and this machine; writes docs/benchmarks
-	@$(BIN)/python -m tests.benchmarks.run
+bench: .venv/.dev  ## Measure the engine: all of it into docs/benchmarks, or a part: make bench ONLY=counting
+	@$(BIN)/python -m tests.benchmarks.run $(if $(ONLY),--only $(ONLY))
 
 lint: .venv/.dev  ## Check format and style
 	@echo "robotd: ruff"

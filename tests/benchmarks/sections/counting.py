@@ -1,0 +1,68 @@
+"""All poses counted, and one reading more."""
+
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.grid import kernels
+from robotd.grid.kernels import twins
+from robotd.grid.kernels.layout import BeamSettings, PackedMap
+from robotd.grid.readings import numbers_of
+from robotd.localization.obstacles import Obstacles
+from robotd.localization.rank import RankGrid, even_headings
+from tests.benchmarks import workload
+from tests.benchmarks.timing import Timing, timed
+
+HOW = BeamSettings(workload.RESOLUTION_M, workload.ERROR_RADIUS_CELLS, reach_cells=512)
+HEADINGS = 300
+
+
+def timings() -> Iterator[Timing]:
+    """Workload S, and the worst case of its size."""
+    for name, occupied in (("S", workload.room()), ("open 256 x 256", workload.open_square())):
+        yield from all_poses(name, occupied)
+        yield from one_reading(name, occupied)
+
+
+def all_poses(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
+    """Every free cell, every heading, every reading."""
+    binary = workload.binary_of(occupied)
+    sweep = workload.sweep_of(occupied).measured
+    headings = even_headings(HEADINGS)
+
+    def whole(threads: int) -> RankGrid:
+        ranks = RankGrid(binary, headings, workload.ERROR_RADIUS_CELLS, threads=threads)
+        ranks.add(*sweep)
+        return ranks
+
+    title = f"{room}, all poses, {HEADINGS} headings, {len(sweep)} readings"
+    goal_ms = 30.0 if room == "S" else None
+    yield timed(f"{title}: map to counts, one thread", lambda: whole(1), 15, goal_ms=goal_ms)
+    yield timed(f"{title}: map to counts, two threads", lambda: whole(2), 15)
+    ranks = whole(1)
+    yield timed(f"{title}: greatest rank", lambda: ranks.best_rank, 15)
+    yield timed(f"{title}: poses of greatest rank", lambda: ranks.best_cells, 15)
+    few = sweep[:: len(sweep) // 10]
+    the_map = PackedMap.of(occupied, Obstacles.of(occupied, workload.ERROR_RADIUS_CELLS).grown)
+    ten = np.array(headings[:10])
+    for name, module in (("in use", kernels), ("NumPy twin", twins)):
+        counters = the_map.blank_counters(10, 9)
+        beams = module.draw_beams(numbers_of(few), ten, HOW)
+        run = partial(module.count_feasible, counters, the_map, beams)
+        yield timed(f"{room}, 10 headings x {len(few)} readings, {name}", run, 5)
+
+
+def one_reading(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
+    """One reading more, heading known."""
+    ranks = RankGrid(workload.binary_of(occupied), (0.0,), workload.ERROR_RADIUS_CELLS)
+    the_map = PackedMap.of(occupied, Obstacles.of(occupied, workload.ERROR_RADIUS_CELLS).grown)
+    counters = the_map.blank_counters(1, 16)
+    sweep = sorted(workload.sweep_of(occupied).measured, key=lambda reading: reading.range_m or 0.0)
+    for name, reading in (("median", sweep[len(sweep) // 2]), ("longest", sweep[-1])):
+        beams = kernels.draw_beams(numbers_of((reading,)), np.zeros(1), HOW)
+        title = f"{room}, one reading ({name} range {reading.range_m:.2f} m), heading known"
+        yield timed(f"{title}: counting", partial(kernels.count_feasible, counters, the_map, beams), 500, goal_ms=0.015)
+        yield timed(f"{title}: counting, NumPy twin", partial(twins.count_feasible, counters, the_map, beams), 20)
+        yield timed(f"{title}: add()", partial(ranks.add, reading), 300)

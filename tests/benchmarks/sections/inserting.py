@@ -1,0 +1,25 @@
+"""One sweep into the map."""
+
+from collections.abc import Iterator
+from functools import partial
+
+from robotd.grid import kernels
+from robotd.grid.kernels import twins
+from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy, _rays
+from tests.benchmarks import workload
+from tests.benchmarks.timing import Timing, timed
+
+
+def timings() -> Iterator[Timing]:
+    """Workload S, by both policies."""
+    sweep = workload.sweep_of(workload.room())
+    for policy in UpdatePolicy:
+        grid = OccupancyGrid(workload.SPEC, settings=GridSettings(policy=policy))
+        rays = _rays(sweep.measured, workload.TRUTH, workload.SPEC)
+        tables = (grid._lower, grid._raise)
+        at_once = policy is UpdatePolicy.PER_SWEEP
+        title = f"S, one sweep into the map, {policy}"
+        for name, module in (("in use", kernels), ("NumPy twin", twins)):
+            run = partial(module.insert_rays, grid.cells, rays, *tables, at_once=at_once)
+            yield timed(f"{title}: cells, {name}", run, 50)
+        yield timed(f"{title}: insert()", partial(grid.insert, sweep, workload.TRUTH), 200, goal_ms=0.1)
