@@ -8,7 +8,7 @@ from typing import Any
 
 from robotd.config import Config, effective_text
 from robotd.core.clock import now_ns
-from robotd.hardware.devices.catalogue import drive, pantilt, rangefinder
+from robotd.hardware.devices.catalogue import drive, line_format, pantilt, rangefinder
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.address import connector
 from robotd.hardware.transport.transport import Connect
@@ -40,7 +40,7 @@ class Daemon:
 def serial_connectors(config: Config) -> dict[str, Connect]:
     """Return how to open the three serial lines."""
     ports = {"drive": config.drive, "pantilt": config.pantilt, "rangefinder": config.rangefinder}
-    return {name: connector(settings.port, settings.baud) for name, settings in ports.items()}
+    return {name: connector(settings.port, line_format(name, settings)) for name, settings in ports.items()}
 
 
 def compose(config: Config, connects: Mapping[str, Connect], compute: Compute, journal: PrerollJournal) -> Daemon:

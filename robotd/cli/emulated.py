@@ -12,13 +12,16 @@ from robotd.recording.reader import Recording
 RUNTIME_DIR, MAPS_DIR, RECORDINGS_DIR = "run", "maps", "recordings"
 
 
-def config_text(ports: Mapping[str, str]) -> str:
-    """Return a configuration for devices on these ports, which keeps all that it makes beside itself."""
+def config_text(ports: Mapping[str, str], devices: Mapping[str, Mapping[str, object]] | None = None) -> str:
+    """Return a configuration for devices on these ports, which keeps all that it makes beside itself.
+
+    ``devices`` says what else the section of each device must hold.
+    """
     sections: dict[str, dict[str, object]] = {
         "server": {"runtime_dir": RUNTIME_DIR},
         "maps": {"dir": MAPS_DIR},
         "recording": {"dir": RECORDINGS_DIR},
-        **{device: {"port": port} for device, port in ports.items()},
+        **{device: {"port": port, **(devices or {}).get(device, {})} for device, port in ports.items()},
     }
     lines = ["# Made by robotctl for emulated devices; what is not here has its default."]
     for section, values in sections.items():

@@ -12,6 +12,7 @@ from robotd.cli.terminal import err, out, print_json, print_pairs
 from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.log import configure
 from robotd.recording.reader import read
+from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
 from robotd.sim.fake_robot import FakeRobot
 from robotd.sim.load import load_robot
 from robotd.sim.recorded_building import OdometrySource
@@ -21,10 +22,12 @@ from robotd.sim.world import world_names
 
 
 def _sim(arguments: argparse.Namespace) -> int:
-    robot = load_robot(arguments.world, arguments.seed, odometry=OdometrySource(arguments.odometry))
+    dialects = Dialects(arguments.drive, arguments.pantilt, arguments.rangefinder)
+    odometry = OdometrySource(arguments.odometry)
+    robot = load_robot(arguments.world, arguments.seed, odometry=odometry, dialects=dialects)
 
     def write(file: Path, ports: dict[str, str]) -> None:
-        write_config(file, config_text(ports))
+        write_config(file, config_text(ports, dialects.settings()))
 
     _serve(arguments, robot, write, truth_path=arguments.truth)
     return OK
@@ -81,6 +84,10 @@ def _sim_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("world", metavar="WORLD", help=f"{', '.join(world_names())}, or a file of one")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="same seed, same noise (default: 1)")
     odometry_argument(parser)
+    for device, table in (("drive", DRIVES), ("pantilt", PANTILTS), ("rangefinder", RANGEFINDERS)):
+        parser.add_argument(
+            f"--{device}", choices=list(table), default=OWN, help=f"what the {device} speaks (default: {OWN})"
+        )
     parser.add_argument("--truth", type=Path, metavar="FILE", help="note in it where the robot really came to rest")
     _lines_arguments(parser)
 

@@ -6,7 +6,7 @@ from robotd.config.environment import runtime_dir
 from robotd.config.sections import MapsSettings, RecordingSettings
 from robotd.core.errors import ConfigError
 from robotd.grid.occupancy import GridSettings
-from robotd.hardware.devices.catalogue import DRIVES, PANTILTS, RANGEFINDERS
+from robotd.hardware.devices.catalogue import DIALECTS, line_format
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
 from robotd.hardware.transport.address import connector
 from robotd.localization.localizer import LocalizationSettings
@@ -14,8 +14,6 @@ from robotd.mission.steering import DrivingSettings
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.planning.path import PlanningSettings
 from robotd.server.server import ServerSettings
-
-_DIALECTS = {"drive": tuple(DRIVES), "pantilt": tuple(PANTILTS), "rangefinder": tuple(RANGEFINDERS)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +46,11 @@ class Config:
 
 
 def _check_device(device: str, settings: PortSettings) -> None:
-    if settings.dialect not in _DIALECTS[device]:
-        known = ", ".join(_DIALECTS[device])
+    if settings.dialect not in DIALECTS[device]:
+        known = ", ".join(DIALECTS[device])
         raise ValueError(f'{device}.dialect must be one of {known}; got "{settings.dialect}"')
     try:
-        connector(settings.port, settings.baud)
+        connector(settings.port, line_format(device, settings))
     except ConfigError as error:
         raise ValueError(f'{device}.port must be a device path or tcp://host:port, got "{settings.port}"') from error
 

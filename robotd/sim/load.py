@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from robotd.sim.building import load_recorded_building
+from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.recorded_building import OdometrySource, RecordedRobot
 from robotd.sim.robot import EmulatedRobot, SimSettings, SimulatedRobot
 from robotd.sim.world import load_world
@@ -17,6 +18,7 @@ def load_robot(
     settings: SimSettings | None = None,
     odometry: OdometrySource = OdometrySource.CORRECTED,
     boot: int = 0,
+    dialects: Dialects | None = None,
 ) -> EmulatedRobot:
     """Return a robot in a world or in a recorded building.
 
@@ -26,14 +28,17 @@ def load_robot(
         settings: of the hardware in a world; a recorded building has none.
         odometry: what the wheels say in a recorded building; a world has its own physics.
         boot: how often the boards were powered up before.
+        dialects: what the devices speak; our own boards' protocol if None.
 
     Raises:
         ConfigError: there is no such world, or it is damaged.
         RecordingError: the file of a recorded building is damaged.
     """
     if _is_building(Path(name_or_path)):
-        return RecordedRobot(load_recorded_building(Path(name_or_path)), seed, odometry=odometry, boot=boot)
-    return SimulatedRobot(load_world(name_or_path), seed, settings, boot=boot)
+        return RecordedRobot(
+            load_recorded_building(Path(name_or_path)), seed, odometry=odometry, boot=boot, dialects=dialects
+        )
+    return SimulatedRobot(load_world(name_or_path), seed, settings, boot=boot, dialects=dialects)
 
 
 def _is_building(path: Path) -> bool:

@@ -16,6 +16,7 @@ from firmware_proto.rangefinder import ShotStatus
 from robotd.core.pose import Pose2
 from robotd.sim.body import Body, BodySettings
 from robotd.sim.building import RecordedBuilding, View, view_from
+from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.noise import NOISELESS, stream
 from robotd.sim.plant import ShotAnswer
 from robotd.sim.robot import board_by_device, clocks_of_seed
@@ -160,6 +161,7 @@ class RecordedRobot:
         *,
         odometry: OdometrySource = OdometrySource.CORRECTED,
         boot: int = 0,
+        dialects: Dialects | None = None,
     ) -> None:
         """Put the robot at the first stop; ``seed`` draws the boards' clocks, nothing else is random."""
         self._place = Place(building, odometry)
@@ -169,7 +171,9 @@ class RecordedRobot:
         head = RecordedHead(self._place)
         laser = RecordedLaser(self._place, head)
         self.clocks = clocks_of_seed(seed, _CLOCK_SKEW_PPM)
-        self.boards = board_by_device(self._place.body, head, laser, clocks=self.clocks, seed=seed, boot=boot)
+        self.boards = board_by_device(
+            self._place.body, head, laser, clocks=self.clocks, seed=seed, boot=boot, dialects=dialects or Dialects()
+        )
 
     @property
     def truth(self) -> Pose2:

@@ -8,10 +8,8 @@ from robotd.core.errors import ConfigError
 from robotd.core.pose import Pose2
 from robotd.sim.board_clock import BoardClock, DriveOnClock, HeadOnClock, LaserOnClock
 from robotd.sim.boards.board import Board
-from robotd.sim.boards.drive import DriveBoard
-from robotd.sim.boards.pantilt import PanTiltBoard
-from robotd.sim.boards.rangefinder import RangefinderBoard
 from robotd.sim.body import Body, BodySettings
+from robotd.sim.emulators.catalogue import DRIVES, PANTILTS, RANGEFINDERS, Dialects
 from robotd.sim.head import Head, HeadSettings
 from robotd.sim.host import HostedBoard
 from robotd.sim.laser import Laser, LaserSettings
@@ -67,7 +65,15 @@ class SimulatedRobot:
         ConfigError: the robot does not fit where the world wants it to start.
     """
 
-    def __init__(self, world: World, seed: int = 0, settings: SimSettings | None = None, *, boot: int = 0) -> None:
+    def __init__(
+        self,
+        world: World,
+        seed: int = 0,
+        settings: SimSettings | None = None,
+        *,
+        boot: int = 0,
+        dialects: Dialects | None = None,
+    ) -> None:
         """Put the robot at the start; ``boot`` counts how often its boards were powered up before."""
         settings = settings or SimSettings()
         noise = settings.noise
@@ -82,7 +88,9 @@ class SimulatedRobot:
             world.walls, self._body, head, settings=settings.laser, noise=noise, randomness=stream(seed, "rangefinder")
         )
         self.clocks = clocks_of_seed(seed, noise.clock_skew_ppm)
-        self.boards = board_by_device(self._body, head, laser, clocks=self.clocks, seed=seed, boot=boot)
+        self.boards = board_by_device(
+            self._body, head, laser, clocks=self.clocks, seed=seed, boot=boot, dialects=dialects or Dialects()
+        )
 
     @property
     def truth(self) -> Pose2:
@@ -101,12 +109,33 @@ def clocks_of_seed(seed: int, skew_ppm: float) -> dict[str, BoardClock]:
 
 
 def board_by_device(
-    drive: DrivePlant, head: HeadPlant, laser: LaserPlant, *, clocks: dict[str, BoardClock], seed: int, boot: int
-) -> dict[str, Board]:
+    drive: DrivePlant,
+    head: HeadPlant,
+    laser: LaserPlant,
+    *,
+    clocks: dict[str, BoardClock],
+    seed: int,
+    boot: int,
+    dialects: Dialects,
+) -> dict[str, HostedBoard]:
     """Put a board on top of each plant, each with a clock and a boot id of its own."""
     boot_ids = {device: stream(seed, f"{device}/boot {boot}").getrandbits(32) for device in DEVICES}
     return {
-        "drive": DriveBoard(DriveOnClock(drive, clocks["drive"]), boot_id=boot_ids["drive"]),
-        "pantilt": PanTiltBoard(HeadOnClock(head, clocks["pantilt"]), boot_id=boot_ids["pantilt"]),
-        "rangefinder": RangefinderBoard(LaserOnClock(laser, clocks["rangefinder"]), boot_id=boot_ids["rangefinder"]),
+        "drive": DRIVES[dialects.drive].power_up(DriveOnClock(drive, clocks["drive"]), boot_ids["drive"]),
+        "pantilt": PANTILTS[dialects.pantilt].power_up(HeadOnClock(head, clocks["pantilt"]), boot_ids["pantilt"]),
+        "rangefinder": RANGEFINDERS[dialects.rangefinder].power_up(
+            LaserOnClock(laser, clocks["rangefinder"]), boot_ids["rangefinder"]
+        ),
     }
+
+
+def own_board(robot: EmulatedRobot, device: str) -> Board:
+    """Return a board that speaks our own protocol: for tests that look inside.
+
+    Raises:
+        ConfigError: the device speaks another dialect.
+    """
+    board = robot.boards[device]
+    if not isinstance(board, Board):
+        raise ConfigError("the device speaks its maker's protocol", key=device)
+    return board

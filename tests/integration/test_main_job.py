@@ -18,7 +18,7 @@ from robotd.mission.events import Event, MapChanged, MissionPhase, SweepDone, Sw
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
-from robotd.sim.robot import SimulatedRobot
+from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.world import load_world
 from tests.integration.conftest import Live, Living, until_ready
 
@@ -156,7 +156,7 @@ async def test_a_base_that_was_out_of_sight_is_not_believed(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
         await it.done(MapMission("office", robot.stops_m[:2], robot.start))
-        robot.boards["drive"].reboot(4711)
+        own_board(robot, "drive").reboot(4711)
         async with asyncio.timeout(10.0):
             with it.daemon.robot.drive.status_changes.subscribe() as changes:
                 while (await changes.get()).link is not LinkState.ABSENT:

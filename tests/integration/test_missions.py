@@ -15,7 +15,7 @@ from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.recording.entries import CommandEntry
-from robotd.sim.robot import SimulatedRobot
+from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.world import load_world
 from tests.integration.conftest import Live, Living
 
@@ -134,7 +134,7 @@ async def test_a_board_that_restarts_while_mapping_ends_the_mission_and_leaves_n
                 break
         await asyncio.sleep(1.0)
         before = drive.odometry.latest
-        robot.boards["drive"].reboot(99)
+        own_board(robot, "drive").reboot(99)
         await asyncio.sleep(4.0)
         after = drive.odometry.latest
         assert before is not None

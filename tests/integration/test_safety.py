@@ -26,7 +26,7 @@ from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
 from robotd.recording.entries import BytesEntry
 from robotd.recording.preroll import PrerollJournal
-from robotd.sim.robot import DEVICES, SimulatedRobot
+from robotd.sim.robot import DEVICES, SimulatedRobot, own_board
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
 from tests.integration.conftest import in_directory, until_ready
@@ -95,12 +95,12 @@ class Rig:
 
     @property
     def states(self) -> dict[str, BoardState]:
-        return {name: board.state for name, board in self.robot.boards.items()}
+        return {name: own_board(self.robot, name).state for name in self.robot.boards}
 
     @property
     def is_quiet(self) -> bool:
         """Base at rest, head still, laser dark."""
-        pantilt, rangefinder = self.robot.boards["pantilt"], self.robot.boards["rangefinder"]
+        pantilt, rangefinder = own_board(self.robot, "pantilt"), own_board(self.robot, "rangefinder")
         return self.robot.at_rest and pantilt._plant.arrives_us is None and not rangefinder._lit  # type: ignore[attr-defined]  # looks inside the emulators
 
     def start(self, mission: Mission) -> int:
@@ -259,14 +259,14 @@ def unplug(device: str) -> Callable[[Rig], Awaitable[None]]:
 
 def reboot(device: str) -> Callable[[Rig], Awaitable[None]]:
     async def lose_power(rig: Rig) -> None:
-        rig.robot.boards[device].reboot(4711)
+        own_board(rig.robot, device).reboot(4711)
 
     return lose_power
 
 
 def latch(device: str, fault: Fault) -> Callable[[Rig], Awaitable[None]]:
     async def report(rig: Rig) -> None:
-        rig.robot.boards[device]._latch(fault, cut=True)
+        own_board(rig.robot, device)._latch(fault, cut=True)
 
     return report
 
@@ -378,4 +378,4 @@ async def test_a_killed_daemon_leaves_a_robot_that_stops_itself(
         await asyncio.sleep(REST_WITHIN_S)
         assert it.robot.at_rest
         if activity is driving:
-            assert it.robot.boards["drive"].faults is Fault.DEADMAN
+            assert own_board(it.robot, "drive").faults is Fault.DEADMAN

@@ -1,6 +1,5 @@
 """What the adapters of our own three boards share: the link, health, arming."""
 
-from dataclasses import replace
 from typing import ClassVar
 
 from firmware_proto.common import Arm, BoardKind, BoardState, BoardStatus, Clear, Fault
@@ -8,6 +7,7 @@ from firmware_proto.schema import Message
 from robotd.core.broadcast import Broadcast
 from robotd.core.errors import DeviceError, TransportError
 from robotd.hardware.devices.device import DeviceStatus, LinkState
+from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.settings import PortSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.handshake import Terms
@@ -30,8 +30,7 @@ class BoardDevice:
         self._session: Session | None = None
         self._may_move = False
         """Whether an arm was asked for, and no stop since."""
-        self._status = DeviceStatus(self.name, LinkState.ABSENT, armed=False, detail="not started")
-        self._status_changes: Broadcast[DeviceStatus] = Broadcast()
+        self._health = Health(self.name, self._counted)
         self._link = Link(
             device=self.name,
             terms=Terms(self.KIND, settings.telemetry_ms, settings.ttl_max_ms),
@@ -51,12 +50,12 @@ class BoardDevice:
     @property
     def status(self) -> DeviceStatus:
         """Its health now."""
-        return replace(self._status, counters=self._counted())
+        return self._health.status
 
     @property
     def status_changes(self) -> Broadcast[DeviceStatus]:
         """Its health, whenever it changes; counters alone are no change."""
-        return self._status_changes
+        return self._health.changes
 
     async def run(self) -> None:
         """Own the link until cancelled: connect, serve, reconnect with back-off, never arm by itself."""
@@ -64,16 +63,16 @@ class BoardDevice:
 
     async def arm(self) -> None:
         """Allow motion; see :meth:`robotd.hardware.devices.device.Device.arm`."""
-        if self._status.faults:
-            raise DeviceError(self.name, "fault", f"{', '.join(self._status.faults)} latched: clear first")
+        if self._health.faults:
+            raise DeviceError(self.name, "fault", f"{', '.join(self._health.faults)} latched: clear first")
         self._may_move = True
         await self._order(Arm())
-        self._change(armed=True)
+        self._health.change(armed=True)
 
     async def clear_faults(self) -> None:
         """Acknowledge latched faults; leaves the device disarmed; same errors as :meth:`arm`."""
         await self._order(Clear())
-        self._change(armed=False, faults=())
+        self._health.change(armed=False, faults=())
 
     def stop_now(self) -> None:
         """Put the preformatted stop on the wire in place of all that waits; never blocks, never raises.
@@ -88,18 +87,20 @@ class BoardDevice:
 
     def link_opened(self) -> None:
         """Note that the line is open."""
-        self._change(link=LinkState.CONNECTING, armed=False, faults=(), detail="line open, waiting for the board")
+        self._health.change(
+            link=LinkState.CONNECTING, armed=False, faults=(), detail="line open, waiting for the board"
+        )
 
     def link_ready(self, session: Session) -> None:
         """Note that there is a board to talk to."""
         self._session = session
-        self._change(link=LinkState.READY, armed=False, detail="")
+        self._health.change(link=LinkState.READY, armed=False, detail="")
 
     def link_lost(self, reason: str) -> None:
         """Note that there is none, and why."""
         self._session = None
         self._may_move = False
-        self._change(link=LinkState.ABSENT, armed=False, faults=(), detail=reason)
+        self._health.change(link=LinkState.ABSENT, armed=False, faults=(), detail=reason)
 
     def telemetry(self, message: Message) -> None:
         """Take a message that nobody asked for; a subclass takes its own first."""
@@ -107,43 +108,24 @@ class BoardDevice:
             is_armed = message.state == BoardState.ARMED
             if is_armed and not self._may_move:
                 self.stop_now()
-            self._change(armed=is_armed, faults=fault_names(message.faults))
+            self._health.change(armed=is_armed, faults=fault_names(message.faults))
 
     # What a subclass uses
 
     def _talk(self) -> Session:
         """Return the session; TransportError if there is none."""
         if self._session is None:
-            raise TransportError(f"{self.name} is absent: {self._status.detail}")
+            raise TransportError(f"{self.name} is absent: {self._health.detail}")
         return self._session
 
     async def _order(self, message: Message) -> None:
         session = self._talk()
         await session.command(message)
         if self._session is not session:
-            raise TransportError(f"{self.name} was lost: {self._status.detail}")
+            raise TransportError(f"{self.name} was lost: {self._health.detail}")
 
     def _host_ns(self, board_us: int) -> int:
         return self._talk().clock.host_ns(board_us)
-
-    def _change(
-        self,
-        *,
-        link: LinkState | None = None,
-        armed: bool | None = None,
-        faults: tuple[str, ...] | None = None,
-        detail: str | None = None,
-    ) -> None:
-        before = self._status
-        self._status = DeviceStatus(
-            self.name,
-            before.link if link is None else link,
-            before.armed if armed is None else armed,
-            before.faults if faults is None else faults,
-            before.detail if detail is None else detail,
-        )
-        if self._status != before:
-            self._status_changes.publish(self.status)
 
     def _counted(self) -> tuple[tuple[str, int], ...]:
         wire, link = self._wire.counters, self._counters

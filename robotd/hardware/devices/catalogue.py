@@ -1,7 +1,8 @@
 """Which adapter speaks which dialect. A new dialect is one row here."""
 
 from collections.abc import Callable, Mapping
-from typing import TypeVar
+from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 from robotd.core.errors import ConfigError
 from robotd.hardware.devices.board_drive import BoardDrive
@@ -10,32 +11,66 @@ from robotd.hardware.devices.board_rangefinder import BoardRangefinder
 from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
-from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
+from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.transport.line_format import LineFormat
 
-T = TypeVar("T")
+S_contra = TypeVar("S_contra", bound=PortSettings, contravariant=True)
+D_co = TypeVar("D_co", covariant=True)
 
-DRIVES: Mapping[str, Callable[[DriveSettings, Wiring], Drive]] = {"board": BoardDrive}
-PANTILTS: Mapping[str, Callable[[PanTiltSettings, Wiring], PanTilt]] = {"board": BoardPanTilt}
-RANGEFINDERS: Mapping[str, Callable[[RangefinderSettings, Wiring], Rangefinder]] = {"board": BoardRangefinder}
+Adapter = Callable[[S_contra, Wiring], D_co]
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect(Generic[S_contra, D_co]):
+    """One way to talk to a kind of device."""
+
+    adapter: Adapter[S_contra, D_co]
+    line: LineFormat
+    """What such a device is usually set to."""
+
+
+_OURS = LineFormat(115_200)
+
+DRIVES: Mapping[str, Dialect[DriveSettings, Drive]] = {"board": Dialect(BoardDrive, _OURS)}
+PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {"board": Dialect(BoardPanTilt, _OURS)}
+RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {"board": Dialect(BoardRangefinder, _OURS)}
+
+DIALECTS: Mapping[str, Mapping[str, Dialect[PortSettings, object]]] = {
+    "drive": DRIVES,  # type: ignore[dict-item]  # whoever looks here makes no adapter
+    "pantilt": PANTILTS,  # type: ignore[dict-item]  # as above
+    "rangefinder": RANGEFINDERS,  # type: ignore[dict-item]  # as above
+}
+"""All of them, by device."""
 
 
 def drive(settings: DriveSettings, wiring: Wiring) -> Drive:
     """Return the drive that the settings describe; ConfigError if nothing speaks its dialect."""
-    return _adapter("drive", DRIVES, settings.dialect)(settings, wiring)
+    return _spoken("drive", DRIVES, settings).adapter(settings, wiring)
 
 
 def pantilt(settings: PanTiltSettings, wiring: Wiring) -> PanTilt:
     """Return the pan/tilt unit that the settings describe; ConfigError if nothing speaks its dialect."""
-    return _adapter("pantilt", PANTILTS, settings.dialect)(settings, wiring)
+    return _spoken("pantilt", PANTILTS, settings).adapter(settings, wiring)
 
 
 def rangefinder(settings: RangefinderSettings, wiring: Wiring) -> Rangefinder:
     """Return the rangefinder that the settings describe; ConfigError if nothing speaks its dialect."""
-    return _adapter("rangefinder", RANGEFINDERS, settings.dialect)(settings, wiring)
+    return _spoken("rangefinder", RANGEFINDERS, settings).adapter(settings, wiring)
 
 
-def _adapter(device: str, table: Mapping[str, T], dialect: str) -> T:
-    if dialect not in table:
-        raise ConfigError(f"no {device} speaks {dialect!r}; known: {', '.join(table)}", key=f"{device}.dialect")
-    return table[dialect]
+def line_format(device: str, settings: PortSettings) -> LineFormat:
+    """Return how to set a device's serial line; ConfigError if nothing speaks its dialect."""
+    usual = _spoken(device, DIALECTS[device], settings).line
+    return LineFormat.parse(settings.line) if settings.line else usual
+
+
+T = TypeVar("T")
+
+
+def _spoken(device: str, table: Mapping[str, T], settings: PortSettings) -> T:
+    if settings.dialect not in table:
+        raise ConfigError(
+            f"no {device} speaks {settings.dialect!r}; known: {', '.join(table)}", key=f"{device}.dialect"
+        )
+    return table[settings.dialect]

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, RangefinderCalibration
+from robotd.hardware.transport.line_format import LineFormat
 
 _U16_MAX = 0xFFFF
 
@@ -13,10 +14,10 @@ class PortSettings:
 
     port: str
     """A device path, best one under ``/dev/serial/by-id``, or ``tcp://host:port``."""
-    baud: int = 115_200
-    """Speed of a serial line."""
     dialect: str = "board"
     """What the device speaks; ``board`` is the protocol of our own boards."""
+    line: str = ""
+    """Speed and frame of a serial line, as in ``19200 7E1``; empty for what the dialect is usually set to."""
     telemetry_ms: int = 40
     """Period of the telemetry [ms]; set-points follow it."""
     ttl_max_ms: int = 500
@@ -26,8 +27,8 @@ class PortSettings:
         """Refuse what no line and no board can do."""
         if not self.port:
             raise ValueError("port must not be empty")
-        if self.baud <= 0:
-            raise ValueError(f"baud must be positive, got {self.baud}")
+        if self.line:
+            LineFormat.parse(self.line)
         if not 5 <= self.telemetry_ms <= 250:
             raise ValueError(f"telemetry_ms must be 5 to 250, got {self.telemetry_ms}")
         if not 1 <= self.ttl_max_ms <= _U16_MAX:

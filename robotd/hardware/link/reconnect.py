@@ -1,21 +1,18 @@
-"""Keeping a link up: connect, shake hands, serve until lost, wait, again. It never arms anything."""
+"""A link to one of our boards: connect, shake hands, serve until lost, wait, again. It never arms anything."""
 
-import asyncio
 import random
 from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
 from firmware_proto.schema import Message
-from robotd.core.errors import RobotdError
 from robotd.hardware.link.handshake import Terms, shake_hands
+from robotd.hardware.link.keep_up import keep_up
 from robotd.hardware.link.session import LinkCounters, Session
 from robotd.hardware.link.tap import Tap
 from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.transport import Connect
 from robotd.hardware.wire.board import BoardWire
 
-BACKOFF_MIN_S = 0.25
-BACKOFF_MAX_S = 5.0
 SILENCE_S = 1.0
 
 
@@ -52,40 +49,39 @@ class Link:
 
     async def run(self, listener: LinkListener) -> NoReturn:
         """Keep the link up until cancelled; nothing that a board or a line does ends it."""
-        backoff_s = BACKOFF_MIN_S
-        while True:
-            sessions = self.counters.sessions
-            try:
-                await self._serve_once(listener)
-            except RobotdError as error:
-                listener.link_lost(str(error))
-            except asyncio.CancelledError:
-                listener.link_lost("shut down")
-                raise
-            if self.counters.sessions > sessions:
-                backoff_s = BACKOFF_MIN_S
-            await asyncio.sleep(backoff_s)
-            backoff_s = min(2 * backoff_s, BACKOFF_MAX_S)
+        await keep_up(self.device, self.connect, self.tap, _Talk(self, listener))
 
-    async def _serve_once(self, listener: LinkListener) -> NoReturn:
-        line = TappedLine(self.device, await self.connect(), self.tap)
-        try:
-            listener.link_opened()
-            session = Session(
-                self.device,
-                line,
-                self.wire,
-                counters=self.counters,
-                on_telemetry=listener.telemetry,
-                silence_s=SILENCE_S,
-            )
-            async with session:
-                try:
-                    await shake_hands(session, self.terms, self.rng.getrandbits(32), self.dictionaries)
-                    self.counters.sessions += 1
-                    listener.link_ready(session)
-                    await session.serve()
-                finally:
-                    session.stop_now()  # whatever ended it, nothing must go on moving
-        finally:
-            line.close()
+
+@dataclass(frozen=True, slots=True)
+class _Talk:
+    """What is done on each line."""
+
+    link: Link
+    listener: LinkListener
+
+    @property
+    def sessions(self) -> int:
+        return self.link.counters.sessions
+
+    def line_lost(self, reason: str) -> None:
+        self.listener.link_lost(reason)
+
+    async def talk(self, line: TappedLine) -> NoReturn:
+        self.listener.link_opened()
+        link = self.link
+        session = Session(
+            link.device,
+            line,
+            link.wire,
+            counters=link.counters,
+            on_telemetry=self.listener.telemetry,
+            silence_s=SILENCE_S,
+        )
+        async with session:
+            try:
+                await shake_hands(session, link.terms, link.rng.getrandbits(32), link.dictionaries)
+                link.counters.sessions += 1
+                self.listener.link_ready(session)
+                await session.serve()
+            finally:
+                session.stop_now()  # whatever ended it, nothing must go on moving

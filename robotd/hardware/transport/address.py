@@ -4,23 +4,24 @@ import urllib.parse
 
 from robotd.core.errors import ConfigError
 from robotd.hardware.transport.descriptor import DescriptorTransport
+from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.serial_port import open_serial
 from robotd.hardware.transport.tcp import open_tcp
 from robotd.hardware.transport.transport import Connect
 
 
-def connector(address: str, baud: int) -> Connect:
+def connector(address: str, line_format: LineFormat) -> Connect:
     """Return what opens the line at an address; a name under ``/dev`` is resolved anew each time.
 
     Args:
         address: ``/dev/serial/by-id/...`` or another absolute path, or ``tcp://host:port``.
-        baud: speed of a serial line; TCP has none.
+        line_format: of a serial line; TCP has none.
 
     Raises:
         ConfigError: the address is neither.
     """
     if address.startswith("/"):
-        return lambda: open_serial(address, baud)
+        return lambda: open_serial(address, line_format)
     host, port = _host_and_port(address)
 
     async def connect() -> DescriptorTransport:

@@ -18,6 +18,7 @@ import serial
 from robotd.core.errors import TransportError
 from robotd.hardware.transport.descriptor import DescriptorTransport
 from robotd.hardware.transport.holder import holder_of
+from robotd.hardware.transport.line_format import LineFormat
 
 _PTY_SLAVE_MAJORS = range(136, 144)
 _ADVICE = {
@@ -29,21 +30,29 @@ _ADVICE = {
 }
 
 
-async def open_serial(path: str, baud: int) -> DescriptorTransport:
-    """Open a serial port or the slave side of a pseudo-terminal: raw, 8N1, no flow control, exclusive.
+async def open_serial(path: str, line_format: LineFormat) -> DescriptorTransport:
+    """Open a serial port or the slave side of a pseudo-terminal: raw, no flow control, exclusive.
 
     Raises:
         TransportError: it is not there, busy (the message names the holder if it can), or no serial port.
     """
-    port = await asyncio.get_running_loop().run_in_executor(None, _open, path, baud)
+    port = await asyncio.get_running_loop().run_in_executor(None, _open, path, line_format)
     return DescriptorTransport(path, port.fileno(), port.close)
 
 
-def _open(path: str, baud: int) -> serial.Serial:
+def _open(path: str, line_format: LineFormat) -> serial.Serial:
     try:
         if not stat.S_ISCHR(Path(path).stat().st_mode):
             raise TransportError(f"{path}: not a serial port")
-        port = serial.Serial(path, baud, timeout=0, exclusive=True)
+        port = serial.Serial(
+            path,
+            line_format.baud,
+            bytesize=line_format.data_bits,
+            parity=line_format.parity,
+            stopbits=line_format.stop_bits,
+            timeout=0,
+            exclusive=True,
+        )
     except ValueError as error:
         raise TransportError(f"{path}: {error}") from error
     except OSError as error:

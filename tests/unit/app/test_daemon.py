@@ -21,7 +21,7 @@ from robotd.mission.compute import Compute
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import read
 from robotd.server.lock import lock_directory
-from robotd.sim.robot import SimulatedRobot
+from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
 from tests.integration.conftest import until_ready
@@ -126,11 +126,11 @@ async def test_sigterm_stops_the_robot_first_and_completes_the_recording(
         daemon = await captured.composed
         await until_ready(daemon)
         await daemon.control.arm()
-        assert {board.state for board in robot.boards.values()} == {BoardState.ARMED}
+        assert {own_board(robot, name).state for name in robot.boards} == {BoardState.ARMED}
         os.kill(os.getpid(), signal.SIGTERM)
         await asyncio.wait_for(running, 5.0)
         await asyncio.sleep(0.05)
-        assert BoardState.ARMED not in {board.state for board in robot.boards.values()}
+        assert BoardState.ARMED not in {own_board(robot, name).state for name in robot.boards}
     (recording,) = (short / "recordings").iterdir()
     assert read(recording).complete
 
@@ -160,4 +160,4 @@ async def test_an_error_in_the_daemon_itself_stops_the_robot(short: Path, monkey
         with pytest.raises(ExceptionGroup):
             await asyncio.wait_for(running, 5.0)
         await asyncio.sleep(0.05)
-        assert BoardState.ARMED not in {board.state for board in robot.boards.values()}
+        assert BoardState.ARMED not in {own_board(robot, name).state for name in robot.boards}

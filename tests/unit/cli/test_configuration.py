@@ -12,7 +12,7 @@ from robotd.config import load
 @pytest.fixture
 def bad(tmp_path: Path) -> Path:
     file = tmp_path / "bad.toml"
-    file.write_text("[drive]\nbuad = 1\n\n[sweep]\nsettle_ms = 5\n")
+    file.write_text("[drive]\ndailect = 1\n\n[sweep]\nsettle_ms = 5\n")
     return file
 
 
@@ -30,7 +30,7 @@ def test_a_bad_file_is_one_line_for_each_mistake_and_exit_code_78(
 ) -> None:
     assert main(["config", "check", str(bad)]) == 78
     assert capsys.readouterr().err.splitlines() == [
-        f"{bad}:2: drive.buad: unknown key; did you mean baud?",
+        f"{bad}:2: drive.dailect: unknown key; did you mean dialect?",
         f"{bad}:5: sweep.settle_ms: wrong unit: expected settle_s, in seconds",
     ]
 

@@ -43,9 +43,9 @@ def test_the_effective_text_loads_to_the_same(readings: int, tilt_rad: float, po
     ("text", "complaint"),
     [
         ("[laser]\nx = 1", "r.toml:1: laser: unknown section"),
-        ("[rangfinder]\nbaud = 1", "r.toml:1: rangfinder: unknown section; did you mean rangefinder?"),
-        ("baud = 9600", "r.toml:1: baud: unknown section"),
-        ("[drive]\nbuad = 9600", "r.toml:2: drive.buad: unknown key; did you mean baud?"),
+        ("[rangfinder]\nx = 1", "r.toml:1: rangfinder: unknown section; did you mean rangefinder?"),
+        ("port = 9600", "r.toml:1: port: unknown section"),
+        ("[drive]\ndailect = 9600", "r.toml:2: drive.dailect: unknown key; did you mean dialect?"),
         (
             "[rangefinder]\nrange_max_mm = 6000",
             "r.toml:2: rangefinder.range_max_mm: wrong unit: expected range_max_m, in metres",

@@ -22,10 +22,11 @@ from robotd.hardware.devices.device import Device, LinkState
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
+from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.serial_port import open_serial
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.sim.noise import NOISELESS
-from robotd.sim.robot import EmulatedRobot, SimSettings, SimulatedRobot
+from robotd.sim.robot import EmulatedRobot, SimSettings, SimulatedRobot, own_board
 from robotd.sim.runtime import connectors, run_on_ptys
 from robotd.sim.world import load_world
 
@@ -162,7 +163,7 @@ async def test_a_board_that_breaks_is_not_kept_silent() -> None:
     def broken(now_us: int) -> None:
         raise RuntimeError("on fire")
 
-    robot.boards["drive"].advance = broken  # type: ignore[method-assign]  # that is the point
+    own_board(robot, "drive").advance = broken  # type: ignore[method-assign]  # that is the point
     with pytest.raises(RuntimeError, match="on fire"):
         async with connectors(robot):
             await asyncio.sleep(1.0)
@@ -198,7 +199,7 @@ async def test_programs_may_open_the_ptys_again_and_again(tmp_path: Path) -> Non
         assert paths == {device: str(tmp_path / "dev" / device) for device in robot.boards}
         boot_ids = set()
         for device, path in [*paths.items(), *paths.items()]:
-            line = await open_serial(path, 115_200)
+            line = await open_serial(path, LineFormat(115_200))
             boot_ids.add((device, await hello(line)))
             line.close()
         assert len(boot_ids) == 3

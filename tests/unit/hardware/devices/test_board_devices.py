@@ -27,7 +27,7 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.sim.head import HeadSettings
 from robotd.sim.noise import NOISELESS
-from robotd.sim.robot import SimSettings
+from robotd.sim.robot import SimSettings, own_board
 from tests.unit.hardware.conftest import lose
 from tests.unit.hardware.devices.conftest import nowhere, rig
 
@@ -81,7 +81,7 @@ async def test_devices_come_up_ready_and_disarmed() -> None:
 async def test_arming_reaches_the_board_and_the_status() -> None:
     async with rig(armed=False) as r:
         await r.drive.arm()
-        assert (r.drive.status.armed, r.robot.boards["drive"].state.name) == (True, "ARMED")
+        assert (r.drive.status.armed, own_board(r.robot, "drive").state.name) == (True, "ARMED")
 
 
 async def test_stop_now_disarms_and_the_status_follows_the_board() -> None:
@@ -89,7 +89,7 @@ async def test_stop_now_disarms_and_the_status_follows_the_board() -> None:
         with r.drive.status_changes.subscribe() as changes:
             r.drive.stop_now()
             assert not (await changes.get()).armed
-        assert r.robot.boards["drive"].state is BoardState.CONFIGURED
+        assert own_board(r.robot, "drive").state is BoardState.CONFIGURED
 
 
 async def test_a_stop_that_gets_lost_is_said_again_until_the_board_has_heard_it() -> None:
@@ -97,10 +97,10 @@ async def test_a_stop_that_gets_lost_is_said_again_until_the_board_has_heard_it(
         r.lines["drive"].garbled_stops = 3
         r.drive.stop_now()
         await asyncio.sleep(0.3)
-        assert (r.drive.status.armed, r.robot.boards["drive"].state.name) == (False, "CONFIGURED")
+        assert (r.drive.status.armed, own_board(r.robot, "drive").state.name) == (False, "CONFIGURED")
         await r.drive.arm()
         await asyncio.sleep(0.3)
-        assert (r.drive.status.armed, r.robot.boards["drive"].state.name) == (True, "ARMED")
+        assert (r.drive.status.armed, own_board(r.robot, "drive").state.name) == (True, "ARMED")
 
 
 @pytest.mark.parametrize("was_armed_before_it_was_lost", [False, True])
@@ -110,9 +110,9 @@ async def test_a_board_that_somebody_else_armed_is_stopped(was_armed_before_it_w
             r.lines["drive"].close()
             await r.wait(r.drive, LinkState.ABSENT)
             await r.wait(r.drive, LinkState.READY)
-        r.robot.boards["drive"]._beneath = BoardState.ARMED
+        own_board(r.robot, "drive")._beneath = BoardState.ARMED
         await asyncio.sleep(0.1)
-        assert r.robot.boards["drive"].state is BoardState.CONFIGURED
+        assert own_board(r.robot, "drive").state is BoardState.CONFIGURED
 
 
 async def test_an_absent_device_refuses_everything_but_stop() -> None:
@@ -148,7 +148,7 @@ async def test_a_latched_fault_shows_forbids_arming_and_can_be_cleared() -> None
         await r.drive.clear_faults()
         assert r.drive.status.faults == ()
         await r.drive.arm()
-        assert r.robot.boards["drive"].faults is Fault.NONE
+        assert own_board(r.robot, "drive").faults is Fault.NONE
 
 
 async def test_a_status_is_published_only_when_something_changed() -> None:
@@ -164,7 +164,7 @@ async def test_an_arm_that_got_lost_leaves_no_trace_of_a_lie() -> None:
         r.lines["drive"].from_board = lose(10**9, Arm.TYPE | REPLY)
         with pytest.raises(LinkTimeout):
             await r.drive.arm()
-        assert r.drive.status.armed == (r.robot.boards["drive"].state is BoardState.ARMED)
+        assert r.drive.status.armed == (own_board(r.robot, "drive").state is BoardState.ARMED)
 
 
 # The drive
@@ -193,7 +193,7 @@ async def test_the_drive_goes_where_it_is_told_and_says_so() -> None:
 async def test_a_restart_of_the_drive_board_makes_no_jump_in_odometry() -> None:
     async with rig() as r:
         there = await drive_for(r.drive, Twist2(0.2, 0.0), 1.0)
-        r.robot.boards["drive"].reboot(boot_id=77)
+        own_board(r.robot, "drive").reboot(boot_id=77)
         await r.wait(r.drive, LinkState.ABSENT)
         await r.wait(r.drive, LinkState.READY)
         assert (await next_of(r.drive.odometry)).in_odom == there.in_odom
@@ -234,7 +234,7 @@ async def test_the_zeros_of_the_mount_are_applied_both_ways() -> None:
         assert limits.tilt_min_rad == pytest.approx(math.radians(-47) - 0.1, abs=1e-3)
         aim = await r.pantilt.aim(0.5, 0.0, timeout_s=5.0)
         assert (aim.pan_rad, aim.tilt_rad) == pytest.approx((0.5, 0.0), abs=0.001)
-        board = r.robot.boards["pantilt"]
+        board = own_board(r.robot, "pantilt")
         assert board._angles() == pytest.approx((2_000, 1_000), abs=10)  # type: ignore[attr-defined]  # a PanTiltBoard
 
 
@@ -300,7 +300,7 @@ async def test_a_head_that_is_too_slow_is_halted_without_a_fault() -> None:
             await r.pantilt.aim(2.0, 0.0, timeout_s=0.1)
         assert now_ns() - began_ns == pytest.approx(100 * MS, abs=MS)
         await asyncio.sleep(1.0)
-        assert (r.robot.boards["pantilt"].state, r.pantilt.status.faults) == (BoardState.CONFIGURED, ())
+        assert (own_board(r.robot, "pantilt").state, r.pantilt.status.faults) == (BoardState.CONFIGURED, ())
 
 
 async def test_an_aim_ends_at_once_when_the_head_is_lost() -> None:
@@ -329,4 +329,4 @@ async def test_a_repeated_aim_turns_the_head_once() -> None:
         r.lines["pantilt"].from_board = lose(1, Aim.TYPE | REPLY)
         await r.pantilt.aim(0.5, 0.0, timeout_s=5.0)
         assert dict(r.pantilt.status.counters)["retries"] == 1
-        assert r.robot.boards["pantilt"]._aim_seq == 0  # type: ignore[attr-defined]  # a PanTiltBoard
+        assert own_board(r.robot, "pantilt")._aim_seq == 0  # type: ignore[attr-defined]  # a PanTiltBoard

@@ -11,7 +11,7 @@ from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
 from robotd.sim.laser import LaserSettings
 from robotd.sim.noise import NOISELESS
-from robotd.sim.robot import SimSettings
+from robotd.sim.robot import SimSettings, own_board
 from tests.unit.hardware.devices.conftest import rig
 
 MS = 1_000_000
@@ -22,7 +22,7 @@ async def test_a_shot_has_its_range_with_bias_its_strength_and_its_time() -> Non
         await r.rangefinder.switch_laser(on=True)
         before_ns = now_ns()
         shot = await r.rangefinder.shoot(timeout_s=1.0)
-        truth_m = r.robot.boards["rangefinder"]._plant._plant.true_range_m()  # type: ignore[attr-defined]  # a Laser on a clock
+        truth_m = own_board(r.robot, "rangefinder")._plant._plant.true_range_m()  # type: ignore[attr-defined]  # a Laser on a clock
         assert shot.status is ReadingStatus.OK
         assert shot.range_m == pytest.approx(truth_m + 0.01, abs=0.0006)
         assert abs(shot.time_ns - before_ns) < MS
@@ -47,7 +47,7 @@ async def test_a_shot_in_the_dark_is_a_result() -> None:
 )
 async def test_each_status_of_the_instrument_has_its_meaning(code: int, status: ReadingStatus) -> None:
     async with rig() as r:
-        board = r.robot.boards["rangefinder"]
+        board = own_board(r.robot, "rangefinder")
         board._handlers[Shoot] = lambda request, seq: Shot(board._now_us, 0, 0, code)
         assert (await r.rangefinder.shoot(timeout_s=1.0)).status is status
 
@@ -55,7 +55,7 @@ async def test_each_status_of_the_instrument_has_its_meaning(code: int, status: 
 async def test_an_unanswered_shot_is_a_timeout_and_a_lost_line_is_an_error() -> None:
     async with rig(sim=SimSettings(noise=NOISELESS, laser=LaserSettings(takes_us=50_000))) as r:
         await r.rangefinder.switch_laser(on=True)
-        r.robot.boards["rangefinder"].take_output = bytes  # type: ignore[method-assign]  # says nothing any more
+        own_board(r.robot, "rangefinder").take_output = bytes  # type: ignore[method-assign]  # says nothing any more
         shot = await r.rangefinder.shoot(timeout_s=0.2)
         assert (shot.status, shot.range_m, shot.strength) == (ReadingStatus.TIMEOUT, None, None)
         shooting = asyncio.create_task(r.rangefinder.shoot(timeout_s=0.2))
@@ -67,5 +67,5 @@ async def test_an_unanswered_shot_is_a_timeout_and_a_lost_line_is_an_error() -> 
 
 async def test_a_refused_shot_is_a_result() -> None:
     async with rig() as r:
-        r.robot.boards["rangefinder"]._latch(Fault.KILLED)
+        own_board(r.robot, "rangefinder")._latch(Fault.KILLED)
         assert (await r.rangefinder.shoot(timeout_s=0.2)).status is ReadingStatus.DEVICE_ERROR

@@ -27,7 +27,7 @@ def test_flat_settings_give_the_calibrations() -> None:
     ("kind", "values", "message"),
     [
         (DriveSettings, {"port": ""}, "port must not be empty"),
-        (DriveSettings, {"baud": 0}, "baud must be positive, got 0"),
+        (DriveSettings, {"line": "9600"}, "expected a speed and a frame as in '115200 8N1' or '19200 7E1', got '9600'"),
         (DriveSettings, {"telemetry_ms": 1000}, "telemetry_ms must be 5 to 250, got 1000"),
         (DriveSettings, {"ttl_max_ms": 70_000}, "ttl_max_ms must be 1 to 65535, got 70000"),
         (DriveSettings, {"counts_per_m": 0.0}, "counts_per_m must be finite and not zero"),

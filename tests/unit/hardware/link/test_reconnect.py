@@ -33,7 +33,7 @@ from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES, BoardWire
 from robotd.sim.boards.board import Board
-from robotd.sim.robot import SimulatedRobot
+from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
 
@@ -138,10 +138,10 @@ async def test_an_unplugged_device_comes_back_disarmed_and_quickly_each_time() -
             await asyncio.sleep(1.0)
             assert diary.session is not None
             await diary.session.command(Arm())
-            assert robot_.boards["drive"].state is BoardState.ARMED
+            assert own_board(robot_, "drive").state is BoardState.ARMED
             lines[-1].close()
             await asyncio.sleep(0.6)
-            assert robot_.boards["drive"].state.name == "CONFIGURED"
+            assert own_board(robot_, "drive").state.name == "CONFIGURED"
         task.cancel()
         with suppress(asyncio.CancelledError):
             await task
@@ -185,7 +185,7 @@ async def test_the_dictionary_is_read_once_however_often_the_link_is_lost() -> N
 
 async def test_a_board_that_boots_slowly_is_waited_for_on_the_same_line() -> None:
     robot_ = robot()
-    board, opened = robot_.boards["drive"], 0
+    board, opened = own_board(robot_, "drive"), 0
     receive = board.receive
 
     async with connectors(robot_) as connect:
@@ -258,7 +258,7 @@ async def test_a_board_that_is_not_what_we_expect_is_refused_and_named(
     spoil: Callable[[Board], None], reason: str
 ) -> None:
     robot_ = robot()
-    spoil(robot_.boards["drive"])
+    spoil(own_board(robot_, "drive"))
     diary = Diary()
     async with connectors(robot_) as connect:
         await run_for(link_to(connect["drive"]), diary, 2.0)

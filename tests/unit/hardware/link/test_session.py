@@ -25,7 +25,7 @@ from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.wire.board import STOP_BYTES, BoardWire, Received
 from robotd.sim.boards.board import Board, Outcome
 from robotd.sim.laser import LaserSettings
-from robotd.sim.robot import SimSettings, SimulatedRobot
+from robotd.sim.robot import SimSettings, SimulatedRobot, own_board
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
 from tests.unit.hardware.conftest import FaultyLine, lose, never, once
@@ -38,7 +38,7 @@ class Bench:
 
     def __init__(self, robot: SimulatedRobot, kind: BoardKind, line: FaultyLine) -> None:
         self.device = kind.name.lower()
-        self.board: Board = robot.boards[self.device]
+        self.board: Board = own_board(robot, self.device)
         self.clock = robot.clocks[self.device]
         self.line = line
         self.wire = BoardWire(kind)

@@ -7,13 +7,14 @@ import pytest
 
 from robotd.core.errors import ConfigError, TransportError
 from robotd.hardware.transport.address import connector
+from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.pty import open_pty
 
 
 @pytest.mark.real_clock
 async def test_a_path_opens_a_serial_port() -> None:
     board = open_pty()
-    line = await connector(board.path, 115200)()
+    line = await connector(board.path, LineFormat(115200))()
     assert line.name == board.path
     line.close()
     board.close()
@@ -23,7 +24,7 @@ async def test_a_path_opens_a_serial_port() -> None:
 async def test_a_tcp_address_opens_a_connection() -> None:
     with closing(socket.create_server(("127.0.0.1", 0))) as server:
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        line = await connector(address, 115200)()
+        line = await connector(address, LineFormat(115200))()
         assert line.name == address
         line.close()
 
@@ -33,7 +34,7 @@ async def test_nobody_listening_is_a_transport_error() -> None:
     with closing(socket.create_server(("127.0.0.1", 0))) as server:
         port = server.getsockname()[1]
     with pytest.raises(TransportError, match=f"tcp://127.0.0.1:{port}: "):
-        await connector(f"tcp://127.0.0.1:{port}", 115200)()
+        await connector(f"tcp://127.0.0.1:{port}", LineFormat(115200))()
 
 
 @pytest.mark.parametrize(
@@ -41,4 +42,4 @@ async def test_nobody_listening_is_a_transport_error() -> None:
 )
 def test_another_address_is_a_config_error(address: str) -> None:
     with pytest.raises(ConfigError, match="expected a device path or tcp://host:port"):
-        connector(address, 115200)
+        connector(address, LineFormat(115200))

@@ -9,6 +9,7 @@ from contextlib import AbstractAsyncContextManager, asynccontextmanager, closing
 import pytest
 
 from robotd.core.errors import TransportError
+from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.outbox import OUTBOX_LIMIT_BYTES
 from robotd.hardware.transport.pty import open_pty
@@ -25,7 +26,7 @@ async def _memory() -> Pair:
 
 async def _serial() -> Pair:
     far = open_pty()
-    return await open_serial(far.path, 115200), far
+    return await open_serial(far.path, LineFormat(115200)), far
 
 
 async def _pty() -> Pair:

@@ -12,6 +12,7 @@ import pytest
 from robotd.core.errors import TransportError
 from robotd.hardware.transport import holder, serial_port
 from robotd.hardware.transport.descriptor import DescriptorTransport
+from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.pty import PtyEnd, open_pty
 from robotd.hardware.transport.serial_port import open_serial
 
@@ -20,7 +21,7 @@ pytestmark = pytest.mark.real_clock
 
 async def exchange(board: PtyEnd) -> None:
     """Open the other side, pass a byte each way, close it."""
-    host = await open_serial(board.path, 115200)
+    host = await open_serial(board.path, LineFormat(115200))
     host.write(b"?")
     assert await board.read() == b"?"
     board.write(b"!")
@@ -39,13 +40,13 @@ async def test_a_pty_read_waits_through_unplugging_and_delivers_what_comes_after
     board = open_pty()
     reading = asyncio.create_task(board.read())
     for _ in range(2):
-        host = await open_serial(board.path, 115200)
+        host = await open_serial(board.path, LineFormat(115200))
         await asyncio.sleep(0.03)
         plugged = board.is_plugged
         host.close()
         await asyncio.sleep(0.03)
         assert (plugged, board.is_plugged, reading.done()) == (True, False, False)
-    host = await open_serial(board.path, 115200)
+    host = await open_serial(board.path, LineFormat(115200))
     host.write(b"here")
     assert await reading == b"here"
     host.close()
@@ -60,7 +61,7 @@ async def test_a_pty_that_nobody_opened_forgets_what_it_writes_and_costs_nothing
         board.write(bytes(60_000))
         await asyncio.sleep(0.05)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_utime - used < 0.1
-    host = await open_serial(board.path, 115200)
+    host = await open_serial(board.path, LineFormat(115200))
     board.write(b"fresh")
     assert await host.read() == b"fresh"
     host.close()
@@ -71,11 +72,11 @@ async def test_a_pty_that_nobody_opened_forgets_what_it_writes_and_costs_nothing
 
 async def test_what_waits_for_a_program_that_closed_is_not_given_to_the_next() -> None:
     board = open_pty()
-    deaf = await open_serial(board.path, 115200)
+    deaf = await open_serial(board.path, LineFormat(115200))
     board.write(b"old" * 20_000)
     deaf.close()
     await asyncio.sleep(0.03)
-    host = await open_serial(board.path, 115200)
+    host = await open_serial(board.path, LineFormat(115200))
     board.write(b"new")
     assert await host.read() == b"new"
     host.close()
@@ -84,9 +85,9 @@ async def test_what_waits_for_a_program_that_closed_is_not_given_to_the_next() -
 
 async def test_a_port_in_use_is_refused_and_its_holder_named() -> None:
     board = open_pty()
-    first = await open_serial(board.path, 115200)
+    first = await open_serial(board.path, LineFormat(115200))
     with pytest.raises(TransportError, match=rf"busy: held by pid {os.getpid()} \("):
-        await open_serial(board.path, 115200)
+        await open_serial(board.path, LineFormat(115200))
     first.close()
     await exchange(board)
     board.close()
@@ -105,11 +106,11 @@ async def test_a_real_port_is_closed_to_everybody_and_a_pty_stays_open_after_its
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     board = open_pty()
-    as_pty = await open_serial(board.path, 115200)
+    as_pty = await open_serial(board.path, LineFormat(115200))
     assert not is_exclusive(as_pty)
     as_pty.close()
     monkeypatch.setattr(serial_port, "_PTY_SLAVE_MAJORS", range(0))
-    as_port = await open_serial(board.path, 115200)
+    as_port = await open_serial(board.path, LineFormat(115200))
     assert is_exclusive(as_port)
     as_port.close()
     board.close()
@@ -123,7 +124,7 @@ async def test_without_a_view_of_the_locks_the_holder_is_still_found_by_its_desc
 
     monkeypatch.setattr(holder, "_locking_pid", hidden)
     board = open_pty()
-    line = await open_serial(board.path, 115200)
+    line = await open_serial(board.path, LineFormat(115200))
     assert (holder.holder_of(board.path) or "").startswith(f"pid {os.getpid()} (")
     line.close()
     board.close()
@@ -132,24 +133,24 @@ async def test_without_a_view_of_the_locks_the_holder_is_still_found_by_its_desc
 
 async def test_a_missing_port_is_a_transport_error() -> None:
     with pytest.raises(TransportError, match=r"/dev/tty-nowhere: no such device"):
-        await open_serial("/dev/tty-nowhere", 115200)
+        await open_serial("/dev/tty-nowhere", LineFormat(115200))
 
 
 async def test_a_file_is_not_a_serial_port(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no")
     with pytest.raises(TransportError, match="not a serial port"):
-        await open_serial(str(tmp_path / "file"), 115200)
+        await open_serial(str(tmp_path / "file"), LineFormat(115200))
 
 
 async def test_a_character_device_that_is_no_terminal_is_refused() -> None:
     with pytest.raises(TransportError, match="/dev/null"):
-        await open_serial("/dev/null", 115200)
+        await open_serial("/dev/null", LineFormat(115200))
 
 
 async def test_an_impossible_speed_is_refused() -> None:
     board = open_pty()
     with pytest.raises(TransportError, match="baud"):
-        await open_serial(board.path, -1)
+        await open_serial(board.path, LineFormat(-1))
     board.close()
 
 
@@ -159,7 +160,7 @@ async def test_a_symlink_is_resolved_at_each_open(tmp_path: Path) -> None:
         board = open_pty()
         link.unlink(missing_ok=True)
         link.symlink_to(board.path)
-        host = await open_serial(str(link), 115200)
+        host = await open_serial(str(link), LineFormat(115200))
         host.write(b"?")
         assert await board.read() == b"?"
         host.close()

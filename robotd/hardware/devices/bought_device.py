@@ -1,0 +1,181 @@
+"""What the adapters of bought devices share: the line, health, and an arming that is ours, for makers know none."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import ClassVar, Generic, NoReturn, TypeVar
+
+from robotd.core.broadcast import Broadcast
+from robotd.core.errors import DeviceError, TransportError
+from robotd.hardware.devices.device import DeviceStatus, LinkState
+from robotd.hardware.devices.health import Health
+from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.link.dialogue import Dialogue, DialogueCounters, Heard, Wire
+from robotd.hardware.link.keep_up import keep_up
+from robotd.hardware.link.tapped import TappedLine
+
+M = TypeVar("M")
+
+
+class BoughtDevice(ABC, Generic[M]):
+    """A device that speaks its maker's protocol: a subclass adds what it measures and what it moves.
+
+    It implements :class:`robotd.hardware.devices.device.Device`. Nothing on the line arms or latches a fault, so both
+    are kept here: a fault is latched by :meth:`_latch`, and only :meth:`clear_faults` and then :meth:`arm` end it.
+    """
+
+    NAME: ClassVar[str]
+    """``drive``, ``pantilt`` or ``rangefinder``."""
+    STOP: ClassVar[bytes]
+    """What stops all that moves or shines, preformatted; safe to send at any time."""
+
+    def __init__(self, wire: Wire[M], wiring: Wiring, *, quiet_s: float = 0.05) -> None:
+        """Make the device; nothing happens before :meth:`run`."""
+        self._wire = wire
+        self._wiring = wiring
+        self._quiet_s = quiet_s
+        self._counters = DialogueCounters()
+        self._dialogue: Dialogue[M] | None = None
+        self._may_move = False
+        """Whether it was armed, and no stop since."""
+        self._stops = 0
+        self._health = Health(self.NAME, self._counted)
+
+    @property
+    def name(self) -> str:
+        """``drive``, ``pantilt`` or ``rangefinder``."""
+        return self.NAME
+
+    @property
+    def status(self) -> DeviceStatus:
+        """Its health now."""
+        return self._health.status
+
+    @property
+    def status_changes(self) -> Broadcast[DeviceStatus]:
+        """Its health, whenever it changes; counters alone are no change."""
+        return self._health.changes
+
+    @property
+    def sessions(self) -> int:
+        """How often the right device was found since start."""
+        return self._counters.sessions
+
+    async def run(self) -> None:
+        """Own the line until cancelled: connect, greet, serve, reconnect with back-off, never arm by itself."""
+        await keep_up(self.NAME, self._wiring.connect, self._wiring.tap, self)
+
+    async def arm(self) -> None:
+        """Allow motion; see :meth:`robotd.hardware.devices.device.Device.arm`."""
+        if self._health.faults:
+            raise DeviceError(self.NAME, "fault", f"{', '.join(self._health.faults)} latched: clear first")
+        dialogue, stops = self._talk(), self._stops
+        await self._enable(dialogue)
+        if self._stops != stops:
+            self.stop_now()
+            raise DeviceError(self.NAME, "stopped", "while arming")
+        if self._dialogue is not dialogue:
+            raise TransportError(f"{self.NAME} was lost: {self._health.detail}")
+        self._may_move = True
+        self._health.change(armed=True)
+
+    async def clear_faults(self) -> None:
+        """Acknowledge latched faults; leaves the device disarmed; same errors as :meth:`arm`."""
+        dialogue = self._talk()
+        self.stop_now()
+        await self._acknowledge(dialogue)
+        self._health.change(faults=(), detail="")
+
+    def stop_now(self) -> None:
+        """Put the preformatted stop on the wire in place of all that waits; never blocks, never raises.
+
+        Nothing may move until the next :meth:`arm`. No device acknowledges it: a subclass whose device reports that it
+        still moves says it again.
+        """
+        self._stops += 1
+        self._may_move = False
+        if self._dialogue is not None:
+            self._dialogue.stop_now(self.STOP)
+        self._health.change(armed=False)
+
+    # What the line tells
+
+    async def talk(self, line: TappedLine) -> NoReturn:
+        """Greet whoever is there and serve until lost; see :class:`robotd.hardware.link.keep_up.Talker`."""
+        self._health.change(link=LinkState.CONNECTING, armed=False, detail="line open, waiting for the device")
+        dialogue = Dialogue(
+            self.NAME, line, self._wire, counters=self._counters, on_report=self._report, quiet_s=self._quiet_s
+        )
+        async with dialogue:
+            try:
+                await self._greet(dialogue)
+                self._counters.sessions += 1
+                self._dialogue = dialogue
+                self._health.change(link=LinkState.READY, armed=False, detail="")
+                await self._attend(dialogue)
+            finally:
+                self._dialogue = None
+                dialogue.stop_now(self.STOP)  # whatever ended it, nothing must go on moving
+
+    def line_lost(self, reason: str) -> None:
+        """Note that there is no device, and why; latched faults stay latched, for the device does not keep them."""
+        self._may_move = False
+        self._health.change(link=LinkState.ABSENT, armed=False, detail=reason)
+
+    # What a subclass adds
+
+    @abstractmethod
+    async def _greet(self, dialogue: Dialogue[M]) -> None:
+        """Make sure that the right device is there, at rest, and set it up; the first bytes sent are a stop.
+
+        Raises:
+            LinkTimeout: nobody answers.
+            RemoteProtocolError: somebody else does; says what was expected.
+        """
+
+    @abstractmethod
+    async def _attend(self, dialogue: Dialogue[M]) -> NoReturn:
+        """Do what must be done while it is there (polls, keep-alive) until it is lost; raise why."""
+
+    @abstractmethod
+    def _report(self, heard: Heard[M]) -> None:
+        """Take a message that nobody asked for."""
+
+    async def _enable(self, dialogue: Dialogue[M]) -> None:
+        """Make it ready to move; nothing to do for most."""
+
+    async def _acknowledge(self, dialogue: Dialogue[M]) -> None:
+        """Tell it that its faults were seen; nothing to do for most."""
+
+    # What a subclass uses
+
+    def _talk(self) -> Dialogue[M]:
+        """Return the conversation; TransportError if there is none."""
+        if self._dialogue is None:
+            raise TransportError(f"{self.NAME} is absent: {self._health.detail}")
+        return self._dialogue
+
+    def _talk_armed(self) -> Dialogue[M]:
+        """Return the conversation of an armed device; DeviceError, code ``not_armed``, if it is not."""
+        dialogue = self._talk()
+        if not self._may_move:
+            raise DeviceError(self.NAME, "not_armed", "arm first")
+        return dialogue
+
+    def _latch(self, fault: str, detail: str = "") -> None:
+        """Stop and latch a fault until it is cleared."""
+        self.stop_now()
+        if fault not in self._health.faults:
+            self._health.change(faults=(*self._health.faults, fault), detail=detail)
+
+    def _counted(self) -> tuple[tuple[str, int], ...]:
+        ours = (
+            ("sessions", self._counters.sessions),
+            ("retries", self._counters.retries),
+            ("timeouts", self._counters.timeouts),
+        )
+        return (*self._wire.counters.items(), *ours)
+
+
+def is_a(*kinds: type) -> Callable[[object], bool]:
+    """Return a test for messages of some kinds, for :meth:`Dialogue.ask`."""
+    return lambda message: isinstance(message, kinds)

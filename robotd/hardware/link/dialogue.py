@@ -1,0 +1,243 @@
+"""One conversation with a bought device: requests one at a time, replies told apart by the dialect alone.
+
+Makers' protocols have no sequence numbers, so a reply is known by what it looks like and by when it comes. Hence the
+rules: one request is under way at a time; what does not settle it is handed on as a report; and once a request was
+given up (no answer in time, or a stop came between) its answer may still come, so the next request waits until the line
+has been quiet for a moment. What happens is caused by messages; timers only bound silence.
+"""
+
+import asyncio
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import Generic, NoReturn, Protocol, Self, TypeVar
+
+from robotd.core.clock import now_ns
+from robotd.core.errors import DeviceError, LinkTimeout, RobotdError, TransportError
+from robotd.hardware.link.tapped import TappedLine
+
+M = TypeVar("M")
+M_co = TypeVar("M_co", covariant=True)
+
+_PIECES_MAX = 50
+
+
+class Wire(Protocol[M_co]):
+    """The receiving half of a dialect: bytes in, messages out; damaged bytes are counted and skipped."""
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """What was counted since start, by name: messages, checksum errors, bytes skipped..."""
+
+    def feed(self, data: bytes) -> Iterable[M_co]:
+        """Take bytes as they come, in any pieces; return the messages that are whole now."""
+
+    def reset(self) -> None:
+        """Forget a message of which only the beginning came: the line was lost. Counters stay."""
+
+
+@dataclass(frozen=True, slots=True)
+class Heard(Generic[M]):
+    """A message, and when its last byte came (clock of this host)."""
+
+    message: M
+    time_ns: int
+
+
+@dataclass(slots=True)
+class DialogueCounters:
+    """What is counted since start, beside what the wire counts."""
+
+    sessions: int = 0
+    retries: int = 0
+    timeouts: int = 0
+    """Requests that no try got answered."""
+
+
+@dataclass(slots=True)
+class _Request(Generic[M]):
+    settles: Callable[[M], bool]
+    answer: "asyncio.Future[Heard[M]]" = field(default_factory=lambda: asyncio.get_running_loop().create_future())
+
+
+class Dialogue(Generic[M]):
+    """A conversation over an open line, as a context manager; it ends when the line is lost or the block is left."""
+
+    def __init__(
+        self,
+        device: str,
+        line: TappedLine,
+        wire: Wire[M],
+        *,
+        counters: DialogueCounters,
+        on_report: Callable[[Heard[M]], None],
+        quiet_s: float = 0.05,
+    ) -> None:
+        """Begin on an open line.
+
+        Args:
+            device: for messages to people.
+            line: nobody else reads from it.
+            wire: the dialect.
+            counters: shared by all conversations with this device.
+            on_report: told every message that settles no request, in order.
+            quiet_s: how long the line must have been quiet before a request follows one that was given up.
+        """
+        self._device = device
+        self._line = line
+        self._wire = wire
+        self._counters = counters
+        self._on_report = on_report
+        self._quiet_s = quiet_s
+        self._one_at_a_time = asyncio.Lock()
+        self._request: _Request[M] | None = None
+        self._is_unsettled = False
+        self._stops = 0
+        self._heard_ns = now_ns()
+        self._lost: RobotdError | None = None
+        self._silence_s: float | None = None
+        self._bytes_came = asyncio.Event()
+
+    async def __aenter__(self) -> Self:
+        self._wire.reset()
+        self._reader = asyncio.create_task(self._read(), name=f"{self._device} reader")
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._reader.cancel()
+        await asyncio.wait({self._reader})
+        if not self._reader.cancelled():
+            self._reader.exception()  # known already, or of no interest any more
+        self._lose(TransportError(f"{self._device}: the session is over"))
+
+    @property
+    def heard_ns(self) -> int:
+        """When the last byte came."""
+        return self._heard_ns
+
+    async def ask(self, data: bytes, settles: Callable[[M], bool], *, timeout_s: float, tries: int = 1) -> Heard[M]:
+        """Send a request and return the message that settles it.
+
+        Args:
+            data: the request.
+            settles: whether a message is its answer, a refusal included.
+            timeout_s: how long a try may stay without it.
+            tries: how often the request may be sent; 1 for whatever must not happen twice.
+
+        Raises:
+            LinkTimeout: no answer to any try.
+            DeviceError: a stop came between, code ``stopped``.
+            TransportError: the line is lost, or was lost meanwhile.
+        """
+        stops = self._stops
+        async with self._one_at_a_time:
+            for attempt in range(tries):
+                await self._settle_down()
+                self._check(stops)
+                self._counters.retries += attempt > 0
+                request = self._request = _Request(settles)
+                try:
+                    self._line.write(data)
+                    async with asyncio.timeout(timeout_s):
+                        return await request.answer
+                except TimeoutError:
+                    self._is_unsettled = True
+                except asyncio.CancelledError:
+                    self._is_unsettled = True
+                    raise
+                finally:
+                    self._request = None
+            self._counters.timeouts += 1
+            raise LinkTimeout(f"{self._device}: no answer to {data!r} in {tries * timeout_s:g} s")
+
+    def post(self, data: bytes) -> None:
+        """Send what is not answered; TransportError when the line is lost, or stuck."""
+        self._check(self._stops)
+        self._line.write(data)
+
+    def stop_now(self, data: bytes) -> None:
+        """Put the stop on the wire in place of everything not yet written, and give up the request under way.
+
+        Never raises.
+        """
+        self._stops += 1
+        self._is_unsettled = True
+        if self._request is not None and not self._request.answer.done():
+            self._request.answer.set_exception(self._stopped())
+        try:
+            self._line.write_urgent(data)
+        except TransportError:
+            return  # it is for the device's own watchdog now, if it has one
+
+    async def until_lost(self, silence_s: float | None = None) -> NoReturn:
+        """Wait until the line is lost, or nothing came for so long; raise why.
+
+        Raises:
+            TransportError: the line is lost.
+            LinkTimeout: nothing came for ``silence_s``.
+        """
+        while True:
+            self._bytes_came.clear()
+            try:
+                async with asyncio.timeout(silence_s):
+                    came = asyncio.create_task(self._bytes_came.wait())
+                    try:
+                        await asyncio.wait({came, self._reader}, return_when=asyncio.FIRST_COMPLETED)
+                    finally:
+                        came.cancel()
+            except TimeoutError:
+                raise self._lose(LinkTimeout(f"{self._device}: silent for {silence_s:g} s")) from None
+            if self._reader.done():
+                self._reader.result()
+
+    async def _settle_down(self) -> None:
+        """Let late answers to what was given up go by, as reports; what never falls silent is not waited for."""
+        for _ in range(_PIECES_MAX):
+            if not self._is_unsettled or self._lost is not None:
+                return
+            self._is_unsettled = False
+            self._bytes_came.clear()
+            try:
+                async with asyncio.timeout(self._quiet_s):
+                    await self._bytes_came.wait()
+            except TimeoutError:
+                return
+            self._is_unsettled = True
+        self._is_unsettled = False
+
+    async def _read(self) -> NoReturn:
+        try:
+            while True:
+                chunk = await self._line.read()
+                self._heard_ns = chunk.time_ns
+                self._bytes_came.set()
+                for message in self._wire.feed(chunk.data):
+                    self._take(Heard(message, chunk.time_ns))
+        except RobotdError as error:
+            raise self._lose(error) from error.__cause__
+
+    def _take(self, heard: Heard[M]) -> None:
+        request = self._request
+        if request is not None and not request.answer.done() and request.settles(heard.message):
+            request.answer.set_result(heard)
+            return
+        self._on_report(heard)
+
+    def _check(self, stops: int) -> None:
+        if self._lost is not None:
+            raise TransportError(str(self._lost))
+        if self._stops != stops:
+            raise self._stopped()
+
+    def _stopped(self) -> DeviceError:
+        return DeviceError(self._device, "stopped", "before it answered")
+
+    def _lose(self, error: RobotdError) -> RobotdError:
+        if self._lost is None:
+            self._lost = error
+        if self._request is not None and not self._request.answer.done():
+            self._request.answer.set_exception(TransportError(str(self._lost)))
+        self._bytes_came.set()
+        return error

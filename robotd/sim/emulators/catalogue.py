@@ -1,0 +1,64 @@
+"""Which emulator speaks which dialect. A new one is one row here, and in the catalogue of the adapters."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+from robotd.core.errors import ConfigError
+from robotd.sim.boards.drive import DriveBoard
+from robotd.sim.boards.pantilt import PanTiltBoard
+from robotd.sim.boards.rangefinder import RangefinderBoard
+from robotd.sim.host import HostedBoard
+from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant
+
+Plant = TypeVar("Plant")
+
+
+@dataclass(frozen=True, slots=True)
+class Emulator(Generic[Plant]):
+    """One way in which an emulated device can talk."""
+
+    power_up: Callable[[Plant, int], HostedBoard]
+    """Given what is beneath it, and a number that differs from boot to boot."""
+    settings: Mapping[str, object] = field(default_factory=dict)
+    """What the daemon's configuration of the device must say, beside its dialect, to understand it."""
+
+
+DRIVES: Mapping[str, Emulator[DrivePlant]] = {
+    "board": Emulator(lambda plant, boot_id: DriveBoard(plant, boot_id=boot_id)),
+}
+PANTILTS: Mapping[str, Emulator[HeadPlant]] = {
+    "board": Emulator(lambda plant, boot_id: PanTiltBoard(plant, boot_id=boot_id)),
+}
+RANGEFINDERS: Mapping[str, Emulator[LaserPlant]] = {
+    "board": Emulator(lambda plant, boot_id: RangefinderBoard(plant, boot_id=boot_id)),
+}
+OWN = "board"
+
+
+@dataclass(frozen=True, slots=True)
+class Dialects:
+    """What each emulated device speaks."""
+
+    drive: str = OWN
+    pantilt: str = OWN
+    rangefinder: str = OWN
+
+    def __post_init__(self) -> None:
+        """Refuse a dialect that no emulator speaks."""
+        for device, table in (("drive", DRIVES), ("pantilt", PANTILTS), ("rangefinder", RANGEFINDERS)):
+            dialect = getattr(self, device)
+            if dialect not in table:
+                raise ConfigError(f"no emulated {device} speaks {dialect!r}; known: {', '.join(table)}", key=device)
+
+    def settings(self) -> dict[str, dict[str, object]]:
+        """Return what the daemon's configuration must say of each device; what is the default is left out."""
+        rows = {
+            "drive": (self.drive, DRIVES[self.drive].settings),
+            "pantilt": (self.pantilt, PANTILTS[self.pantilt].settings),
+            "rangefinder": (self.rangefinder, RANGEFINDERS[self.rangefinder].settings),
+        }
+        return {
+            device: {"dialect": dialect, **settings} if dialect != OWN else dict(settings)
+            for device, (dialect, settings) in rows.items()
+        }
