@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from robotd.core.reading import RangeReading
 from robotd.grid.binary import BinaryMap
 from robotd.localization.estimate import PoseEstimate, PoseState, Region
+from robotd.localization.prepared import PreparedMap
 from robotd.localization.rank import RankGrid
 from robotd.localization.regions import regions_of
 
@@ -78,7 +79,7 @@ class Localizer:
             threads: how many threads may share the work when it is much; no estimate depends on it.
         """
         self._threads = threads
-        self._binary = binary
+        self._map = PreparedMap.of_binary(binary, settings.range_error_m / binary.spec.resolution_m)
         self._settings = settings
         self._map_id = map_id
         self._ranks = self._blank((0.0,))
@@ -133,8 +134,7 @@ class Localizer:
         return (PoseState.LOCALIZED if spread_m <= settings.unique_within_m else PoseState.AMBIGUOUS), regions
 
     def _blank(self, headings_rad: Sequence[float]) -> RankGrid:
-        error_radius_cells = self._settings.range_error_m / self._binary.spec.resolution_m
-        return RankGrid(self._binary, headings_rad, error_radius_cells, threads=self._threads)
+        return RankGrid(self._map, headings_rad, threads=self._threads)
 
 
 def _farthest_m(region: Region, best: Region) -> float:

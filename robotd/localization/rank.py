@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading
 from robotd.grid import kernels
-from robotd.grid.binary import BinaryMap
-from robotd.grid.kernels.layout import TILE_ROWS, WORD_CELLS, BeamSettings, PackedMap, Words, unpack
+from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, BeamSettings, Words, unpack
 from robotd.grid.readings import numbers_of
-from robotd.localization.obstacles import Obstacles
+from robotd.localization.prepared import PreparedMap
 
 _READINGS_MAX = int(np.iinfo(np.uint16).max)
 _BITS_AT_FIRST = 9
@@ -28,32 +27,25 @@ _WORTH_THREADS = 1000
 class RankGrid:
     """Counts feasible readings for every cell and every heading; it can be looked at after any of them.
 
-    Only free cells are poses: the robot's own cell belongs to the body of every probe, so a cell that is occupied or
-    unknown explains no reading and its rank stays 0.
+    Only free cells are poses; the rank of all others stays 0.
     """
 
-    def __init__(
-        self, binary: BinaryMap, headings_rad: Sequence[float], error_radius_cells: float, *, threads: int = 1
-    ) -> None:
+    def __init__(self, the_map: PreparedMap, headings_rad: Sequence[float], *, threads: int = 1) -> None:
         """Begin with no readings.
 
         Args:
-            binary: the map.
+            the_map: the map; what is derived from it is shared, nothing is copied.
             headings_rad: the headings to try, map frame: one where it is known, else the theta slices.
-            error_radius_cells: the paper's eps.
             threads: how many threads may share the counting; the counts do not depend on it.
         """
-        self.spec = binary.spec
+        self.spec = the_map.spec
         self.headings_rad = tuple(headings_rad)
         self.readings = 0
         self._headings = np.array(self.headings_rad, np.float64)
         self._threads = threads
-        self._window = _bounds(~binary.occupied)
-        # What lies outside the bounds of the free cells is all occupied, as is what lies outside a grid.
-        occupied = np.ascontiguousarray(binary.occupied[self._window])
-        self._free = ~occupied
-        self._map = PackedMap.of(occupied, Obstacles.of(occupied, error_radius_cells).grown)
-        self._how = BeamSettings(self.spec.resolution_m, error_radius_cells, reach_cells=2 * max(occupied.shape))
+        self._map = the_map.packed
+        reach_cells = 2 * max(the_map.spec.shape)
+        self._how = BeamSettings(the_map.spec.resolution_m, the_map.error_radius_cells, reach_cells)
         self._counters = self._map.blank_counters(len(self.headings_rad), _BITS_AT_FIRST)
 
     def add(self, *readings: RangeReading) -> None:
@@ -93,14 +85,15 @@ class RankGrid:
     @property
     def rank(self) -> NDArray[np.uint16]:
         """The count, a new array ``uint16[headings, rows, cols]``."""
-        whole = np.zeros((len(self.headings_rad), *self.spec.shape), np.uint16)
-        inside = whole[:, *self._window]
+        rank = np.zeros((len(self.headings_rad), *self.spec.shape), np.uint16)
         tiled = np.zeros((len(self.headings_rad), self._map.rows, self._map.words), np.uint64)
         blocks = tiled.reshape(len(self.headings_rad), -1, TILE_ROWS, self._map.words)
+        (top, left), (rows, cols) = self._map.origin, self.spec.shape
         for bit in range(self._counters.shape[2]):
             blocks[:, self._map.tiles[:, 1] // TILE_ROWS, :, self._map.tiles[:, 0]] = self._counters[:, :, bit]
-            inside |= self._cells(tiled).astype(np.uint16) << bit
-        return whole
+            cells = unpack(tiled[:, top : top + rows], left + cols)[:, :, left:]
+            rank |= cells.astype(np.uint16) << bit
+        return rank
 
     @property
     def best_rank(self) -> int:
@@ -113,20 +106,18 @@ class RankGrid:
         Only free cells are poses, even for a rank of 0.
         """
         reached = kernels.at_least(self._counters, self._map, max(least, 0))
+        if least <= 0:
+            reached &= self._map.free[PAD_WORDS:-PAD_WORDS, TILE_ROWS:-TILE_ROWS].T
         heading, row, word = np.nonzero(reached)
         which, bit = np.nonzero(unpack(reached[heading, row, word][:, None], WORD_CELLS))
         poses = np.stack((heading[which], row[which], word[which] * WORD_CELLS + bit), axis=1)
-        if least <= 0:
-            inside = (poses[:, 1:] < self._free.shape).all(axis=1)
-            poses = poses[inside]
-            poses = poses[self._free[poses[:, 1], poses[:, 2]]]
-        poses += np.array([0, self._window[0].start, self._window[1].start])
+        poses -= np.array([0, *self._map.origin])
         return poses
 
     def rank_at(self, poses: NDArray[np.intp]) -> NDArray[np.uint16]:
         """Return the counts ``uint16[n]`` of poses that :meth:`cells_of_rank` returned."""
         heading, row, col = poses.T
-        row, col = row - self._window[0].start, col - self._window[1].start
+        row, col = row + self._map.origin[0], col + self._map.origin[1]
         number = np.zeros((self._map.words, self._map.rows // TILE_ROWS), np.intp)
         number[self._map.tiles[:, 0], self._map.tiles[:, 1] // TILE_ROWS] = np.arange(len(self._map.tiles))
         tile = number[col // WORD_CELLS, row // TILE_ROWS]
@@ -140,11 +131,6 @@ class RankGrid:
         """The poses of greatest rank (the paper's loc), as :meth:`cells_of_rank`."""
         return self.cells_of_rank(self.best_rank)
 
-    def _cells(self, words: Words) -> NDArray[np.bool_]:
-        """Return ``bool[headings, rows, cols]`` of the window from words ``uint64[headings, rows, words]``."""
-        rows, cols = self._free.shape
-        return unpack(words[:, :rows], cols)
-
 
 def even_headings(count: int) -> tuple[float, ...]:
     """Return theta slices all round, ``2 pi k / count`` ([BrownDonald2000]_ sec. 2.2.3)."""
@@ -155,11 +141,3 @@ def _widened(counters: Words, bits: int) -> Words:
     """Return counters that can hold numbers of so many bits."""
     missing = bits - counters.shape[2]
     return counters if missing <= 0 else np.pad(counters, ((0, 0), (0, 0), (0, missing), (0, 0)))
-
-
-def _bounds(cells: NDArray[np.bool_]) -> tuple[slice, slice]:
-    """Return the smallest window that holds all set cells; one cell if there are none."""
-    rows, cols = np.flatnonzero(cells.any(axis=1)), np.flatnonzero(cells.any(axis=0))
-    if rows.size == 0:
-        return slice(0, 1), slice(0, 1)
-    return slice(int(rows[0]), int(rows[-1]) + 1), slice(int(cols[0]), int(cols[-1]) + 1)

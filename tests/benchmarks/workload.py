@@ -9,6 +9,7 @@ from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.binary import BinaryMap
 from robotd.grid.spec import GridSpec
+from robotd.localization.prepared import PreparedMap
 
 RESOLUTION_M = 0.05
 CUT_OFF_M = 6.0
@@ -42,9 +43,9 @@ def sweep_of(occupied: NDArray[np.bool_], seed: int = 1) -> Sweep:
     return Sweep(0, IDENTITY, tuple(_reading(occupied, k, random) for k in range(READINGS)))
 
 
-def binary_of(occupied: NDArray[np.bool_]) -> BinaryMap:
+def map_of(occupied: NDArray[np.bool_]) -> PreparedMap:
     """Return the map of a room."""
-    return BinaryMap(SPEC, occupied)
+    return PreparedMap.of_binary(BinaryMap(SPEC, occupied), ERROR_RADIUS_CELLS)
 
 
 def _reading(occupied: NDArray[np.bool_], number: int, random: np.random.Generator) -> RangeReading:

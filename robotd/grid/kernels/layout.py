@@ -1,8 +1,8 @@
-"""How a map is packed for the kernels: 64 cells a word, words of one column together, ones all round.
+"""How a map is packed for the kernels: 64 cells a word, words of one column together, its outside all round.
 
 Bit ``b`` of word ``w`` of a row is column ``64 w + b``. Words that lie above each other are neighbours in memory, so
 that a vector holds the same word of successive rows, and the map shifted by any offset is two loads and one funnel
-shift. Two columns of words and 32 rows of ones lie round the map: whatever is outside is occupied, without a branch.
+shift. Two columns of words and 32 rows lie round the map, all ones or all zeros: what is outside needs no branch.
 A tile is 32 rows of one column of words; counts are kept for tiles, in bit-sliced counters ``uint64[tiles, headings,
 bits, 32]``: plane ``p`` holds bit ``p`` of all counts.
 """
@@ -22,14 +22,20 @@ BITS_MIN = 3
 Words = NDArray[np.uint64]
 
 
-def pack(mask: NDArray[np.bool_]) -> Words:
-    """Return a mask ``bool[rows, cols]`` packed as above, ``uint64[words + 4, rows + padding]``, ones outside."""
-    rows, cols = mask.shape
+def pack(mask: NDArray[np.bool_], origin: tuple[int, int] = (0, 0), *, outside: bool) -> Words:
+    """Return a mask packed as above, ``uint64[words + 4, rows + padding]``.
+
+    Args:
+        mask: ``bool[rows, cols]``.
+        origin: row and column, within the first tile, where the mask begins.
+        outside: what lies beyond the mask.
+    """
+    (top, left), (rows, cols) = origin, mask.shape
     padding = (
-        (TILE_ROWS, TILE_ROWS + -rows % TILE_ROWS),
-        (PAD_WORDS * WORD_CELLS, PAD_WORDS * WORD_CELLS + -cols % WORD_CELLS),
+        (TILE_ROWS + top, TILE_ROWS + -(top + rows) % TILE_ROWS),
+        (PAD_WORDS * WORD_CELLS + left, PAD_WORDS * WORD_CELLS + -(left + cols) % WORD_CELLS),
     )
-    padded = np.pad(mask, padding, constant_values=True)
+    padded = np.pad(mask, padding, constant_values=outside)
     return np.ascontiguousarray(np.packbits(padded, axis=1, bitorder="little").view("<u8").astype(np.uint64).T)
 
 
@@ -41,34 +47,69 @@ def unpack(words: Words, cols: int) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PackedMap:
-    """The obstacles and the grown obstacles of one map, packed, and the tiles that have free cells."""
+    """What a map means to a reading (:mod:`robotd.localization.obstacles`), packed, and the tiles with free cells."""
 
-    occupied: Words
+    free: Words
+    """Where the robot may stand; nowhere outside."""
+    blocking: Words
+    """What stops a beam."""
     grown: Words
+    """What can end a beam, grown by the error radius."""
     tiles: NDArray[np.int32]
     """``int32[tiles, 2]``: column of words, and first row, of every tile with a free cell."""
+    shape: tuple[int, int]
+    """``(rows, cols)`` of the map before it was packed."""
+    origin: tuple[int, int]
+    """Row and column, within the first tile, of the map's first cell: such that the free cells begin with a tile."""
+    blocked_by: int
+    """How many blocking cells a body must meet to be blocked, 1 or 2."""
 
     @classmethod
-    def of(cls, occupied: NDArray[np.bool_], grown: NDArray[np.bool_]) -> "PackedMap":
-        """Pack a map ``bool[rows, cols]`` and the same grown by the error radius."""
-        packed = pack(occupied)
-        inner = ~packed[PAD_WORDS:-PAD_WORDS, TILE_ROWS:-TILE_ROWS]
-        blocks = inner.reshape(inner.shape[0], -1, TILE_ROWS).any(axis=2)
-        return cls(packed, pack(grown), np.ascontiguousarray(np.argwhere(blocks) * (1, TILE_ROWS), np.int32))
+    def of(
+        cls,
+        free: NDArray[np.bool_],
+        blocking: NDArray[np.bool_],
+        grown: NDArray[np.bool_],
+        *,
+        outside_blocks: bool = True,
+        outside_ends: bool = True,
+        blocked_by: int = 1,
+    ) -> "PackedMap":
+        """Pack the three masks ``bool[rows, cols]`` of a map, and what lies outside."""
+        first_row, first_col = int(free.any(axis=1).argmax()), int(free.any(axis=0).argmax())
+        origin = -first_row % TILE_ROWS, -first_col % WORD_CELLS
+        packed = pack(free, origin, outside=False)
+        rows, cols = free.shape
+        return cls(
+            packed,
+            pack(blocking, origin, outside=outside_blocks),
+            pack(grown, origin, outside=outside_ends),
+            tiles_of(packed),
+            (rows, cols),
+            origin,
+            blocked_by,
+        )
 
     @property
     def words(self) -> int:
         """Columns of words, without the padding."""
-        return int(self.occupied.shape[0]) - 2 * PAD_WORDS
+        return int(self.free.shape[0]) - 2 * PAD_WORDS
 
     @property
     def rows(self) -> int:
         """Rows, a multiple of the tile's."""
-        return int(self.occupied.shape[1]) - 2 * TILE_ROWS
+        return int(self.free.shape[1]) - 2 * TILE_ROWS
 
     def blank_counters(self, headings: int, bits: int) -> Words:
         """Return counters that have counted nothing."""
         return np.zeros((len(self.tiles), headings, max(bits, BITS_MIN), TILE_ROWS), np.uint64)
+
+
+def tiles_of(free: Words) -> NDArray[np.int32]:
+    """Return the tiles of a packed plane that have a set bit, ``int32[tiles, 2]`` as ``(word, first row)``."""
+    inner = free[PAD_WORDS:-PAD_WORDS, TILE_ROWS:-TILE_ROWS]
+    blocks = inner.reshape(inner.shape[0], -1, TILE_ROWS).any(axis=2)
+    return np.ascontiguousarray(np.argwhere(blocks) * (1, TILE_ROWS), np.int32)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,13 +142,15 @@ class Beams:
     lists: NDArray[np.int32]
     """``int32[batches * headings + 1]``: first beam of each batch and heading, and the end of the last."""
     beams: NDArray[np.int32]
-    """``int32[beams, 3]``: slot of the body, ``(row, col)`` of the head. A miss has its head ``FAR_CELLS`` away,
-    outside every grid, where all is occupied."""
+    """``int32[beams, 3]``: slot of the body, ``(row, col)`` of the head; ``NO_HEAD`` twice for a miss."""
     slots: int
     """No batch has more than so many."""
 
 
 FAR_CELLS = 1 << 28
+"""Heads that are farther away count as being so far."""
+NO_HEAD = -(1 << 30)
+"""In place of a head's row and column: the reading is a miss, and only its body counts."""
 SLOTS = 2048
 """Half a mebibyte for each thread: a batch fits into the second-level cache with room to spare."""
 

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 
 from robotd.grid import kernels
 from robotd.grid.kernels import twins
-from robotd.grid.kernels.layout import BeamSettings, PackedMap
+from robotd.grid.kernels.layout import BeamSettings
 from robotd.grid.readings import numbers_of
-from robotd.localization.obstacles import Obstacles
 from robotd.localization.rank import RankGrid, even_headings
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
@@ -28,12 +27,11 @@ def timings() -> Iterator[Timing]:
 
 def all_poses(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
     """Every free cell, every heading, every reading."""
-    binary = workload.binary_of(occupied)
     sweep = workload.sweep_of(occupied).measured
     headings = even_headings(HEADINGS)
 
     def whole(threads: int) -> RankGrid:
-        ranks = RankGrid(binary, headings, workload.ERROR_RADIUS_CELLS, threads=threads)
+        ranks = RankGrid(workload.map_of(occupied), headings, threads=threads)
         ranks.add(*sweep)
         return ranks
 
@@ -45,7 +43,7 @@ def all_poses(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
     yield timed(f"{title}: greatest rank", lambda: ranks.best_rank, 15)
     yield timed(f"{title}: poses of greatest rank", lambda: ranks.best_cells, 15)
     few = sweep[:: len(sweep) // 10]
-    the_map = PackedMap.of(occupied, Obstacles.of(occupied, workload.ERROR_RADIUS_CELLS).grown)
+    the_map = workload.map_of(occupied).packed
     ten = np.array(headings[:10])
     for name, module in (("in use", kernels), ("NumPy twin", twins)):
         counters = the_map.blank_counters(10, 9)
@@ -56,8 +54,8 @@ def all_poses(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
 
 def one_reading(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
     """One reading more, heading known."""
-    ranks = RankGrid(workload.binary_of(occupied), (0.0,), workload.ERROR_RADIUS_CELLS)
-    the_map = PackedMap.of(occupied, Obstacles.of(occupied, workload.ERROR_RADIUS_CELLS).grown)
+    ranks = RankGrid(workload.map_of(occupied), (0.0,))
+    the_map = workload.map_of(occupied).packed
     counters = the_map.blank_counters(1, 16)
     sweep = sorted(workload.sweep_of(occupied).measured, key=lambda reading: reading.range_m or 0.0)
     for name, reading in (("median", sweep[len(sweep) // 2]), ("longest", sweep[-1])):

@@ -22,6 +22,7 @@ from robotd.localization.orientation import (
     readings_axis,
     separated_orientation,
 )
+from robotd.localization.prepared import PreparedMap
 from robotd.localization.rank import RankGrid
 from robotd.sim.walls import Point, Walls, ray_cast
 from robotd.sim.world import load_world
@@ -115,7 +116,7 @@ def test_with_its_four_headings_localization_finds_the_place_by_translation_alon
     binary = drawn(world.walls)
     sweep = swept(world.walls, *place_m, heading)
     result = separated_orientation(sweep, axis_of(binary.occupied), SETTINGS)
-    ranks = RankGrid(binary, result.headings_rad, error_radius_cells=3.0)
+    ranks = RankGrid(PreparedMap.of_binary(binary, 3.0), result.headings_rad)
     for reading in sweep:
         ranks.add(reading)
     number, row, col = ranks.best_cells[0].tolist()

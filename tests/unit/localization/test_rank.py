@@ -1,5 +1,6 @@
 """The rank grid: a sum of feasible poses, whatever the order, over free cells only."""
 
+import itertools
 import math
 from random import Random
 
@@ -13,8 +14,10 @@ from numpy.typing import NDArray
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.spec import GridSpec
+from robotd.grid.ternary import TernaryMap
 from robotd.localization.feasible import feasible_poses
-from robotd.localization.obstacles import Obstacles
+from robotd.localization.obstacles import Obstacles, UnknownCells
+from robotd.localization.prepared import PreparedMap
 from robotd.localization.probe import probe_of
 from robotd.localization.rank import RankGrid, even_headings
 
@@ -28,8 +31,8 @@ readings = st.builds(
 )
 
 
-def binary_of(occupied: NDArray[np.bool_]) -> BinaryMap:
-    return BinaryMap(GridSpec(0.5, -1.0, 2.0, occupied.shape), occupied)
+def map_of(occupied: NDArray[np.bool_], radius: float = 1.5) -> PreparedMap:
+    return PreparedMap.of_binary(BinaryMap(GridSpec(0.5, -1.0, 2.0, occupied.shape), occupied), radius)
 
 
 @settings(max_examples=60)
@@ -37,7 +40,7 @@ def binary_of(occupied: NDArray[np.bool_]) -> BinaryMap:
 def test_rank_is_how_many_feasible_pose_sets_hold_a_free_cell(
     occupied: NDArray[np.bool_], sweep: list[RangeReading], headings: list[float]
 ) -> None:
-    ranks = RankGrid(binary_of(occupied), headings, 1.5)
+    ranks = RankGrid(map_of(occupied), headings)
     expected = np.zeros((len(headings), *occupied.shape), np.uint16)
     for reading in sweep:
         ranks.add(reading)
@@ -53,12 +56,63 @@ def test_rank_is_how_many_feasible_pose_sets_hold_a_free_cell(
     assert np.array_equal(ranks.rank_at(ranks.best_cells), np.full(len(ranks.best_cells), expected.max()))
 
 
+def drawn_obstacles(seed: int, shape: tuple[int, int], outside: tuple[bool, bool], blocked_by: int) -> Obstacles:
+    """Free, blocking and ending cells that have nothing to do with each other, and some that are none of it."""
+    random = np.random.default_rng(seed)
+    free = random.random(shape) < random.choice([0.1, 0.6, 0.95])
+    blocking = (random.random(shape) < random.choice([0.02, 0.2])) & ~free
+    grown = random.random(shape) < random.choice([0.1, 0.7])
+    return Obstacles(free, blocking, grown, *outside, blocked_by)
+
+
+any_obstacles = st.builds(
+    drawn_obstacles,
+    st.integers(0, 2**32),
+    st.tuples(st.integers(1, 40), st.integers(1, 140)),
+    st.tuples(st.booleans(), st.booleans()),
+    st.sampled_from([1, 2]),
+)
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    any_obstacles, st.lists(readings, min_size=1, max_size=8), st.lists(st.floats(-4.0, 4.0), min_size=1, max_size=3)
+)
+def test_rank_is_the_sum_of_feasible_poses_whatever_the_obstacles_mean(
+    obstacles: Obstacles, sweep: list[RangeReading], headings: list[float]
+) -> None:
+    rows, cols = obstacles.free.shape
+    ranks = RankGrid(PreparedMap.of(obstacles, GridSpec(0.5, -1.0, 2.0, (rows, cols)), 1.5), headings)
+    ranks.add(*sweep)
+    expected = np.zeros((len(headings), rows, cols), np.intp)
+    for reading, (number, heading) in itertools.product(sweep, enumerate(headings)):
+        probe = probe_of(reading, heading, resolution_m=0.5, error_radius_cells=1.5, reach_cells=2 * max(rows, cols))
+        expected[number] += feasible_poses(obstacles, probe)
+    assert np.array_equal(ranks.rank, expected)
+    free = np.broadcast_to(obstacles.free, expected.shape)
+    for least in (0, 1, max(1, int(expected.max()))):
+        poses = ranks.cells_of_rank(least)
+        assert np.array_equal(poses, np.argwhere((expected >= least) & free))
+        assert np.array_equal(ranks.rank_at(poses), expected[tuple(poses.T)])
+
+
+@given(st.sampled_from(UnknownCells), st.sampled_from([1, 2]))
+def test_a_miss_counts_by_its_body_alone_whatever_lies_outside(unknown: UnknownCells, blocked_by: int) -> None:
+    vacant = np.ones((5, 9), np.bool_)
+    ternary = TernaryMap(GridSpec(0.5, 0.0, 0.0, (5, 9)), ~vacant, vacant)
+    obstacles = Obstacles.of_map(ternary, unknown, 1.0, blocked_by=blocked_by)
+    ranks = RankGrid(PreparedMap.of(obstacles, ternary.spec, 1.0), [0.0])
+    ranks.add(RangeReading(0, 0.0, ReadingStatus.MISS, 2.0))
+    seen = 9 if unknown is UnknownCells.FREE else 9 - 3 + blocked_by
+    assert ranks.rank[0, 0].tolist() == [1] * min(9, seen) + [0] * (9 - seen)
+
+
 @settings(max_examples=25)
 @given(maps, st.lists(readings, min_size=2, max_size=5), st.randoms())
 def test_the_order_of_readings_does_not_matter(
     occupied: NDArray[np.bool_], sweep: list[RangeReading], random: Random
 ) -> None:
-    one, other = (RankGrid(binary_of(occupied), [0.2], 1.0) for _ in range(2))
+    one, other = (RankGrid(map_of(occupied, 1.0), [0.2]) for _ in range(2))
     for reading in sweep:
         one.add(reading)
     random.shuffle(sweep)
@@ -72,9 +126,9 @@ def test_the_order_of_readings_does_not_matter(
 def test_readings_can_be_added_together_and_taken_back_in_any_order(
     seed: int, sweep: list[RangeReading], data: st.DataObject
 ) -> None:
-    binary = binary_of(np.random.default_rng(seed).random((75, 140)) < 0.05)
+    the_map = map_of(np.random.default_rng(seed).random((75, 140)) < 0.05)
     gone = data.draw(st.lists(st.sampled_from(range(len(sweep))), unique=True))
-    grid, expected = (RankGrid(binary, even_headings(8), 1.5) for _ in range(2))
+    grid, expected = (RankGrid(the_map, even_headings(8)) for _ in range(2))
     grid.add(*sweep)
     for number in gone:
         grid.remove(sweep[number])
@@ -94,7 +148,7 @@ def test_all_poses_of_a_map_of_many_tiles_are_the_reference_at_samples(seed: int
         RangeReading(0, math.tau * (k + turned) / 40, random.choice([ReadingStatus.OK, ReadingStatus.MISS]), length)
         for k, length in enumerate(random.uniform(0.1, 25.0, 40).tolist())
     ]
-    ranks = RankGrid(binary_of(occupied), even_headings(40), 1.5, threads=2)
+    ranks = RankGrid(map_of(occupied), even_headings(40), threads=2)
     ranks.add(*sweep)
     obstacles = Obstacles.of(occupied, 1.5)
     rank = ranks.rank
@@ -109,7 +163,7 @@ def test_all_poses_of_a_map_of_many_tiles_are_the_reference_at_samples(seed: int
 
 
 def test_counters_grow_with_what_they_count() -> None:
-    ranks = RankGrid(binary_of(np.zeros((3, 3), np.bool_)), [0.0], 1.0)
+    ranks = RankGrid(map_of(np.zeros((3, 3), np.bool_)), [0.0])
     one = RangeReading(0, 0.0, ReadingStatus.MISS, 0.1)
     ranks.add(*[one] * 511)
     ranks.add(one)
@@ -122,8 +176,13 @@ def test_counters_grow_with_what_they_count() -> None:
         ranks.add(*[one] * 65536)
 
 
+def test_obstacles_are_prepared_only_where_they_fit() -> None:
+    with pytest.raises(ValueError, match="expected obstacles of shape"):
+        PreparedMap.of(Obstacles.of(np.zeros((3, 4), np.bool_), 1.0), GridSpec(0.5, 0.0, 0.0, (4, 3)), 1.0)
+
+
 def test_a_map_without_free_cells_has_no_poses() -> None:
-    ranks = RankGrid(binary_of(np.ones((4, 5), np.bool_)), [0.0], 1.0)
+    ranks = RankGrid(map_of(np.ones((4, 5), np.bool_)), [0.0])
     ranks.add(RangeReading(0, 0.0, ReadingStatus.OK, 1.0))
     assert ranks.best_rank == 0
     assert ranks.best_cells.shape == (0, 3)
@@ -135,7 +194,7 @@ def test_theta_slices_go_round_evenly() -> None:
 
 
 def test_a_reading_that_measured_nothing_is_refused_and_not_counted() -> None:
-    ranks = RankGrid(binary_of(np.zeros((4, 5), np.bool_)), [0.0], 1.0)
+    ranks = RankGrid(map_of(np.zeros((4, 5), np.bool_)), [0.0])
     with pytest.raises(ValueError, match="timeout"):
         ranks.add(RangeReading(0, 0.0, ReadingStatus.TIMEOUT, None))
     assert ranks.readings == 0

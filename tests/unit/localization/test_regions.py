@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.spec import GridSpec
+from robotd.localization.prepared import PreparedMap
 from robotd.localization.rank import RankGrid, even_headings
 from robotd.localization.regions import connected_components, regions_of
 
@@ -62,16 +63,16 @@ def test_a_spiral_is_one_region() -> None:
     assert (connected_components(np.argwhere(spiral[None]), headings=1, wrap=False) == 0).all()
 
 
-def two_rooms() -> BinaryMap:
+def two_rooms() -> PreparedMap:
     """Two equal rooms of 4 x 5 cells of 0.5 m, with a wall between."""
     occupied = np.ones((6, 13), np.bool_)
     occupied[1:5, 1:6] = False
     occupied[1:5, 7:12] = False
-    return BinaryMap(GridSpec(0.5, -1.0, 0.0, (6, 13)), occupied)
+    return PreparedMap.of_binary(BinaryMap(GridSpec(0.5, -1.0, 0.0, (6, 13)), occupied), 0.0)
 
 
 def test_every_region_is_told_with_its_place_and_extent() -> None:
-    ranks = RankGrid(two_rooms(), [0.0], 0.0)
+    ranks = RankGrid(two_rooms(), [0.0])
     ranks.add(RangeReading(0, 0.0, ReadingStatus.OK, 1.5))
     ranks.add(RangeReading(0, math.pi / 2, ReadingStatus.OK, 1.0))
     left, right = regions_of(ranks, 2)
@@ -82,7 +83,7 @@ def test_every_region_is_told_with_its_place_and_extent() -> None:
 
 
 def test_a_region_within_a_margin_keeps_the_mean_of_its_best_cells() -> None:
-    ranks = RankGrid(two_rooms(), [0.0], 0.0)
+    ranks = RankGrid(two_rooms(), [0.0])
     ranks.add(RangeReading(0, 0.0, ReadingStatus.OK, 1.5))
     ranks.add(RangeReading(0, math.pi / 2, ReadingStatus.OK, 1.0))
     left, _ = regions_of(ranks, 1)
@@ -91,11 +92,11 @@ def test_a_region_within_a_margin_keeps_the_mean_of_its_best_cells() -> None:
 
 
 def test_nothing_of_that_rank_is_no_region() -> None:
-    assert regions_of(RankGrid(two_rooms(), [0.0], 0.0), 1) == ()
+    assert regions_of(RankGrid(two_rooms(), [0.0]), 1) == ()
 
 
 def test_headings_are_joined_across_north() -> None:
-    ranks = RankGrid(two_rooms(), even_headings(36), 0.0)
+    ranks = RankGrid(two_rooms(), even_headings(36))
     for bearing, range_m in ((0.0, 2.0), (math.pi / 2, 1.5), (math.pi, 1.0), (-math.pi / 2, 1.0)):
         ranks.add(RangeReading(0, bearing, ReadingStatus.OK, range_m))
     regions = regions_of(ranks, 4)

@@ -11,14 +11,16 @@
 #include <string.h>
 
 #include "count.h"
+#include "draw.h"
 
 #define TILE 32
 #define THREADS_MAX 16
 
 /* Where to find the plane of one beam in one tile. */
 typedef struct {
-    const uint64_t *head, *body;
+    const uint64_t *low, *high; /* what lies at the head, from bit `shift` on */
     uint64_t shift;
+    const uint64_t *body;
 } source;
 
 static inline int32_t clamp(int32_t value, int32_t low, int32_t high)
@@ -106,8 +108,9 @@ static void complement(const count_job *job, int32_t tile)
 static void count_tile(const worker *self, int32_t tile)
 {
     const count_job *job = self->job;
-    uint64_t *kept = job->kept + (size_t)self->number * (size_t)(job->slots + 1) * TILE;
+    uint64_t *kept = job->kept + (size_t)self->number * (size_t)(job->slots + 2) * TILE;
     memset(kept + (size_t)job->slots * TILE, 0, TILE * sizeof *kept);
+    memset(kept + (size_t)(job->slots + 1) * TILE, 0xff, TILE * sizeof *kept);
 #ifdef HAS_X86
     if (self->level == AVX512) {
         count_tile_avx512(job, tile, kept);

@@ -4,13 +4,16 @@
  *
  * A map is packed into words of 64 cells of one row; bit b of word w is column 64 w + b. Words of one column of words
  * lie next to each other, row after row, so that a vector holds the same word of successive rows and any shift of the
- * map is two loads and one funnel shift. Round the map lie two columns of words and 32 rows of ones on every side:
- * whatever is outside is occupied, without a branch. A tile is 32 rows of one column of words. Counters are bit-sliced.
+ * map is two loads and one funnel shift. Round the map lie two columns of words and 32 rows on every side that are all
+ * ones or all zeros, as what is outside: no branch asks. A tile is 32 rows of one column of words. Counters are
+ * bit-sliced.
  */
 
 typedef struct {
-    const uint64_t *occupied;  /* [words + 4][rows + 64] */
-    const uint64_t *grown;     /* the same, grown by the error radius */
+    const uint64_t *free;      /* [words + 4][rows + 64]: where the robot may stand */
+    const uint64_t *blocking;  /* the same: what stops a beam */
+    const uint64_t *grown;     /* the same: what ends a beam, grown by the error radius */
+    int32_t blocked_by;        /* how many blocking cells block a body, 1 or 2 */
     int32_t words;             /* columns of words in the map */
     int32_t rows;              /* rows of the map, rounded up to whole tiles */
     const int32_t *tiles;      /* [tile_count][2]: column of words, first row */
@@ -20,12 +23,12 @@ typedef struct {
     const int32_t *batches;    /* [batch_count + 1]: first group of each batch */
     int32_t batch_count;
     const int32_t *lists;      /* [batch_count * headings + 1]: first beam of each batch and heading */
-    const int32_t *beams;      /* [][3]: slot of the body, (row, col) of the head */
+    const int32_t *beams;      /* [][3]: slot of the body, (row, col) of the head, NO_HEAD for a miss */
     int32_t slots;
     int32_t headings;
     int32_t bits;              /* planes of a counter, at least 3 */
     uint64_t *counters;        /* [tile_count][headings][bits][32] */
-    uint64_t *kept;            /* [threads][slots + 1][32], for the kernel's own use */
+    uint64_t *kept;            /* [threads][slots + 2][32], for the kernel's own use */
 } count_job;
 
 /* Count every beam at every cell from which it is feasible, or take it back.

@@ -12,35 +12,46 @@ typedef uint64_t NAME(vec) __attribute__((vector_size(VECTOR), aligned(8), may_a
 #define VECTORS (TILE / LANES)
 #define AT(words, i) (*(const VEC *)((words) + (i) * LANES))
 
-/* Walk the chains of a batch and keep, in its slots, the cells that are not blocked so far. */
-static TARGET void NAME(walk)(const count_job *job, const int32_t *tile, int32_t batch, uint64_t *kept)
+/* Walk the chains of a batch and keep, in its slots, the free cells that are not blocked so far. */
+static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, int32_t batch, uint64_t *kept,
+                                     const int twice)
 {
+    static const int32_t here[2] = {0, 0};
     const size_t stride = (size_t)job->rows + 2 * TILE;
+    const uint64_t *free = seen_from(job, job->free, tile, here);
     for (int32_t group = job->batches[batch]; group < job->batches[batch + 1]; group++) {
-        VEC blocked[VECTORS] = {0};
+        VEC open[VECTORS], met[VECTORS] = {{0}};
+        for (int i = 0; i < VECTORS; i++)
+            open[i] = AT(free, i);
         for (int32_t cell = job->groups[group]; cell < job->groups[group + 1]; cell++) {
             const int32_t *offset = job->chains + 3 * (size_t)cell;
-            const uint64_t *low = seen_from(job, job->occupied, tile, offset), *high = low + stride;
+            const uint64_t *low = seen_from(job, job->blocking, tile, offset), *high = low + stride;
             const uint64_t shift = (uint64_t)(offset[1] & 63);
-            for (int i = 0; i < VECTORS; i++)
-                blocked[i] |= FUNNEL(AT(low, i), AT(high, i), shift);
+            for (int i = 0; i < VECTORS; i++) {
+                const VEC blocking = FUNNEL(AT(low, i), AT(high, i), shift);
+                if (twice) {
+                    open[i] &= ~(met[i] & blocking);
+                    met[i] |= blocking;
+                } else
+                    open[i] &= ~blocking;
+            }
             if (offset[2] < 0)
                 continue;
             VEC *slot = (VEC *)(kept + (size_t)offset[2] * TILE);
             for (int i = 0; i < VECTORS; i++)
-                slot[i] = ~blocked[i];
+                slot[i] = open[i];
         }
     }
 }
 
 /* counter += 7 beams: carry-save adders make a number of three bits of their planes, and it ripples up the counter. */
-static inline TARGET void NAME(add_seven)(uint64_t *counter, const source *beams, size_t stride, int32_t bits)
+static inline TARGET void NAME(add_seven)(uint64_t *counter, const source *beams, int32_t bits)
 {
     for (int i = 0; i < VECTORS; i++) {
         VEC plane[7];
         for (int beam = 0; beam < 7; beam++) {
             const source *b = beams + beam;
-            plane[beam] = FUNNEL(AT(b->head, i), AT(b->head + stride, i), b->shift) & AT(b->body, i);
+            plane[beam] = FUNNEL(AT(b->low, i), AT(b->high, i), b->shift) & AT(b->body, i);
         }
         const VEC sum = XOR3(plane[0], plane[1], plane[2]), more = XOR3(plane[3], plane[4], plane[5]);
         const VEC carry1 = MAJORITY(plane[0], plane[1], plane[2]), carry2 = MAJORITY(plane[3], plane[4], plane[5]);
@@ -63,27 +74,36 @@ static inline TARGET void NAME(add_seven)(uint64_t *counter, const source *beams
     }
 }
 
+static inline TARGET source NAME(source_of)(const count_job *job, const int32_t *tile, const int32_t *beam,
+                                            const uint64_t *kept)
+{
+    const uint64_t *body = kept + (size_t)beam[0] * TILE, *everything = kept + (size_t)(job->slots + 1) * TILE;
+    if (beam[1] == NO_HEAD)
+        return (source){everything, everything, 0, body};
+    const uint64_t *low = seen_from(job, job->grown, tile, beam + 1);
+    return (source){low, low + (size_t)job->rows + 2 * TILE, (uint64_t)(beam[2] & 63), body};
+}
+
 static TARGET void NAME(count_tile)(const count_job *job, int32_t number, uint64_t *kept)
 {
     const int32_t *tile = job->tiles + 2 * number;
-    const size_t counter_size = (size_t)job->bits * TILE, stride = (size_t)job->rows + 2 * TILE;
+    const size_t counter_size = (size_t)job->bits * TILE;
     uint64_t *counters = job->counters + (size_t)number * (size_t)job->headings * counter_size;
     const uint64_t *nothing = kept + (size_t)job->slots * TILE;
     for (int32_t batch = 0; batch < job->batch_count; batch++) {
-        NAME(walk)(job, tile, batch, kept);
+        if (job->blocked_by > 1)
+            NAME(walk)(job, tile, batch, kept, 1);
+        else
+            NAME(walk)(job, tile, batch, kept, 0);
         const int32_t *list = job->lists + (size_t)batch * (size_t)job->headings;
         for (int32_t heading = 0; heading < job->headings; heading++) {
             for (int32_t first = list[heading]; first < list[heading + 1]; first += 7) {
                 source beams[7];
-                for (int32_t i = 0; i < 7; i++) {
-                    const int32_t *beam = job->beams + 3 * (size_t)(first + i);
-                    if (first + i < list[heading + 1])
-                        beams[i] = (source){seen_from(job, job->grown, tile, beam + 1), kept + (size_t)beam[0] * TILE,
-                                            (uint64_t)(beam[2] & 63)};
-                    else
-                        beams[i] = (source){job->grown, nothing, 0};
-                }
-                NAME(add_seven)(counters + (size_t)heading * counter_size, beams, stride, job->bits);
+                for (int32_t i = 0; i < 7; i++)
+                    beams[i] = first + i < list[heading + 1]
+                                   ? NAME(source_of)(job, tile, job->beams + 3 * (size_t)(first + i), kept)
+                                   : (source){nothing, nothing, 0, nothing};
+                NAME(add_seven)(counters + (size_t)heading * counter_size, beams, job->bits);
             }
         }
     }

@@ -47,8 +47,8 @@ static inline beam draw(const draw_job *job, int32_t reading, int32_t heading)
     b.direction = (int64_t)rint((h[0] + r[0]) * (DIRECTIONS / TURN)) & ((int64_t)DIRECTIONS - 1);
     b.length = (int32_t)fmax(ceil(free_cells * dominant), 1.0) + (b.start[0] != 0 || b.start[1] != 0);
     const int is_miss = r[4] > 0.0;
-    b.head[0] = is_miss ? -(int32_t)FAR_CELLS : (int32_t)nearest(row + range_cells * ahead[0]);
-    b.head[1] = is_miss ? -(int32_t)FAR_CELLS : (int32_t)nearest(col + range_cells * ahead[1]);
+    b.head[0] = is_miss ? NO_HEAD : (int32_t)nearest(row + range_cells * ahead[0]);
+    b.head[1] = is_miss ? NO_HEAD : (int32_t)nearest(col + range_cells * ahead[1]);
     return b;
 }
 

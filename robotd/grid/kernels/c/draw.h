@@ -1,5 +1,8 @@
 /* Drawing beams on the grid: what Python calls. */
 
+/* In place of a head's row and column: the reading is a miss. */
+enum { NO_HEAD = -1073741824 };
+
 typedef struct {
     const double *readings;    /* [reading_count][5]: bearing, range [m], (x, y) of the beam's start [m], is a miss */
     const double *headings;    /* [heading_count][3]: angle, its sine and cosine */
@@ -14,7 +17,7 @@ typedef struct {
     int64_t *keys;             /* [2 * beams][5], of groups */
     double *steps;             /* [2 * beams][4]: least and greatest (row, col) step of each group */
     int32_t *sizes;            /* [2 * beams]: cells of each group's chain */
-    int32_t *drawn;            /* [beams][4]: group, length, (row, col) of the head */
+    int32_t *drawn;            /* [beams][4]: group, length, (row, col) of the head, or NO_HEAD twice */
 } draw_job;
 
 /* Draw the beams and put those of one direction and start into groups: returns their number, at most 2 * beams. */

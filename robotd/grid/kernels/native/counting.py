@@ -32,9 +32,10 @@ def count_feasible(
         ValueError: this processor lacks those instructions.
     """
     tiles, headings, bits, _ = counters.shape
-    kept = np.empty((min(threads, _THREADS_MAX), beams.slots + 1, TILE_ROWS), np.uint64)
+    kept = np.empty((min(threads, _THREADS_MAX), beams.slots + 2, TILE_ROWS), np.uint64)
     job = ffi.new("count_job *")
-    job.occupied, job.grown = words(the_map.occupied), words(the_map.grown)
+    job.free, job.blocking, job.grown = words(the_map.free), words(the_map.blocking), words(the_map.grown)
+    job.blocked_by = the_map.blocked_by
     job.words, job.rows = the_map.words, the_map.rows
     job.tiles, job.tile_count = ints(the_map.tiles), tiles
     job.chains, job.groups = ints(beams.chains), ints(beams.groups)

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 
-from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, Beams, PackedMap, Words
+from robotd.grid.kernels.layout import NO_HEAD, PAD_WORDS, TILE_ROWS, WORD_CELLS, Beams, PackedMap, Words
 
 
 def count_feasible(
@@ -33,19 +33,22 @@ def count_feasible(
         bounds = beams.lists[batch * headings : (batch + 1) * headings + 1].tolist()
         for heading, (first, last) in enumerate(itertools.pairwise(bounds)):
             for slot, row, col in beams.beams[first:last].tolist():
-                feasible = _seen_from(the_map.grown, row, col) & kept[slot]
+                feasible = kept[slot] if row == NO_HEAD else kept[slot] & _seen_from(the_map.grown, row, col)
                 _ripple(counters[:, heading], _tiles(feasible, the_map), subtract=subtract)
 
 
 def _walk(the_map: PackedMap, beams: Beams, groups: range) -> dict[int, Words]:
-    """Return by slot the cells that the bodies of a batch do not block, ``uint64[words, rows]``."""
+    """Return by slot the free cells that the bodies of a batch do not block, ``uint64[words, rows]``."""
     kept = {}
     for group in groups:
-        blocked = np.zeros((the_map.words, the_map.rows), np.uint64)
+        still_open = _seen_from(the_map.free, 0, 0).copy()
+        met = np.full_like(still_open, ~np.uint64(0) if the_map.blocked_by == 1 else 0)
         for row, col, slot in beams.chains[beams.groups[group] : beams.groups[group + 1]].tolist():
-            blocked |= _seen_from(the_map.occupied, row, col)
+            blocking = _seen_from(the_map.blocking, row, col)
+            still_open &= ~(met & blocking)
+            met |= blocking
             if slot >= 0:
-                kept[slot] = ~blocked
+                kept[slot] = still_open.copy()
     return kept
 
 
@@ -89,7 +92,7 @@ def _seen_from(packed: Words, row: int, col: int) -> Words:
     word, shift = divmod(col, WORD_CELLS)
     first_word, first_row = max(0, -PAD_WORDS - word), max(0, -TILE_ROWS - row)
     last_word, last_row = min(words, words + 1 - word), min(rows, rows + TILE_ROWS - row)
-    seen = np.full((words, rows), ~np.uint64(0))
+    seen = np.full((words, rows), packed[0, 0])  # the corner is outside, as all of the padding
     if first_word >= last_word or first_row >= last_row:
         return seen
     there = slice(first_row + row + TILE_ROWS, last_row + row + TILE_ROWS)

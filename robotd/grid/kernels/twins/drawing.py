@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels.layout import FAR_CELLS, SLOTS, Beams, BeamSettings
+from robotd.grid.kernels.layout import FAR_CELLS, NO_HEAD, SLOTS, Beams, BeamSettings
 from robotd.grid.ray import ray_steps
 
 _DIRECTIONS = 1 << 30
@@ -69,7 +69,7 @@ class _Drawn:
         starts = _nearest(positions)
         lengths = np.maximum(np.ceil(free_cells * np.abs(ahead).max(axis=1)), 1.0).astype(np.int64)
         heads = _nearest(positions + range_cells * ahead)
-        heads[(is_miss * one).ravel() > 0.0] = -FAR_CELLS
+        heads[(is_miss * one).ravel() > 0.0] = NO_HEAD
         lengths += starts.any(axis=1)
         return cls(bearings_rad, ray_steps(bearings_rad), lengths, starts, heads.astype(np.int32))
 

@@ -16,7 +16,17 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid import kernels as kernels_in_use
 from robotd.grid.footprints import dilate, disk_footprint
 from robotd.grid.kernels import twins
-from robotd.grid.kernels.layout import FAR_CELLS, TILE_ROWS, WORD_CELLS, Beams, BeamSettings, PackedMap, Words, pack
+from robotd.grid.kernels.layout import (
+    FAR_CELLS,
+    NO_HEAD,
+    TILE_ROWS,
+    WORD_CELLS,
+    Beams,
+    BeamSettings,
+    PackedMap,
+    Words,
+    pack,
+)
 from robotd.grid.readings import numbers_of
 from robotd.localization.probe import probe_of
 from robotd.localization.rank import even_headings
@@ -62,7 +72,34 @@ work = st.one_of(
 
 
 def packed(occupied: NDArray[np.bool_]) -> PackedMap:
-    return PackedMap.of(occupied, dilate(occupied, disk_footprint(RADIUS), outside=True))
+    return PackedMap.of(~occupied, occupied, dilate(occupied, disk_footprint(RADIUS), outside=True))
+
+
+def drawn_map(
+    seed: int, shape: tuple[int, int], outside_blocks: bool, outside_ends: bool, blocked_by: int
+) -> PackedMap:
+    """What stops a beam and what ends it need not have to do with each other."""
+    random = np.random.default_rng(seed)
+    free = random.random(shape) < random.choice([0.1, 0.6, 0.95])
+    blocking = (random.random(shape) < random.choice([0.01, 0.1])) & ~free
+    return PackedMap.of(
+        free,
+        blocking,
+        random.random(shape) < 0.4,
+        outside_blocks=outside_blocks,
+        outside_ends=outside_ends,
+        blocked_by=blocked_by,
+    )
+
+
+packed_maps = st.builds(
+    drawn_map,
+    st.integers(0, 2**32),
+    st.tuples(st.integers(1, 70), st.integers(1, 140)),
+    st.booleans(),
+    st.booleans(),
+    st.sampled_from([1, 2]),
+)
 
 
 def listed(beams: Beams, headings: int) -> list[tuple[int, tuple[tuple[int, int], ...], tuple[int, int]]]:
@@ -89,9 +126,9 @@ def expected_beams(
     found = []
     for reading, (heading, heading_rad) in itertools.product(readings, enumerate(headings.tolist())):
         probe = probe_of(reading, heading_rad, resolution_m=0.5, error_radius_cells=RADIUS, reach_cells=70)
-        head = probe.head or (-FAR_CELLS, -FAR_CELLS)
-        row, col = (max(-FAR_CELLS, min(FAR_CELLS, at)) for at in head)
-        found.append((heading, tuple(map(tuple, probe.body.tolist())), (row, col)))
+        far = [max(-FAR_CELLS, min(FAR_CELLS, at)) for at in probe.head or ()]
+        head = (far[0], far[1]) if far else (NO_HEAD, NO_HEAD)
+        found.append((heading, tuple(map(tuple, probe.body.tolist())), head))
     return sorted(found)
 
 
@@ -136,22 +173,26 @@ def test_a_sweep_too_large_for_one_batch_is_taken_in_several(kernels: ModuleType
 
 
 @settings(max_examples=40, deadline=None)
-@given(maps)
-def test_a_packed_map_holds_every_cell_with_ones_all_round(occupied: NDArray[np.bool_]) -> None:
-    words = pack(occupied)
+@given(maps, st.booleans(), st.tuples(st.integers(0, TILE_ROWS - 1), st.integers(0, WORD_CELLS - 1)))
+def test_a_packed_map_holds_every_cell_with_its_outside_all_round(
+    occupied: NDArray[np.bool_], outside: bool, origin: tuple[int, int]
+) -> None:
+    words = pack(occupied, origin, outside=outside)
     rows, cols = occupied.shape
     for row, col in itertools.product((-TILE_ROWS, -1, 0, rows // 2, rows - 1, rows), (-128, -1, 0, cols - 1, cols)):
-        word, bit = divmod(col + 2 * WORD_CELLS, WORD_CELLS)
+        word, bit = divmod(col + origin[1] + 2 * WORD_CELLS, WORD_CELLS)
         inside = 0 <= row < rows and 0 <= col < cols
-        assert bool(words[word, row + TILE_ROWS] >> np.uint64(bit) & np.uint64(1)) == (
-            bool(occupied[row, col]) if inside else True
+        assert bool(words[word, row + origin[0] + TILE_ROWS] >> np.uint64(bit) & np.uint64(1)) == (
+            bool(occupied[row, col]) if inside else outside
         )
 
 
 def test_tiles_without_free_cells_are_left_out() -> None:
     occupied = np.ones((100, 200), np.bool_)
     occupied[40, 70] = occupied[99, 199] = False
-    assert packed(occupied).tiles.tolist() == [[1, 32], [3, 96]]
+    the_map = packed(occupied)
+    assert the_map.origin == (32 - 8, 64 - 6)
+    assert the_map.tiles.tolist() == [[2, 64], [4, 96]]
 
 
 def values(counters: Words) -> NDArray[np.uint64]:
@@ -203,12 +244,11 @@ def counted(
 
 
 @settings(max_examples=40, deadline=None)
-@given(maps, work)
+@given(packed_maps, work)
 def test_what_is_taken_back_was_never_counted(
-    occupied: NDArray[np.bool_], drawn: tuple[list[RangeReading], NDArray[np.float64]]
+    the_map: PackedMap, drawn: tuple[list[RangeReading], NDArray[np.float64]]
 ) -> None:
     readings, headings = drawn
-    the_map = packed(occupied)
     blank = the_map.blank_counters(len(headings), 4)
     first = counted(twins, readings[:2], headings, the_map, blank)
     both_parts = counted(twins, readings[2:], headings, the_map, first) if readings[2:] else first
@@ -220,15 +260,11 @@ def test_what_is_taken_back_was_never_counted(
 @needs_native
 @pytest.mark.parametrize("instructions", ["portable", "avx2", "avx512"])
 @settings(max_examples=40, deadline=None)
-@given(maps, work, st.booleans())
+@given(packed_maps, work, st.booleans())
 def test_every_instruction_set_counts_what_numpy_counts(
-    instructions: str,
-    occupied: NDArray[np.bool_],
-    drawn: tuple[list[RangeReading], NDArray[np.float64]],
-    subtract: bool,
+    instructions: str, the_map: PackedMap, drawn: tuple[list[RangeReading], NDArray[np.float64]], subtract: bool
 ) -> None:
     readings, headings = drawn
-    the_map = packed(occupied)
     start = the_map.blank_counters(len(headings), 5)
     start[:, :, 3] = ~np.uint64(0)
     expected = counted(twins, readings, headings, the_map, start, subtract=subtract)
