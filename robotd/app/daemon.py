@@ -8,16 +8,19 @@ import signal
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 
 from robotd import __version__
 from robotd.app.compose import Daemon, compose, serial_connectors
+from robotd.app.stall_guard import STALL_S, guarded
 from robotd.config import Config, default_path, effective_text, load
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import ConfigError, RobotdError
 from robotd.core.log import configure
 from robotd.grid import kernels
 from robotd.mission.compute import ThreadCompute
+from robotd.mission.modes import Occasion
 from robotd.recording.entries import RecordingHeader
 from robotd.recording.preroll import PrerollJournal
 from robotd.server.health import Notifier, feed_watchdog, watchdog_s
@@ -87,9 +90,14 @@ async def run(config: Config) -> None:
         for number in (signal.SIGTERM, signal.SIGINT):
             asyncio.get_running_loop().add_signal_handler(number, _stop_first, daemon, stopping)
         try:
-            await _serve(config, daemon, stopping)
+            async with guarded(daemon.robot.stop_past_loop, partial(_stalled, daemon)):
+                await _serve(config, daemon, stopping)
         finally:
             await daemon.control.stop_recording()
+
+
+def _stalled(daemon: Daemon) -> None:
+    daemon.supervisor.halt(Occasion.STOP, f"the event loop stood still for more than {STALL_S:g} s")
 
 
 def _stop_first(daemon: Daemon, stopping: asyncio.Event) -> None:

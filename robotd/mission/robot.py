@@ -31,6 +31,11 @@ class Robot:
         """Latched faults as ``device: fault``."""
         return tuple(f"{device.name}: {fault}" for device in self.devices for fault in device.status.faults)
 
+    def stop_past_loop(self) -> None:
+        """Put stop on every wire from any thread, while the event loop is stuck."""
+        for device in self.devices:
+            device.stop_past_loop()
+
     def stop_now(self) -> None:
         """Put stop on every wire, at once."""
         for device in self.devices:

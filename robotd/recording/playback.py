@@ -160,6 +160,9 @@ class ReplayTransport:
         """Take bytes for a board that is not there; TransportError if the line is gone."""
         self._check()
 
+    def write_past_loop(self, data: bytes) -> None:
+        """Do nothing: a recording has no loop that could be stuck."""
+
     def close(self) -> None:
         """Give the line up."""
         self._chunks.clear()

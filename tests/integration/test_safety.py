@@ -58,6 +58,9 @@ class Plug:
         self._line.write_urgent(data[:-3] if self.garbles else data)
         self.garbles = max(0, self.garbles - 1)
 
+    def write_past_loop(self, data: bytes) -> None:
+        self._line.write_past_loop(data)
+
     def close(self) -> None:
         self._line.close()
 

@@ -83,6 +83,13 @@ class BoardDevice:
         if self._session is not None:
             self._session.stop_now()
 
+    def stop_past_loop(self) -> None:
+        """Put the stop on the wire from any thread, while the loop is stuck; never blocks, never raises."""
+        self._may_move = False
+        session = self._session
+        if session is not None:
+            session.stop_past_loop()
+
     # What the link tells
 
     def link_opened(self) -> None:

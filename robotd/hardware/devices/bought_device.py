@@ -97,6 +97,13 @@ class BoughtDevice(ABC, Generic[M]):
             self._dialogue.stop_now(self.STOP)
         self._health.change(armed=False)
 
+    def stop_past_loop(self) -> None:
+        """Put the stop on the wire from any thread, while the loop is stuck; never blocks, never raises."""
+        self._may_move = False
+        dialogue = self._dialogue
+        if dialogue is not None:
+            dialogue.stop_past_loop(self.STOP)
+
     # What the line tells
 
     async def talk(self, line: TappedLine) -> NoReturn:

@@ -65,3 +65,9 @@ class Device(Protocol):
 
         Nothing may move until the next :meth:`arm`: should the stop be lost, the device says it again.
         """
+
+    def stop_past_loop(self) -> None:
+        """Put the stop on the wire from any thread, while the event loop is stuck; never blocks, never raises.
+
+        The device and its callers learn of it by a :meth:`stop_now` as soon as the loop turns again.
+        """

@@ -171,6 +171,10 @@ class Dialogue(Generic[M]):
         except TransportError:
             return  # it is for the device's own watchdog now, if it has one
 
+    def stop_past_loop(self, data: bytes) -> None:
+        """Put the stop on the wire from any thread, while the loop is stuck; never raises."""
+        self._line.write_past_loop(data)
+
     async def until_lost(self, silence_s: float | None = None) -> NoReturn:
         """Wait until the line is lost, or nothing came for so long; raise why.
 

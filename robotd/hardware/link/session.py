@@ -135,6 +135,10 @@ class Session:
         except TransportError:
             return  # the board's own deadman stops it
 
+    def stop_past_loop(self) -> None:
+        """Put the preformatted stop on the wire from any thread, while the loop is stuck; never raises."""
+        self._line.write_past_loop(STOP_BYTES)
+
     async def ping(self) -> None:
         """Ask for the board's time and learn from the answer; same errors as :meth:`ask`."""
         await self.ask(_ping(), Pong)

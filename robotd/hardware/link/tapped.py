@@ -47,6 +47,10 @@ class TappedLine:
         self._transport.write_urgent(data)
         self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
 
+    def write_past_loop(self, data: bytes) -> None:
+        """Write bytes at once, from any thread; never raises. The tap does not see them: it lives on the loop."""
+        self._transport.write_past_loop(data)
+
     def close(self) -> None:
         """Give the line up; the tap is told once."""
         self._transport.close()

@@ -1,7 +1,9 @@
 """What serial port, pseudo-terminal and TCP share: a non-blocking descriptor on the event loop."""
 
 import asyncio
+import contextlib
 import os
+import threading
 from collections.abc import Callable
 
 from robotd.core.errors import TransportError
@@ -26,6 +28,7 @@ class DescriptorTransport:
         self._outbox = Outbox(name)
         self._readable: asyncio.Future[None] | None = None
         self._lost: str | None = None
+        self._closing = threading.Lock()
 
     @property
     def name(self) -> str:
@@ -60,6 +63,12 @@ class DescriptorTransport:
         self._outbox.put_urgent(data)
         self._flush()
         self._check()
+
+    def write_past_loop(self, data: bytes) -> None:
+        """Write bytes at once, from any thread; what does not fit into the kernel's buffer is lost."""
+        with self._closing, contextlib.suppress(OSError):
+            if self._lost is None:
+                os.write(self._descriptor, data)
 
     def close(self) -> None:
         """Give the line up; a pending :meth:`read` raises TransportError."""
@@ -106,7 +115,8 @@ class DescriptorTransport:
         self._loop.remove_reader(self._descriptor)
         self._loop.remove_writer(self._descriptor)
         self._outbox.clear()
-        self._release()
+        with self._closing:  # another thread must not write to whatever gets this number next
+            self._release()
         if self._readable is not None:
             wake(self._readable)
 

@@ -32,6 +32,12 @@ class Transport(Protocol):
             TransportError: the line is gone.
         """
 
+    def write_past_loop(self, data: bytes) -> None:
+        """Write bytes at once, past the queue and past the event loop: for a stop while the loop is stuck.
+
+        May be called from any thread; never blocks, never raises. A line that lives in the loop alone does nothing.
+        """
+
     def close(self) -> None:
         """Give the line up; closing twice is fine. A pending :meth:`read` raises TransportError."""
 

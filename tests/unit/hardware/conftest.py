@@ -60,6 +60,9 @@ class FaultyLine:
         self._line.write_urgent(data[:-3] if self.garbled_stops else data)
         self.garbled_stops = max(0, self.garbled_stops - 1)
 
+    def write_past_loop(self, data: bytes) -> None:
+        self._line.write_past_loop(data)
+
     def close(self) -> None:
         self._line.close()
 

@@ -58,6 +58,9 @@ class Scripted:
     async def clear_faults(self) -> None:
         self.change(armed=False, faults=self.faults_left)
 
+    def stop_past_loop(self) -> None:
+        """No thread is in these tests."""
+
     def stop_now(self) -> None:
         self.stops += 1
         self.change(armed=False)

@@ -1,0 +1,72 @@
+"""A thread that stops the robot when the event loop does not turn.
+
+All else that stops the robot runs on the loop: a loop that is stuck, in a computation that somebody forgot to hand to
+a thread or in a system call that does not return, can neither let a lease expire nor hear a client. The boards' deadman
+ends a motion in its time even then; this is sooner, and it is all that a base without a watchdog of its own has.
+"""
+
+import asyncio
+import contextlib
+import logging
+import threading
+from collections.abc import AsyncIterator, Callable
+from typing import NoReturn
+
+STALL_S = 0.2
+"""So long without a turn of the loop is a stall."""
+_BEAT_EVERY_S = STALL_S / 4
+
+log = logging.getLogger(__name__)
+
+
+@contextlib.asynccontextmanager
+async def guarded(stop_past_loop: Callable[[], None], stalled: Callable[[], None]) -> AsyncIterator[None]:
+    """Guard the running loop for as long as the block lasts.
+
+    Args:
+        stop_past_loop: puts the stop on every wire; called in the guard's thread, once for each stall.
+        stalled: called on the loop, as soon as it turns again, so that everybody learns of the stop.
+    """
+    guard = _Guard(stop_past_loop)
+    thread = threading.Thread(target=guard.watch, name="stall guard", daemon=True)
+    thread.start()
+    beating = asyncio.create_task(guard.beat(stalled), name="stall guard")
+    try:
+        yield
+    finally:
+        beating.cancel()
+        await asyncio.wait({beating})
+        guard.end()
+        thread.join()
+
+
+class _Guard:
+    def __init__(self, stop_past_loop: Callable[[], None]) -> None:
+        self._stop_past_loop = stop_past_loop
+        self._beaten = threading.Event()
+        self._fired = threading.Event()
+        self._is_ending = False
+
+    async def beat(self, stalled: Callable[[], None]) -> NoReturn:
+        """Show that the loop turns."""
+        while True:
+            self._beaten.set()
+            if self._fired.is_set():
+                self._fired.clear()
+                log.error("the event loop stood still for more than %g s: the robot was stopped", STALL_S)
+                stalled()
+            await asyncio.sleep(_BEAT_EVERY_S)
+
+    def watch(self) -> None:
+        """Wait for one beat after the other; stop the robot when one is late."""
+        while not self._is_ending:
+            if not self._beaten.wait(STALL_S):
+                self._stop_past_loop()
+                self._fired.set()
+                self._beaten.wait()
+            self._beaten.clear()
+
+    def end(self) -> None:
+        """Let the thread end."""
+        self._is_ending = True
+        self._beaten.set()

@@ -1,0 +1,55 @@
+"""A loop that stands still stops the robot from another thread, in real time."""
+
+import asyncio
+import threading
+import time
+
+import pytest
+
+from robotd.app.stall_guard import STALL_S, guarded
+from robotd.hardware.transport.line_format import LineFormat
+from robotd.hardware.transport.pty import open_pty
+from robotd.hardware.transport.serial_port import open_serial
+
+
+@pytest.mark.real_clock
+async def test_a_stuck_loop_gets_the_stop_onto_the_wire_while_it_is_stuck() -> None:
+    board, told = open_pty(), asyncio.Event()
+    line = await open_serial(board.path, LineFormat(115_200))
+    stopped = threading.Event()
+
+    def stop() -> None:
+        line.write_past_loop(b"stop")
+        stopped.set()
+
+    async with guarded(stop, told.set):
+        await asyncio.sleep(0)  # the first beat
+        began_s = time.monotonic()
+        assert stopped.wait(10.0), "the guard did nothing"  # blocks the loop, which is the point
+        assert time.monotonic() - began_s >= STALL_S / 2
+        assert await board.read() == b"stop"
+        await asyncio.wait_for(told.wait(), 10.0)
+    line.close()
+    board.close()
+
+
+@pytest.mark.real_clock
+async def test_a_loop_that_turns_is_left_alone_and_each_stall_is_told_once() -> None:
+    stops: list[str] = []
+    stalls: list[str] = []
+    async with guarded(lambda: stops.append("stop"), lambda: stalls.append("stall")):
+        await asyncio.sleep(2 * STALL_S)
+        assert (stops, stalls) == ([], [])
+        for count in (1, 2):
+            time.sleep(2 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
+            await asyncio.sleep(STALL_S / 2)
+            assert (len(stops), len(stalls)) == (count, count)
+
+
+@pytest.mark.real_clock
+async def test_a_closed_line_takes_no_stop_from_a_thread() -> None:
+    board = open_pty()
+    line = await open_serial(board.path, LineFormat(115_200))
+    line.close()
+    line.write_past_loop(b"stop")
+    board.close()
