@@ -36,6 +36,7 @@ WORDS = {
         "recordings",
         "run the daemon again on recorded bytes, and compare every result; exit code 1 if one differs",
     ),
+    "eval": ("eval.verbs", "tell how often localization is right, ambiguous, lost, or sure and wrong on real logs"),
     "config": ("configuration", "check and show configurations"),
     "doctor": ("doctor", "say what this installation consists of, which kernels it uses and why, and what it can see"),
     "demo": ("demo.verbs", "show the main job, end to end, on a robot that is not there"),

@@ -21,6 +21,14 @@ def positive(text: str) -> float:
     return value
 
 
+def share(text: str) -> float:
+    """Return a share of a whole, less than all of it."""
+    value = number(text)
+    if not 0.0 <= value < 1.0:
+        raise ArgumentTypeError(f"must be at least 0 and less than 1, got {text}")
+    return value
+
+
 def whole(lowest: int) -> Callable[[str], int]:
     """Return what reads a whole number of at least ``lowest``."""
 

@@ -31,13 +31,16 @@ class Verb:
     arguments: Callable[[argparse.ArgumentParser], None] = no_arguments
     asks_daemon: bool = False
     """Whether it needs a running daemon: such verbs take ``--runtime-dir`` and ``--timeout``."""
+    prints_json: bool = True
+    """Whether it takes ``--json``, which prints its answer; a verb that also writes it to a file has its own."""
 
     def add_to(self, parser: argparse.ArgumentParser) -> None:
         """Give a fresh parser all about this verb."""
         parser.description = f"{self.summary[:1].upper()}{self.summary[1:]}."
         parser.epilog = f"Example: {self.example}"
         self.arguments(parser)
-        parser.add_argument("--json", action="store_true", help="print JSON instead of text for people")
+        if self.prints_json:
+            parser.add_argument("--json", action="store_true", help="print JSON instead of text for people")
         if self.asks_daemon:
             parser.add_argument("--runtime-dir", type=Path, metavar="DIR", help="where the daemon has its sockets")
             parser.add_argument(

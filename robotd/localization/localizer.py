@@ -12,7 +12,7 @@ from robotd.core.reading import RangeReading
 from robotd.grid.binary import BinaryMap
 from robotd.localization.estimate import PoseEstimate, PoseState, Region
 from robotd.localization.prepared import PreparedMap
-from robotd.localization.rank import RankGrid
+from robotd.localization.rank import RankGrid, even_headings
 from robotd.localization.regions import regions_of
 
 
@@ -64,6 +64,10 @@ class LocalizationSettings:
         """
         steps = math.floor(self.heading_error_rad / self.heading_step_rad + 1e-9)
         return tuple(heading_rad + step * self.heading_step_rad for step in range(-steps, steps + 1))
+
+    def headings_all_round(self) -> tuple[float, ...]:
+        """Return the headings to try when nothing is known, evenly all round, in steps no longer than the setting."""
+        return even_headings(math.ceil(math.tau / self.heading_step_rad - 1e-9))
 
 
 class Localizer:

@@ -8,6 +8,7 @@ One record a line, metres and radians. What bites in these files, and what is do
   between the copies are chained back into one path.
 * Ranges at the top of the scale mean *nothing came back*. The code differs from log to log, and even within one.
 * Time stamps run backwards; file order is right. Times are not even read. Headings are not wrapped.
+* Where each scan is there twice, as ``FLASER`` and as ``ROBOTLASER1``, the former is taken.
 * The first beam is at -90 degrees, counter-clockwise; the step is 180/n for even n and 180/(n-1) for odd n.
 """
 
@@ -29,6 +30,13 @@ from robotd.core.pose import IDENTITY, Pose2
 
 _CODES_FROM_M = 30.0
 _CODE_SPREAD_M = 0.2
+_LAYOUTS = {
+    "FLASER": "n r_1 .. r_n laser_x laser_y laser_theta odom_x odom_y odom_theta",
+    "ROBOTLASER1": "type start fov step max_range accuracy mode n r_1 .. r_n m rem_1 .. rem_m "
+    "laser_x laser_y laser_theta robot_x robot_y robot_theta",
+    "ODOM": "x y theta",
+    "PARAM": "name value",
+}
 _ROBOTLASER_HEAD = 8
 """Numbers before the ranges of ROBOTLASER1: type, start, field of view, step, max range, accuracy, mode, count."""
 
@@ -135,9 +143,11 @@ class _Reader:
         """Return the log, now that all of it is known."""
         no_return_from_m = self._no_return_from_m()
         mount = Pose2(float(self.params.get("robot_frontlaser_offset", "0")), 0.0, 0.0)
-        is_corrected = self.copies >= len(self.scans) - 1 > 0
+        pairs = list(zip(self.scans, self.chained, strict=True))
+        pairs = [pair for pair in pairs if pair[0].robot_pose is None] or pairs
+        is_corrected = self.copies >= len(pairs) - 1 > 0
         scans = []
-        for raw, chained in zip(self.scans, self.chained, strict=True):
+        for raw, chained in pairs:
             robot_pose = raw.robot_pose or raw.laser_pose @ mount.inverse()
             missed = raw.ranges_m >= min(no_return_from_m, raw.max_range_m)
             scans.append(
@@ -177,7 +187,8 @@ def parse_carmen(lines: Iterable[str], *, file: str = "log") -> CarmenLog:
         try:
             reader.take(record, fields)
         except (ValueError, IndexError) as error:
-            raise RecordingError(f"{file}:{number}: damaged {record} record: {error}") from error
+            layout = f"expected {record} {_LAYOUTS[record]}"
+            raise RecordingError(f"{file}:{number}: damaged {record} record: {error}; {layout}") from error
     if not reader.scans:
         raise RecordingError(f"{file}: no FLASER or ROBOTLASER1 record in it; is this a CARMEN log?")
     try:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from robotd.cli.pictures import Mark, bar_length_m, draw_localization, draw_map, draw_room, known_box
+from robotd.cli.paper import bar_length_m, known_box
+from robotd.cli.pictures import Mark, draw_localization, draw_map, draw_room
 from robotd.core.pose import Pose2
 from robotd.grid.spec import GridSpec
 

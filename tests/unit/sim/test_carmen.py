@@ -129,6 +129,13 @@ def test_newer_logs_carry_angles_largest_range_and_both_poses() -> None:
     assert scan.laser_pose.x_m == pytest.approx(1.1)
 
 
+def test_a_scan_that_is_there_twice_is_taken_once() -> None:
+    robotlaser = "ROBOTLASER1 4 -0.5 1.0 0.25 30.0 0.01 0 4 1.0 2.0 3.0 4.0 0 1 2 0.5 1 2 0.5 0 0 0.3 0.2 1 5 h 5"
+    poses = [Pose2(1.0, 0.0, 0.0), Pose2(2.0, 0.0, 0.0)]
+    log = parse_carmen([line for pose in poses for line in (flaser([1.5] * 4, pose), robotlaser)])
+    assert [scan.laser_pose for scan in log.scans] == poses
+
+
 @pytest.mark.parametrize(
     ("line", "complaint"),
     [
@@ -148,6 +155,8 @@ def test_damage_is_named_with_its_line(line: str, complaint: str) -> None:
     with pytest.raises(RecordingError) as caught:
         parse_carmen([flaser([1.0] * 4, Pose2(0.0, 0.0, 0.0)), line])
     assert str(caught.value).startswith(complaint)
+    record = line.split(maxsplit=1)[0]
+    assert f"; expected {record} " in str(caught.value) or record == "PARAM"
 
 
 def test_a_file_without_scans_is_no_log() -> None:

@@ -1,0 +1,195 @@
+"""``eval``: read logs, seek their scans, report."""
+
+import argparse
+import json
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from robotd import __version__, config
+from robotd.cli.eval.cases import divide
+from robotd.cli.eval.recorded import Reach, map_of
+from robotd.cli.eval.report import LogReport
+from robotd.cli.eval.running import Searcher
+from robotd.cli.eval.tables import print_parameters, print_report, print_summary
+from robotd.cli.eval.verdict import RIGHT_M, RIGHT_RAD, Case
+from robotd.cli.quantities import positive, share, whole
+from robotd.cli.terminal import err, print_json
+from robotd.cli.verb import INTERRUPTED, OK, Verb
+from robotd.core.errors import RecordingError, RobotdError
+from robotd.grid import kernels
+from robotd.grid.occupancy import GridSettings
+from robotd.localization.localizer import LocalizationSettings
+from robotd.mission.compute import cores
+from robotd.sim.carmen import CarmenLog, read_carmen
+
+_TO_STANDARD_OUTPUT = "-"
+
+
+@dataclass(frozen=True, slots=True)
+class _Plan:
+    """How all logs are treated."""
+
+    cases: int
+    seed: int
+    reach: Reach
+    grid: GridSettings
+    localization: LocalizationSettings
+    threads: int
+
+    def document(self) -> dict[str, Any]:
+        """Return everything that the figures depend on."""
+        return {
+            "robotd": __version__,
+            "kernels": str(kernels.IN_USE),
+            "right_within": {"m": RIGHT_M, "rad": RIGHT_RAD},
+            **asdict(self),
+        }
+
+
+def _eval(arguments: argparse.Namespace) -> int:
+    plan = _plan(arguments)
+    draw = _drawing() if arguments.pictures is not None else None
+    _refuse_to_overwrite(arguments.json)
+    logs = [(path.name, read_carmen(path)) for path in arguments.log]
+    reports: list[LogReport] = []
+    with suppress(KeyboardInterrupt):
+        for name, log in logs:
+            reports.append(_evaluate(plan, name, log))
+            if reports[-1].is_cut:
+                break
+    _tell(arguments.json, plan, reports)
+    if draw is not None:
+        for report in reports:
+            draw(arguments.pictures, report)
+    return OK if len(reports) == len(logs) and not reports[-1].is_cut else INTERRUPTED
+
+
+def _plan(arguments: argparse.Namespace) -> _Plan:
+    settings = config.load(arguments.config).localization if arguments.config else LocalizationSettings()
+    grid = GridSettings(
+        resolution_m=arguments.resolution,
+        rows=1,
+        cols=1,
+        raise_alpha=arguments.raise_alpha,
+        lower_alpha=arguments.lower_alpha,
+    )
+    reach = Reach(arguments.range_max, min(arguments.clear, arguments.range_max))
+    return _Plan(arguments.cases, arguments.seed, reach, grid, settings, cores())
+
+
+def _drawing() -> Callable[[Path, LogReport], None]:
+    try:
+        from robotd.cli.eval.failures import draw_failures  # noqa: PLC0415  # only here is the extra needed
+    except ImportError as error:
+        raise RobotdError(f"--pictures needs matplotlib ({error}): install robotd[plots]") from error
+    return draw_failures
+
+
+def _refuse_to_overwrite(file: str | None) -> None:
+    """Refuse a file that is no JSON document: ``--json LOG`` is soon typed, and would cost the log."""
+    if file in {None, _TO_STANDARD_OUTPUT}:
+        return
+    path = Path(str(file))
+    if path.exists() and not path.read_bytes()[:1] == b"{":
+        raise RobotdError(f"--json {file}: that is no JSON document; it is left as it is")
+
+
+def _evaluate(plan: _Plan, name: str, log: CarmenLog) -> LogReport:
+    """Make the map of a log and seek its queries; Ctrl-C keeps what was done."""
+    division = divide(log, plan.cases, plan.seed)
+    try:
+        grid = map_of(division.map_scans, plan.reach, plan.grid)
+    except ValueError as error:
+        raise RecordingError(f"{name}: no map can be made of it: {error}") from error
+    cases: list[Case] = []
+    searcher = Searcher(grid, plan.localization, plan.reach, plan.threads)
+    with _bar() as bar, suppress(KeyboardInterrupt):
+        task = bar.add_task(name, total=len(division.queries))
+        for case in searcher.cases(division.queries):
+            cases.append(case)
+            bar.update(task, advance=1)
+    return LogReport(name, len(log.scans), len(division.map_scans), len(division.queries), grid, tuple(cases))
+
+
+def _bar() -> Progress:
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    return Progress(*columns, console=err(), disable=not err().is_terminal)
+
+
+def _tell(file: str | None, plan: _Plan, reports: list[LogReport]) -> None:
+    document = {"parameters": plan.document(), "logs": [report.document() for report in reports]}
+    if file == _TO_STANDARD_OUTPUT:
+        print_json(document)
+        return
+    if file is not None:
+        Path(file).write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    for report in reports:
+        print_report(report)
+    if len(reports) > 1:
+        print_summary(reports)
+    print_parameters(plan.document())
+
+
+def _arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "log", type=Path, nargs="+", metavar="LOG", help="a CARMEN log with corrected poses, as it is or .gz or .bz2"
+    )
+    parser.add_argument("--cases", type=whole(1), default=100, metavar="N", help="scans to seek (default: 100)")
+    parser.add_argument("--seed", type=whole(0), default=0, metavar="N", help="chooses them (default: 0)")
+    parser.add_argument(
+        "--resolution", type=positive, default=0.05, metavar="M", help="side of a cell of the map [m] (default: 0.05)"
+    )
+    parser.add_argument(
+        "--raise-alpha",
+        type=share,
+        default=0.5,
+        metavar="A",
+        help="share of the doubt that a hit leaves (default: 0.5)",
+    )
+    parser.add_argument(
+        "--lower-alpha",
+        type=share,
+        default=0.9,
+        metavar="A",
+        help="share of an obstacle that a beam through it leaves (default: 0.9)",
+    )
+    parser.add_argument(
+        "--range-max", type=positive, default=30.0, metavar="M", help="believe no range beyond this [m] (default: 30)"
+    )
+    parser.add_argument(
+        "--clear",
+        type=positive,
+        default=8.0,
+        metavar="M",
+        help="how far a beam that met nothing is believed to be free [m] (default: 8)",
+    )
+    parser.add_argument(
+        "--config", type=Path, metavar="FILE", help="take the settings of localization from a configuration of robotd"
+    )
+    parser.add_argument(
+        "--pictures", type=Path, metavar="DIR", help="draw each case that is not right into a file there"
+    )
+    parser.add_argument(
+        "--json",
+        nargs="?",
+        const=_TO_STANDARD_OUTPUT,
+        metavar="FILE",
+        help="write everything to a file as JSON; without a file print it instead of the tables",
+    )
+
+
+VERBS = (
+    Verb(
+        "eval",
+        "tell how often localization is right, ambiguous, lost, or sure and wrong on real logs",
+        "robotctl eval intel.corrected.log.gz --cases 100 --pictures failures",
+        _eval,
+        _arguments,
+        prints_json=False,
+    ),
+)
