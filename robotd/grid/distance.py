@@ -1,49 +1,72 @@
 """How far it is to the nearest source, in the Euclidean metric and exactly: the distance transform.
 
-The squared distance is the smallest of ``(row - i)^2 + (col - j)^2`` over all sources ``(i, j)``, and falls apart into
-two passes: along the columns the nearest source of each column, then along the rows the smallest of those plus the
-square of the way to that column. Squares are whole numbers, so nothing is rounded but the one root at the end.
+Squares of distances between centres of cells are whole numbers, so nothing is rounded but a root at the end. The work
+is done by the kernel ``distance`` of :mod:`robotd.grid.kernels`, in C where it was compiled.
 """
 
 import numpy as np
 from numpy.typing import NDArray
+
+from robotd.grid import kernels
+from robotd.grid.kernels.layout import NOWHERE
+from robotd.grid.window import CellWindow
+
+_ANY_DISTANCE = 1 << 14
+"""More than any two cells of a grid are apart, and its square fits into 32 bits."""
 
 
 def distance_transform(sources: NDArray[np.bool_], *, outside: bool = False) -> NDArray[np.float64]:
     """Return the distance from each cell's centre to that of the nearest source, in cells, ``float64[rows, cols]``.
 
     ``inf`` if there is no source at all. What is within ``d`` cells of a source is what :func:`.footprints.dilate` adds
-    with a disk of that radius, for every ``d``.
-
-    O(cells x greatest distance): the second pass looks no farther than any distance it has found.
+    with a disk of that radius, for every ``d``. O(cells).
 
     Args:
         sources: ``bool[rows, cols]``.
         outside: whether what lies beyond the grid is a source.
     """
-    # The nearest cell outside is one of the ring round the grid.
-    padded = np.pad(sources, 1, constant_values=outside)
-    squares = _least_along_rows(_along_cols(padded) ** 2)
-    distances: NDArray[np.float64] = np.sqrt(squares[1:-1, 1:-1])
-    return distances
+    squares = squared_distances(sources, outside=outside)
+    return np.where(squares == NOWHERE, np.inf, np.sqrt(squares))
 
 
-def _along_cols(sources: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Return how many rows it is to the nearest source of the same column, ``inf`` where there is none."""
-    rows = np.arange(float(len(sources)))[:, None]
-    below = np.maximum.accumulate(np.where(sources, rows, -np.inf), axis=0)
-    above = np.minimum.accumulate(np.where(sources, rows, np.inf)[::-1], axis=0)[::-1]
-    nearest: NDArray[np.float64] = np.minimum(rows - below, above - rows)
-    return nearest
+def squared_distances(
+    sources: NDArray[np.bool_], *, outside: bool = False, limit_cells: int | None = None
+) -> NDArray[np.int32]:
+    """Return the squares of those distances, ``int32[rows, cols]``; ``NOWHERE`` if no source is within the limit.
+
+    O(cells), whatever the limit is. Arguments as of :func:`distance_transform`, and:
+
+    Args:
+        sources: as above.
+        outside: as above.
+        limit_cells: how far to look; None for as far as the grid goes.
+    """
+    squares = np.empty(sources.shape, np.int32)
+    limit = _ANY_DISTANCE if limit_cells is None else limit_cells
+    kernels.squared_distances(sources, squares, CellWindow.whole(sources.shape), limit_cells=limit, outside=outside)
+    return squares
 
 
-def _least_along_rows(squares: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the least of ``squares[:, j] + (col - j) ** 2`` over all ``j``."""
-    least = squares.copy()
-    for step in range(1, squares.shape[1]):
-        farther = float(step**2)
-        if farther >= least.max():
-            break
-        np.minimum(least[:, step:], squares[:, :-step] + farther, out=least[:, step:])
-        np.minimum(least[:, :-step], squares[:, step:] + farther, out=least[:, :-step])
-    return least
+def squared_distances_updated(
+    squares: NDArray[np.int32],
+    sources: NDArray[np.bool_],
+    changed: CellWindow,
+    *,
+    outside: bool = False,
+    limit_cells: int,
+) -> NDArray[np.int32]:
+    """Return what :func:`squared_distances` returns after some sources came or went, from what it was before.
+
+    O(cells within twice the limit of the window), and a copy.
+
+    Args:
+        squares: of the sources as they were, with the same limit; not changed.
+        sources: as they are now.
+        changed: holds all cells that became a source or ceased to be one.
+        outside: as above.
+        limit_cells: as above; without a limit any cell could change.
+    """
+    updated = squares.copy()
+    window = changed.grown(limit_cells, sources.shape)
+    kernels.squared_distances(sources, updated, window, limit_cells=limit_cells, outside=outside)
+    return updated

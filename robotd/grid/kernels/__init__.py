@@ -30,11 +30,22 @@ except ImportError as error:
     IN_USE = KernelsInUse(compiled=False, instructions="numpy", reason=f"no C kernels were installed ({error})")
     draw_beams, count_feasible = twins.draw_beams, twins.count_feasible
     greatest, at_least, insert_rays = twins.greatest, twins.at_least, twins.insert_rays
+    squared_distances = twins.squared_distances
 else:
     IN_USE = KernelsInUse(
         compiled=True, instructions=native.instruction_set(), reason="compiled when robotd was installed"
     )
     draw_beams, count_feasible = native.draw_beams, native.count_feasible
     greatest, at_least, insert_rays = native.greatest, native.at_least, native.insert_rays
+    squared_distances = native.squared_distances
 
-__all__ = ["IN_USE", "KernelsInUse", "at_least", "count_feasible", "draw_beams", "greatest", "insert_rays"]
+__all__ = [
+    "IN_USE",
+    "KernelsInUse",
+    "at_least",
+    "count_feasible",
+    "draw_beams",
+    "greatest",
+    "insert_rays",
+    "squared_distances",
+]

@@ -155,6 +155,10 @@ SLOTS = 2048
 """Half a mebibyte for each thread: a batch fits into the second-level cache with room to spare."""
 
 
+NOWHERE = int(np.iinfo(np.int32).max)
+"""The squared distance to a source that is farther than anybody looked."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Rays:
     """Beams of one sweep into an occupancy grid; positions and lengths in cells, as in :mod:`robotd.grid.ray`."""

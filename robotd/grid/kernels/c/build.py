@@ -5,7 +5,7 @@ from pathlib import Path
 from cffi import FFI
 
 HERE = Path(__file__).parent
-KERNELS = ("count", "draw", "insert")
+KERNELS = ("count", "distance", "draw", "insert")
 """Each a source and the header that declares what Python calls."""
 
 builder = FFI()

@@ -11,6 +11,7 @@ from robotd.grid.kernels.native.counting import (
     greatest,
     instruction_set,
 )
+from robotd.grid.kernels.native.distances import squared_distances
 from robotd.grid.kernels.native.drawing import draw_beams
 from robotd.grid.kernels.native.inserting import insert_rays
 
@@ -22,4 +23,5 @@ __all__ = [
     "greatest",
     "insert_rays",
     "instruction_set",
+    "squared_distances",
 ]

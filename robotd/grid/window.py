@@ -1,0 +1,65 @@
+"""A rectangle of cells: what a change of the map can have touched."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class CellWindow:
+    """The cells of ``first_row <= row < end_row`` and ``first_col <= col < end_col``, all of them on the grid."""
+
+    first_row: int
+    end_row: int
+    first_col: int
+    end_col: int
+
+    @classmethod
+    def whole(cls, shape: tuple[int, ...]) -> "CellWindow":
+        """Return all cells of a grid ``(rows, cols)``."""
+        return cls(0, shape[0], 0, shape[1])
+
+    @classmethod
+    def bounding(cls, cells: NDArray[np.intp], shape: tuple[int, ...]) -> "CellWindow":
+        """Return the smallest window that holds cells of a grid, an empty one if there are none.
+
+        Args:
+            cells: ``intp[n]``, flat indices ``row * cols + col``, ascending, as an insertion returns them.
+            shape: ``(rows, cols)`` of the grid.
+        """
+        if not cells.size:
+            return cls(0, 0, 0, 0)
+        cols = cells % shape[1]
+        first_row, last_row = int(cells[0]) // shape[1], int(cells[-1]) // shape[1]
+        return cls(first_row, last_row + 1, int(cols.min()), int(cols.max()) + 1)
+
+    def grown(self, by_cells: int, shape: tuple[int, ...]) -> "CellWindow":
+        """Return this window with so many cells more on every side, as far as the grid goes; empty stays empty.
+
+        >>> CellWindow(2, 4, 0, 9).grown(3, (6, 20))
+        CellWindow(first_row=0, end_row=6, first_col=0, end_col=12)
+        """
+        if self.is_empty:
+            return self
+        return CellWindow(
+            max(0, self.first_row - by_cells),
+            min(shape[0], self.end_row + by_cells),
+            max(0, self.first_col - by_cells),
+            min(shape[1], self.end_col + by_cells),
+        )
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is no cell in it."""
+        return self.first_row >= self.end_row or self.first_col >= self.end_col
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Its ``(rows, cols)``."""
+        return self.end_row - self.first_row, self.end_col - self.first_col
+
+    @property
+    def slices(self) -> tuple[slice, slice]:
+        """Return what an array of cells is indexed with."""
+        return slice(self.first_row, self.end_row), slice(self.first_col, self.end_col)
