@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.spec import GridSpec
 from robotd.grid.tables import NO_INFORMATION
+from robotd.grid.window import CellWindow
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,6 +37,13 @@ class TernaryMap:
     def from_grid(cls, grid: OccupancyGrid) -> "TernaryMap":
         """Return the map of an occupancy grid as it is now; only cells that were never updated are unknown."""
         return cls(grid.spec, grid.cells > NO_INFORMATION, grid.cells < NO_INFORMATION)
+
+    def updated(self, grid: OccupancyGrid, changed: CellWindow) -> "TernaryMap":
+        """Return the map of a grid that differs from the one this is of in a window alone; this one stays as it is."""
+        occupied, vacant = self.occupied.copy(), self.vacant.copy()
+        occupied[changed.slices] = grid.cells[changed.slices] > NO_INFORMATION
+        vacant[changed.slices] = grid.cells[changed.slices] < NO_INFORMATION
+        return TernaryMap(self.spec, occupied, vacant)
 
     @property
     def unknown(self) -> NDArray[np.bool_]:

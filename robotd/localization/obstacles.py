@@ -9,13 +9,14 @@
 """
 
 import enum
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.footprints import dilate, disk_footprint
+from robotd.grid.growth import grown_by_disk, grown_by_disk_updated
 from robotd.grid.ternary import TernaryMap
+from robotd.grid.window import CellWindow
 
 
 class UnknownCells(enum.StrEnum):
@@ -58,23 +59,39 @@ class Obstacles:
     @classmethod
     def of(cls, occupied: NDArray[np.bool_], error_radius_cells: float) -> "Obstacles":
         """Return the paper's: ``bool[rows, cols]`` is all obstacle or free, and what lies outside is obstacle."""
-        return cls(~occupied, occupied, dilate(occupied, disk_footprint(error_radius_cells), outside=True))
+        return cls(~occupied, occupied, grown_by_disk(occupied, error_radius_cells, outside=True))
 
     @classmethod
     def of_map(
         cls, ternary: TernaryMap, unknown: UnknownCells, error_radius_cells: float, *, blocked_by: int = 1
     ) -> "Obstacles":
         """Read a three-valued map; ``OCCUPIED`` with ``blocked_by = 1`` is the paper's."""
-        occupied, disk = ternary.occupied, disk_footprint(error_radius_cells)
         unseen_ends = unknown is UnknownCells.OCCUPIED
-        unseen_blocks = unknown is not UnknownCells.FREE
-        ending = occupied | ternary.unknown if unseen_ends else occupied
-        blocking = ~ternary.vacant if unseen_blocks else occupied
         return cls(
             free=ternary.vacant,
-            blocking=blocking,
-            grown=dilate(ending, disk, outside=unseen_ends),
-            outside_blocks=unseen_blocks,
+            blocking=_blocking(ternary, unknown),
+            grown=grown_by_disk(_ending(ternary, unknown), error_radius_cells, outside=unseen_ends),
+            outside_blocks=unknown is not UnknownCells.FREE,
             outside_ends=unseen_ends,
             blocked_by=blocked_by,
         )
+
+    def updated(
+        self, ternary: TernaryMap, unknown: UnknownCells, error_radius_cells: float, changed: CellWindow
+    ) -> "Obstacles":
+        """Read a map that differs from the one these are of in a window alone, in the same way as that one.
+
+        The obstacles differ in no cell that is farther than the error radius from the window.
+        """
+        grown = grown_by_disk_updated(
+            self.grown, _ending(ternary, unknown), changed, error_radius_cells, outside=self.outside_ends
+        )
+        return replace(self, free=ternary.vacant, blocking=_blocking(ternary, unknown), grown=grown)
+
+
+def _blocking(ternary: TernaryMap, unknown: UnknownCells) -> NDArray[np.bool_]:
+    return ternary.occupied if unknown is UnknownCells.FREE else ~ternary.vacant
+
+
+def _ending(ternary: TernaryMap, unknown: UnknownCells) -> NDArray[np.bool_]:
+    return ~ternary.vacant if unknown is UnknownCells.OCCUPIED else ternary.occupied

@@ -1,10 +1,12 @@
 """A map made ready for localization: all that is worked out once for a map, whatever the readings are."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from robotd.grid.binary import BinaryMap
 from robotd.grid.kernels.layout import PackedMap
+from robotd.grid.packing import repacked
 from robotd.grid.spec import GridSpec
+from robotd.grid.window import CellWindow
 from robotd.localization.obstacles import Obstacles
 
 
@@ -42,3 +44,15 @@ class PreparedMap:
     def of_binary(cls, binary: BinaryMap, error_radius_cells: float) -> "PreparedMap":
         """Prepare a map as the paper reads it: unknown cells are obstacles."""
         return cls.of(Obstacles.of(binary.occupied, error_radius_cells), binary.spec, error_radius_cells)
+
+    def updated(self, obstacles: Obstacles, changed: CellWindow) -> "PreparedMap":
+        """Return this map with obstacles that differ from its own in a window alone; this one stays as it is.
+
+        Counts on it are those on the map prepared from nothing. O(cells of the window), and a copy of what is packed.
+
+        Args:
+            obstacles: the new ones, of the same map and read in the same way.
+            changed: holds all cells in which they differ: those that changed in the map, grown by the error radius.
+        """
+        packed = repacked(self.packed, obstacles.free, obstacles.blocking, obstacles.grown, changed)
+        return replace(self, obstacles=obstacles, packed=packed)

@@ -30,14 +30,14 @@ except ImportError as error:
     IN_USE = KernelsInUse(compiled=False, instructions="numpy", reason=f"no C kernels were installed ({error})")
     draw_beams, count_feasible = twins.draw_beams, twins.count_feasible
     greatest, at_least, insert_rays = twins.greatest, twins.at_least, twins.insert_rays
-    squared_distances = twins.squared_distances
+    squared_distances, grow_disk, pack_cells = twins.squared_distances, twins.grow_disk, twins.pack_cells
 else:
     IN_USE = KernelsInUse(
         compiled=True, instructions=native.instruction_set(), reason="compiled when robotd was installed"
     )
     draw_beams, count_feasible = native.draw_beams, native.count_feasible
     greatest, at_least, insert_rays = native.greatest, native.at_least, native.insert_rays
-    squared_distances = native.squared_distances
+    squared_distances, grow_disk, pack_cells = native.squared_distances, native.grow_disk, native.pack_cells
 
 __all__ = [
     "IN_USE",
@@ -46,6 +46,8 @@ __all__ = [
     "count_feasible",
     "draw_beams",
     "greatest",
+    "grow_disk",
     "insert_rays",
+    "pack_cells",
     "squared_distances",
 ]

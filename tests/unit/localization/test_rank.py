@@ -176,11 +176,6 @@ def test_counters_grow_with_what_they_count() -> None:
         ranks.add(*[one] * 65536)
 
 
-def test_obstacles_are_prepared_only_where_they_fit() -> None:
-    with pytest.raises(ValueError, match="expected obstacles of shape"):
-        PreparedMap.of(Obstacles.of(np.zeros((3, 4), np.bool_), 1.0), GridSpec(0.5, 0.0, 0.0, (4, 3)), 1.0)
-
-
 def test_a_map_without_free_cells_has_no_poses() -> None:
     ranks = RankGrid(map_of(np.ones((4, 5), np.bool_)), [0.0])
     ranks.add(RangeReading(0, 0.0, ReadingStatus.OK, 1.0))

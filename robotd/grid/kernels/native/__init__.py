@@ -13,7 +13,9 @@ from robotd.grid.kernels.native.counting import (
 )
 from robotd.grid.kernels.native.distances import squared_distances
 from robotd.grid.kernels.native.drawing import draw_beams
+from robotd.grid.kernels.native.growing import grow_disk
 from robotd.grid.kernels.native.inserting import insert_rays
+from robotd.grid.kernels.native.packing import pack_cells
 
 __all__ = [
     "INSTRUCTION_SETS",
@@ -21,7 +23,9 @@ __all__ = [
     "count_feasible",
     "draw_beams",
     "greatest",
+    "grow_disk",
     "insert_rays",
     "instruction_set",
+    "pack_cells",
     "squared_distances",
 ]

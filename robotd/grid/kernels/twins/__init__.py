@@ -3,6 +3,17 @@
 from robotd.grid.kernels.twins.counting import at_least, count_feasible, greatest
 from robotd.grid.kernels.twins.distances import squared_distances
 from robotd.grid.kernels.twins.drawing import draw_beams
+from robotd.grid.kernels.twins.growing import grow_disk
 from robotd.grid.kernels.twins.inserting import insert_rays
+from robotd.grid.kernels.twins.packing import pack_cells
 
-__all__ = ["at_least", "count_feasible", "draw_beams", "greatest", "insert_rays", "squared_distances"]
+__all__ = [
+    "at_least",
+    "count_feasible",
+    "draw_beams",
+    "greatest",
+    "grow_disk",
+    "insert_rays",
+    "pack_cells",
+    "squared_distances",
+]
