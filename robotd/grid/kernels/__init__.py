@@ -31,6 +31,8 @@ except ImportError as error:
     draw_beams, count_feasible = twins.draw_beams, twins.count_feasible
     greatest, at_least, insert_rays = twins.greatest, twins.at_least, twins.insert_rays
     squared_distances, grow_disk, pack_cells = twins.squared_distances, twins.grow_disk, twins.pack_cells
+    wall_codes, skip_codes = twins.wall_codes, twins.skip_codes
+    fit_poses, cast_beams = twins.fit_poses, twins.cast_beams
 else:
     IN_USE = KernelsInUse(
         compiled=True, instructions=native.instruction_set(), reason="compiled when robotd was installed"
@@ -38,16 +40,22 @@ else:
     draw_beams, count_feasible = native.draw_beams, native.count_feasible
     greatest, at_least, insert_rays = native.greatest, native.at_least, native.insert_rays
     squared_distances, grow_disk, pack_cells = native.squared_distances, native.grow_disk, native.pack_cells
+    wall_codes, skip_codes = twins.wall_codes, twins.skip_codes
+    fit_poses, cast_beams = twins.fit_poses, twins.cast_beams
 
 __all__ = [
     "IN_USE",
     "KernelsInUse",
     "at_least",
+    "cast_beams",
     "count_feasible",
     "draw_beams",
+    "fit_poses",
     "greatest",
     "grow_disk",
     "insert_rays",
     "pack_cells",
+    "skip_codes",
     "squared_distances",
+    "wall_codes",
 ]

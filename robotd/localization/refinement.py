@@ -1,0 +1,222 @@
+"""From a cell to a point: the pose that best lays the heads of the readings on the walls, within a box round the cell.
+
+Feasible poses ([BrownDonald2000]_ sec. 2.2.1) are cells; a sweep of 300 readings knows more than its cell. The sum of
+robust squared distances from the heads to the nearest wall is minimized, from a start and within bounds that the pose
+never leaves. It is said where in its cells a wall lies (:class:`Walls`), since that is worth half a cell: 25 mm.
+
+The covariance is that of the weighted least squares: the inverse normal matrix times the variance of the distances,
+which is taken from the readings themselves, times how much neighbouring readings err together. It tells how far the
+pose may be from the place where endlessly many such readings would see it *on this map*. What the map has wrong all
+along a wall no reading can tell: ``map_error_m`` is added for that. A direction in which the walls do not hold the pose
+(a corridor) has a standard deviation of up to 256 cells, however small the box.
+"""
+
+import enum
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.angles import wrap_rad
+from robotd.core.pose import Pose2
+from robotd.grid import kernels
+from robotd.grid.kernels.fitting import ENDS, Fits
+from robotd.grid.spec import GridSpec
+from robotd.grid.wall_field import WallField
+
+
+class Walls(enum.StrEnum):
+    """Where in its cells a wall lies."""
+
+    FACES = "faces"
+    """At the sides of its cells: a drawn map, whose cells are the truth."""
+    CENTRES = "centres"
+    """Along the middle of its cells: a map made of readings, whose heads lie anywhere in the cells they raised."""
+
+
+@dataclass(frozen=True, slots=True)
+class RefinementSettings:
+    """How poses are refined."""
+
+    walls: Walls = Walls.CENTRES
+    """Where in its cells a wall lies: ``centres`` for a map made of readings, ``faces`` for a drawn one."""
+    outlier_m: float = 0.2
+    """A reading whose head is farther than this from every wall has no say."""
+    map_error_m: float = 0.02
+    """How far the walls of the map may be off, all together: the standard deviation of x and y is no less."""
+    map_error_rad: float = 0.005
+    """The same for the heading."""
+
+    def __post_init__(self) -> None:
+        """Refuse impossible values."""
+        if not self.outlier_m > 0.0:
+            raise ValueError(f"outlier_m must be positive, got {self.outlier_m}")
+        if not self.map_error_m >= 0.0:
+            raise ValueError(f"map_error_m must not be negative, got {self.map_error_m}")
+        if not self.map_error_rad >= 0.0:
+            raise ValueError(f"map_error_rad must not be negative, got {self.map_error_rad}")
+
+
+@dataclass(frozen=True, slots=True)
+class PoseBox:
+    """Where a pose may lie, and where to begin; headings are not wrapped, so that bounds may go round."""
+
+    start: Pose2
+    x_min_m: float
+    x_max_m: float
+    y_min_m: float
+    y_max_m: float
+    heading_min_rad: float
+    heading_max_rad: float
+
+    def __post_init__(self) -> None:
+        """Refuse a box that holds nothing."""
+        if not (
+            self.x_min_m <= self.x_max_m
+            and self.y_min_m <= self.y_max_m
+            and self.heading_min_rad <= self.heading_max_rad
+        ):
+            raise ValueError(f"bounds in the wrong order: {self}")
+
+    @classmethod
+    def around(cls, start: Pose2, half_m: float, half_rad: float) -> "PoseBox":
+        """Return the box that reaches so far to all sides of a pose."""
+        x_m, y_m, heading_rad = start.x_m, start.y_m, start.heading_rad
+        return cls(
+            start,
+            x_m - half_m,
+            x_m + half_m,
+            y_m - half_m,
+            y_m + half_m,
+            heading_rad - half_rad,
+            heading_rad + half_rad,
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RefinedPoses:
+    """Refined poses, in the order of their boxes, and where each of ``m`` readings (hits and misses) then lies."""
+
+    poses: NDArray[np.float64]
+    """``float64[n, 3]``: x, y [m] and heading [rad, not wrapped], map frame."""
+    covariances: NDArray[np.float64]
+    """``float64[n, 3, 3]`` of x, y [m] and heading [rad]."""
+    residual_m: NDArray[np.float64]
+    """``float64[n]``: root of the weighted mean squared distance of the heads from the walls."""
+    weight: NDArray[np.float64]
+    """``float64[n]``: sum of the weights, so at most the number of hits."""
+    beyond_m: NDArray[np.float64]
+    """``float64[n, m]``: how far the head of each reading lies beyond the nearest wall, negative short of it; no more
+    than 8 cells, which is far from any. NaN for a miss."""
+
+    def pose(self, number: int) -> Pose2:
+        """Return one of the poses."""
+        x_m, y_m, heading_rad = self.poses[number].tolist()
+        return Pose2(x_m, y_m, wrap_rad(heading_rad))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExpectedRanges:
+    """What a robot should measure from ``n`` poses."""
+
+    ranges_m: NDArray[np.float64]
+    """``float64[n, m]``: from the beam's start to the side of the cell that stops it."""
+    ends: NDArray[np.bool_]
+    """``bool[n, m]``: whether that is a wall; else nobody knows what is there, or the map ends."""
+
+
+def refine(
+    field: WallField, readings: NDArray[np.float64], boxes: Sequence[PoseBox], settings: RefinementSettings
+) -> RefinedPoses:
+    """Return the best poses within boxes, for one sweep.
+
+    Args:
+        field: the map.
+        readings: ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`; misses have no head and no say.
+        boxes: where to begin, and what not to leave.
+        settings: where walls lie, and how robust.
+
+    O(n m) for each of at most 32 steps.
+    """
+    spec = field.spec
+    is_hit = readings[:, 4] == 0.0
+    hits = readings if is_hit.all() else readings[is_hit]
+    fits = kernels.fit_poses(
+        field.codes,
+        _DISTANCES[settings.walls],
+        _heads(hits) / spec.resolution_m,
+        _in_cells(boxes, spec),
+        settings.outlier_m / spec.resolution_m,
+    )
+    return _in_metres(fits, is_hit, spec, settings)
+
+
+def expected_ranges(
+    field: WallField, readings: NDArray[np.float64], poses: NDArray[np.float64], blocked_by: int
+) -> ExpectedRanges:
+    """Return how far each beam goes from continuous poses, exactly, to the side of the cell that stops it.
+
+    Args:
+        field: the map.
+        readings: ``float64[m, 5]``; their ranges do not matter.
+        poses: ``float64[n, 3]``: x, y [m] and heading [rad], map frame.
+        blocked_by: how many blocking cells a beam must meet to be stopped, 1 or 2.
+    """
+    spec, headings = field.spec, poses[:, 2]
+    beams = np.column_stack((readings[:, 2:4] / spec.resolution_m, np.cos(readings[:, 0]), np.sin(readings[:, 0])))
+    origin = np.array([spec.origin_x_m, spec.origin_y_m])
+    at = np.column_stack(((poses[:, :2] - origin) / spec.resolution_m, np.cos(headings), np.sin(headings)))
+    ways, stops = kernels.cast_beams(field.skips, beams, at, blocked_by)
+    return ExpectedRanges(ways * spec.resolution_m, stops == ENDS)
+
+
+def _heads(hits: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the heads of hits in the robot frame, ``float64[m, 2]`` [m]."""
+    heads = np.empty((len(hits), 2))
+    heads[:, 0] = hits[:, 2] + hits[:, 1] * np.cos(hits[:, 0])
+    heads[:, 1] = hits[:, 3] + hits[:, 1] * np.sin(hits[:, 0])
+    return heads
+
+
+def _in_cells(boxes: Sequence[PoseBox], spec: GridSpec) -> NDArray[np.float64]:
+    """Return boxes as the kernel takes them, ``float64[n, 9]``."""
+    rows = [
+        (
+            *(box.start.x_m, box.start.y_m, box.start.heading_rad),
+            *(box.x_min_m, box.y_min_m, box.heading_min_rad),
+            *(box.x_max_m, box.y_max_m, box.heading_max_rad),
+        )
+        for box in boxes
+    ]
+    cells = np.array(rows, np.float64).reshape(-1, 3, 3)
+    cells[:, :, 0] = (cells[:, :, 0] - spec.origin_x_m) / spec.resolution_m
+    cells[:, :, 1] = (cells[:, :, 1] - spec.origin_y_m) / spec.resolution_m
+    return cells.reshape(-1, 9)
+
+
+def _in_metres(fits: Fits, is_hit: NDArray[np.bool_], spec: GridSpec, settings: RefinementSettings) -> RefinedPoses:
+    map_error = np.array([settings.map_error_m, settings.map_error_m, settings.map_error_rad])
+    scale = np.array([spec.resolution_m, spec.resolution_m, 1.0])
+    beyond_m = np.full((len(fits.poses), len(is_hit)), math.nan)
+    beyond_m[:, is_hit] = fits.beyond * spec.resolution_m
+    return RefinedPoses(
+        poses=fits.poses * scale + np.array([spec.origin_x_m, spec.origin_y_m, 0.0]),
+        covariances=fits.covariances * (scale[:, None] * scale) + np.diag(map_error * map_error),
+        residual_m=np.sqrt(fits.quality[:, 1]) * spec.resolution_m,
+        weight=fits.quality[:, 0],
+        beyond_m=beyond_m,
+    )
+
+
+def _distances(walls: Walls) -> NDArray[np.float64]:
+    """Return what distance each code stands for, ``float64[256]`` [cells], by ``code + 128``."""
+    codes = np.arange(-128, 128)
+    roots = np.sqrt(np.abs(codes))
+    if walls is Walls.FACES:
+        return np.where(codes > 0, roots - 0.5, 0.5 - roots)
+    return np.where(codes > 0, roots, 0.0)
+
+
+_DISTANCES = {walls: _distances(walls) for walls in Walls}
