@@ -40,8 +40,8 @@ else:
     draw_beams, count_feasible = native.draw_beams, native.count_feasible
     greatest, at_least, insert_rays = native.greatest, native.at_least, native.insert_rays
     squared_distances, grow_disk, pack_cells = native.squared_distances, native.grow_disk, native.pack_cells
-    wall_codes, skip_codes = twins.wall_codes, twins.skip_codes
-    fit_poses, cast_beams = twins.fit_poses, twins.cast_beams
+    wall_codes, skip_codes = native.wall_codes, native.skip_codes
+    fit_poses, cast_beams = native.fit_poses, native.cast_beams
 
 __all__ = [
     "IN_USE",

@@ -5,7 +5,7 @@ from pathlib import Path
 from cffi import FFI
 
 HERE = Path(__file__).parent
-KERNELS = ("count", "distance", "draw", "grow", "insert", "pack")
+KERNELS = ("cast", "count", "distance", "draw", "fit", "grow", "insert", "pack")
 """Each a source and the header that declares what Python calls."""
 
 builder = FFI()

@@ -4,6 +4,7 @@ Every function has a twin of the same name and the same results in :mod:`robotd.
 described.
 """
 
+from robotd.grid.kernels.native.casting import cast_beams, skip_codes, wall_codes
 from robotd.grid.kernels.native.counting import (
     INSTRUCTION_SETS,
     at_least,
@@ -13,6 +14,7 @@ from robotd.grid.kernels.native.counting import (
 )
 from robotd.grid.kernels.native.distances import squared_distances
 from robotd.grid.kernels.native.drawing import draw_beams
+from robotd.grid.kernels.native.fitting import fit_poses
 from robotd.grid.kernels.native.growing import grow_disk
 from robotd.grid.kernels.native.inserting import insert_rays
 from robotd.grid.kernels.native.packing import pack_cells
@@ -20,12 +22,16 @@ from robotd.grid.kernels.native.packing import pack_cells
 __all__ = [
     "INSTRUCTION_SETS",
     "at_least",
+    "cast_beams",
     "count_feasible",
     "draw_beams",
+    "fit_poses",
     "greatest",
     "grow_disk",
     "insert_rays",
     "instruction_set",
     "pack_cells",
+    "skip_codes",
     "squared_distances",
+    "wall_codes",
 ]

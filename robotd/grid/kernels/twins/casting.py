@@ -5,6 +5,9 @@ from numpy.typing import NDArray
 
 from robotd.grid.kernels.fitting import BLOCKS, DEPTH_CELLS, ENDS, REACH_CELLS, SKIP_MAX
 
+_ALONG = 1e-300
+"""A beam that changes a coordinate by less along its way does not change it."""
+
 
 def wall_codes(walls: NDArray[np.bool_]) -> NDArray[np.int8]:
     """Return the squared distances of a map ``bool[rows, cols]``, ``int8[rows, cols]``; nothing lies outside it."""
@@ -98,8 +101,8 @@ def _cast(
 
 def _way(side: NDArray[np.intp], start: NDArray[np.float64], ahead: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return how far it is to a line across; for ever, if the beam runs along it."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ways: NDArray[np.float64] = np.where(ahead == 0.0, np.inf, (side - start) / ahead)
+    along = np.abs(ahead) < _ALONG
+    ways: NDArray[np.float64] = np.where(along, np.inf, (side - start) * (1.0 / np.where(along, 1.0, ahead)))
     return ways
 
 

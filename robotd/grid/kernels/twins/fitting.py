@@ -193,7 +193,7 @@ def _judge(found: _Found) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     spread = max(found.squares / max(found.weight - HEADS_MIN, 1.0), LEAST_SPREAD_CELLS * LEAST_SPREAD_CELLS)
     together = _together(found.weights * found.beyond)
     known = found.normal / (spread * together)
-    known = known + np.diag([1 / UNKNOWN_CELLS**2, 1 / UNKNOWN_CELLS**2, 1 / UNKNOWN_RAD**2])
+    known = known + np.diag([1 / (sigma * sigma) for sigma in (UNKNOWN_CELLS, UNKNOWN_CELLS, UNKNOWN_RAD)])
     unit = np.eye(3).tolist()
     columns = [_solved(known.tolist(), column) for column in unit]
     mean = found.squares / found.weight if found.weight > 0.0 else 0.0

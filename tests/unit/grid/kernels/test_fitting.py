@@ -1,0 +1,39 @@
+"""C fits poses as NumPy does."""
+
+import importlib
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robotd.grid.kernels import twins
+
+try:
+    native = importlib.import_module("robotd.grid.kernels.native")
+except ImportError:
+    pytest.skip("robotd was installed without a compiler", allow_module_level=True)
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    st.integers(0, 2**32),
+    st.tuples(st.integers(1, 60), st.integers(1, 60)),
+    st.sampled_from([0.0, 0.02, 0.3]),
+    st.sampled_from([0, 1, 2, 40]),
+    st.sampled_from([0.0, 1e-3, 0.5, 5.0]),
+)
+def test_poses_and_all_that_is_said_of_them_are_equal(
+    seed: int, shape: tuple[int, int], share: float, heads: int, half: float
+) -> None:
+    random = np.random.default_rng(seed)
+    codes = twins.wall_codes(random.random(shape) < share)
+    distances = np.sqrt(np.abs(np.arange(-128.0, 128.0))) - 0.5 * (seed % 2)
+    starts = random.uniform(0.0, 1.0, (3, 3)) * (shape[1], shape[0], 6.0)
+    boxes = np.concatenate((starts, starts - half * random.random((3, 3)), starts + half), axis=1)
+    arguments = (codes, distances, random.normal(size=(heads, 2)) * 12.0, boxes, 4.0)
+    one, other = native.fit_poses(*arguments), twins.fit_poses(*arguments)
+    for name in ("poses", "covariances", "quality", "beyond"):
+        np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-9, atol=1e-9)
+    assert (one.poses >= boxes[:, 3:6]).all()
+    assert (one.poses <= boxes[:, 6:]).all()
