@@ -1,0 +1,77 @@
+"""Maps as sets of polygons: what is solid, as one closed set whatever the polygons do to each other."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from robotd.localization.exact.planar import Border, PlanarSet, area_within, twice_area
+from robotd.localization.exact.points import Point
+from robotd.localization.exact.rationals import Rational, rational
+from robotd.localization.exact.surds import sign
+from robotd.localization.exact.sweep import arrange
+
+Ring = tuple[Point, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Polygon:
+    """A solid obstacle, perhaps with holes; its rings may run either way round."""
+
+    outer: Ring
+    holes: tuple[Ring, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse what has no area."""
+        for ring in (self.outer, *self.holes):
+            if len(ring) < 3 or sign(twice_area(ring)) == 0:
+                raise ValueError(f"a ring needs an area, got {ring}")
+
+
+def ring_of(corners: Iterable[Sequence[int | str | float]]) -> Ring:
+    """Return a ring of ``(x, y)`` pairs; neither a corner said twice running nor the first said again at the end stays.
+
+    Raises:
+        ValueError: a coordinate is not a finite number.
+    """
+    points = [Point(rational(x), rational(y)) for x, y in corners]
+    return tuple(point for number, point in enumerate(points) if point != points[number - 1])
+
+
+def room(outline: Ring, thickness: Rational) -> Polygon:
+    """Return the walls around a free room: a rectangle, this much larger on all sides, with the room as its hole."""
+    xs, ys = sorted(point.x for point in outline), sorted(point.y for point in outline)
+    west, east, south, north = xs[0] - thickness, xs[-1] + thickness, ys[0] - thickness, ys[-1] + thickness
+    return Polygon((Point(west, south), Point(east, south), Point(east, north), Point(west, north)), (outline,))
+
+
+def solid(polygons: Iterable[Polygon]) -> PlanarSet:
+    """Return the union of polygons, closed: M.
+
+    Shared edges are no cracks, overlaps no borders. Two polygons that touch in a point leave one there.
+
+    Raises:
+        ValueError: a ring crosses or overlaps itself or another of its polygon.
+    """
+    return arrange([_closed(polygon) for polygon in polygons]).select(bool)
+
+
+def edge_count(obstacles: PlanarSet) -> int:
+    """Return n, the number of edges of a map."""
+    return len(obstacles.borders)
+
+
+def interior(closed: PlanarSet) -> PlanarSet:
+    """Return a closed set of areas without its borders."""
+    return PlanarSet(tuple(_with_on(border, on=False) for border in closed.borders), (), closed.far)
+
+
+def _with_on(border: Border, *, on: bool) -> Border:
+    return Border(border.support, border.start, border.end, border.right, on, border.left)
+
+
+def _closed(polygon: Polygon) -> PlanarSet:
+    outer = _turned(polygon.outer, counter_clockwise=True)
+    return area_within([outer, *(_turned(hole, counter_clockwise=False) for hole in polygon.holes)], closed=True)
+
+
+def _turned(ring: Ring, *, counter_clockwise: bool) -> Ring:
+    return ring if (sign(twice_area(ring)) > 0) == counter_clockwise else ring[::-1]

@@ -1,0 +1,46 @@
+"""A pose is feasible exactly if casting the beam from it says so: within areas, on edges, at corners."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robotd.localization.exact.arrangement import Arrangement
+from robotd.localization.exact.beams import Beam
+from robotd.localization.exact.casting import Outcome, cast
+from robotd.localization.exact.feasible import PolygonMap, feasible_arrangement, is_feasible
+from robotd.localization.exact.locate import contains, middle
+from robotd.localization.exact.planar import Border, PlanarSet
+from robotd.localization.exact.points import Point
+from robotd.localization.exact.rationals import Rational, rational
+from tests.unit.localization.exact.maps import beams, radii, solids
+
+
+def somewhere_on(arrangement: Arrangement, edge: int) -> Point:
+    of = arrangement.edges[edge]
+    start, end = arrangement.vertices[of.start].point, arrangement.vertices[of.end].point
+    return middle(Border(of.support, start, end, right=False, on=True, left=False))
+
+
+@settings(max_examples=60, deadline=None)
+@given(solids, beams, radii, st.data())
+def test_every_cell_is_what_casting_the_beam_says(
+    obstacles: PlanarSet, beam: Beam, eps: Rational, data: st.DataObject
+) -> None:
+    arrangement = feasible_arrangement(PolygonMap(obstacles, eps), beam)
+    for vertex in data.draw(st.lists(st.sampled_from(arrangement.vertices), max_size=12)):
+        expected = cast(obstacles, beam, eps, vertex.point).outcome is Outcome.HOLDS
+        assert is_feasible(vertex.mask) == expected, vertex.point
+    for edge in data.draw(st.lists(st.integers(0, len(arrangement.edges) - 1), max_size=6)):
+        at = somewhere_on(arrangement, edge)
+        expected = cast(obstacles, beam, eps, at).outcome is Outcome.HOLDS
+        assert is_feasible(arrangement.edges[edge].mask) == expected, at
+
+
+@settings(max_examples=30, deadline=None)
+@given(solids, beams, radii, st.lists(st.tuples(st.integers(-8, 16), st.integers(-8, 16)), min_size=3, max_size=10))
+def test_every_point_is_what_casting_the_beam_says(
+    obstacles: PlanarSet, beam: Beam, eps: Rational, halves: list[tuple[int, int]]
+) -> None:
+    feasible = feasible_arrangement(PolygonMap(obstacles, eps), beam).select(is_feasible)
+    for x, y in halves:
+        at = Point(rational(x) / 2, rational(y) / 2)
+        assert contains(feasible, at) == (cast(obstacles, beam, eps, at).outcome is Outcome.HOLDS)

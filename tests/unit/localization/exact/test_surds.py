@@ -1,0 +1,109 @@
+"""Surds are compared exactly, whatever roots they are made of and however they are written."""
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robotd.localization.exact.rationals import Rational, rational
+from robotd.localization.exact.surds import Number, Surd, approximation, compare, enclosure, sign, sqrt
+
+rationals = st.fractions(-50, 50, max_denominator=40).map(rational)
+roots = st.integers(0, 60).map(lambda number: sqrt(rational(number)))
+
+
+@st.composite
+def one_root(draw: st.DrawFn) -> Number:
+    return draw(rationals) + draw(rationals) * draw(roots)
+
+
+@st.composite
+def two_storeys(draw: st.DrawFn) -> Number:
+    inner = draw(one_root())
+    return draw(rationals) + sqrt(inner * inner + draw(st.integers(0, 3)))
+
+
+numbers = st.one_of(rationals, one_root(), two_storeys())
+
+
+def by_digits(number: Number, bits: int) -> tuple[Fraction, Fraction]:
+    low, high = enclosure(number, bits)
+    return Fraction(low, 1 << bits), Fraction(high, 1 << bits)
+
+
+@settings(max_examples=150, deadline=None)
+@given(numbers, numbers)
+def test_comparison_agrees_with_a_thousand_digits(one: Number, other: Number) -> None:
+    low, high = by_digits(one, 3400)
+    other_low, other_high = by_digits(other, 3400)
+    if high < other_low:
+        assert compare(one, other) == -1
+        assert one < other
+    elif other_high < low:
+        assert compare(one, other) == 1
+        assert one > other
+    else:
+        assert compare(one, other) == 0
+        assert one == other
+
+
+@settings(max_examples=100, deadline=None)
+@given(numbers, numbers, numbers)
+def test_they_are_a_field(one: Number, two: Number, three: Number) -> None:
+    assert one + two == two + one
+    assert one * (two + three) == one * two + one * three
+    assert (one - two) + two == one
+    if sign(two):
+        assert one / two * two == one
+
+
+@settings(max_examples=100, deadline=None)
+@given(numbers)
+def test_the_root_of_a_square_is_the_number_without_its_sign(number: Number) -> None:
+    assert sqrt(number * number) == (number if sign(number) >= 0 else -number)
+
+
+@settings(max_examples=100, deadline=None)
+@given(numbers)
+def test_an_approximation_is_as_good_as_it_says(number: Number) -> None:
+    value, error = approximation(number)
+    low, high = by_digits(number, 400)
+    assert Fraction(value) - Fraction(error) <= high
+    assert low <= Fraction(value) + Fraction(error)
+
+
+def test_roots_that_are_sums_of_others_are_recognized() -> None:
+    two, three, six = (sqrt(rational(number)) for number in (2, 3, 6))
+    assert two * three == six
+    assert sqrt(5 + 2 * six) == two + three
+    assert 1 / (two * three - six + 1) == 1
+    assert sign(sqrt(5 + 2 * six) - two - three - rational("1e-60")) == -1
+
+
+def test_a_surd_that_is_zero_divides_nothing() -> None:
+    zero = sqrt(rational(2)) * sqrt(rational(3)) - sqrt(rational(6))
+    assert isinstance(zero, Surd)
+    with pytest.raises(ZeroDivisionError):
+        rational(1) / zero
+
+
+def test_a_negative_number_has_no_root() -> None:
+    with pytest.raises(ValueError, match="no real root"):
+        sqrt(1 - sqrt(rational(2)))
+
+
+def test_a_perfect_square_has_a_rational_root() -> None:
+    assert isinstance(sqrt(rational("0.0049")), Rational)
+    assert sqrt(rational("0.0049")) == rational("0.07")
+
+
+@pytest.mark.parametrize("value", ["nan", float("inf"), "three"])
+def test_what_is_no_finite_number_is_refused(value: str | float) -> None:
+    with pytest.raises(ValueError, match="not a finite number"):
+        rational(value)
+
+
+def test_a_float_is_taken_at_its_word() -> None:
+    assert rational(0.1) != rational("0.1")
+    assert rational(0.5) == rational("1/2")
