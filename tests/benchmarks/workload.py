@@ -1,4 +1,7 @@
-"""Workload S: a room of 7 x 9 m on 256 x 256 cells of 50 mm, 300 readings, sigma 2 cm, 5 % outliers."""
+"""Workload S: a room of 7 x 9 m on 256 x 256 cells of 50 mm, 300 readings, sigma 2 cm, 5 % outliers.
+
+Workload L: the same sweeps in a building of 51 x 51 m on 1024 x 1024 cells, about 40 rooms with doors and furniture.
+"""
 
 import math
 
@@ -8,6 +11,7 @@ from numpy.typing import NDArray
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.binary import BinaryMap
+from robotd.grid.footprints import dilate, disk_footprint
 from robotd.grid.spec import GridSpec
 from robotd.localization.prepared import PreparedMap
 
@@ -17,6 +21,9 @@ READINGS = 300
 ERROR_RADIUS_CELLS = 1.5
 SPEC = GridSpec(RESOLUTION_M, 0.0, 0.0, (256, 256))
 TRUTH = Pose2(6.425, 5.025, 0.0)
+LARGE = GridSpec(RESOLUTION_M, 0.0, 0.0, (1024, 1024))
+ROOMS = 40
+WALL_CELLS, DOOR_CELLS = 3, 18
 
 
 def room(seed: int = 0) -> NDArray[np.bool_]:
@@ -37,10 +44,60 @@ def open_square() -> NDArray[np.bool_]:
     return occupied
 
 
-def sweep_of(occupied: NDArray[np.bool_], seed: int = 1) -> Sweep:
-    """Return a noisy sweep from the truth."""
+def building(seed: int = 0) -> NDArray[np.bool_]:
+    """Return rooms made by dividing the largest one again and again, ``bool[rows, cols]``."""
     random = np.random.default_rng(seed)
-    return Sweep(0, IDENTITY, tuple(_reading(occupied, k, random) for k in range(READINGS)))
+    occupied = np.ones(LARGE.shape, np.bool_)
+    rooms = [(8, 1016, 8, 1016)]
+    doors = []
+    occupied[8:1016, 8:1016] = False
+    while len(rooms) < ROOMS:
+        room = rooms.pop(int(np.argmax([(bottom - top) * (right - left) for top, bottom, left, right in rooms])))
+        top, bottom, left, right = room
+        high = bottom - top > right - left
+        first, last = (top, bottom) if high else (left, right)
+        wall = int(first + (last - first) * random.uniform(0.35, 0.65))
+        across = (left, right) if high else (top, bottom)
+        door = int(random.integers(across[0] + 6, across[1] - 6 - DOOR_CELLS))
+        if high:
+            occupied[wall : wall + WALL_CELLS, left:right] = True
+            doors.append((wall - 2, wall + WALL_CELLS + 2, door, door + DOOR_CELLS))
+            rooms += [(top, wall, left, right), (wall + WALL_CELLS, bottom, left, right)]
+        else:
+            occupied[top:bottom, wall : wall + WALL_CELLS] = True
+            doors.append((door, door + DOOR_CELLS, wall - 2, wall + WALL_CELLS + 2))
+            rooms += [(top, bottom, left, wall), (top, bottom, wall + WALL_CELLS, right)]
+    for top, bottom, left, right in rooms:
+        _furnish(occupied[top:bottom, left:right], random)
+    for top, bottom, left, right in doors:
+        occupied[top:bottom, left:right] = False
+    return occupied
+
+
+def _furnish(room: NDArray[np.bool_], random: np.random.Generator) -> None:
+    for _ in range(int(random.integers(3, 9))):
+        height, width = random.integers(6, 30, 2).tolist()
+        row = int(random.integers(0, max(1, room.shape[0] - height)))
+        col = int(random.integers(0, max(1, room.shape[1] - width)))
+        room[row : row + height, col : col + width] = True
+
+
+def poses_in(occupied: NDArray[np.bool_], count: int, seed: int = 2) -> list[Pose2]:
+    """Return random poses at least 0.3 m from every obstacle."""
+    random = np.random.default_rng(seed)
+    clear = np.argwhere(~dilate(occupied, disk_footprint(6.0), outside=True))
+    cells = random.choice(clear, count) + random.uniform(0.0, 1.0, (count, 2))
+    headings_rad = random.uniform(-math.pi, math.pi, count).tolist()
+    return [
+        Pose2(col * RESOLUTION_M, row * RESOLUTION_M, heading_rad)
+        for (row, col), heading_rad in zip(cells.tolist(), headings_rad, strict=True)
+    ]
+
+
+def sweep_of(occupied: NDArray[np.bool_], seed: int = 1, pose: Pose2 = TRUTH) -> Sweep:
+    """Return a noisy sweep from a pose."""
+    random = np.random.default_rng(seed)
+    return Sweep(0, IDENTITY, tuple(_reading(occupied, pose, k, random) for k in range(READINGS)))
 
 
 def map_of(occupied: NDArray[np.bool_]) -> PreparedMap:
@@ -48,9 +105,9 @@ def map_of(occupied: NDArray[np.bool_]) -> PreparedMap:
     return PreparedMap.of_binary(BinaryMap(SPEC, occupied), ERROR_RADIUS_CELLS)
 
 
-def _reading(occupied: NDArray[np.bool_], number: int, random: np.random.Generator) -> RangeReading:
+def _reading(occupied: NDArray[np.bool_], pose: Pose2, number: int, random: np.random.Generator) -> RangeReading:
     bearing_rad = math.tau * number / READINGS
-    range_m = _free_m(occupied, bearing_rad)
+    range_m = _free_m(occupied, pose, bearing_rad)
     if random.random() < 0.05:
         range_m *= random.uniform(0.2, 1.0)
     range_m += random.normal() * 0.02
@@ -59,9 +116,10 @@ def _reading(occupied: NDArray[np.bool_], number: int, random: np.random.Generat
     return RangeReading(0, bearing_rad, ReadingStatus.OK, max(range_m, RESOLUTION_M))
 
 
-def _free_m(occupied: NDArray[np.bool_], bearing_rad: float) -> float:
+def _free_m(occupied: NDArray[np.bool_], pose: Pose2, bearing_rad: float) -> float:
     along_m = np.arange(0.0, CUT_OFF_M, RESOLUTION_M / 10)
-    rows = ((TRUTH.y_m + along_m * math.sin(bearing_rad)) / RESOLUTION_M).astype(int)
-    cols = ((TRUTH.x_m + along_m * math.cos(bearing_rad)) / RESOLUTION_M).astype(int)
-    met = np.flatnonzero(occupied[rows, cols])
+    ahead_rad = bearing_rad + pose.heading_rad
+    rows = ((pose.y_m + along_m * math.sin(ahead_rad)) / RESOLUTION_M).astype(int)
+    cols = ((pose.x_m + along_m * math.cos(ahead_rad)) / RESOLUTION_M).astype(int)
+    met = np.flatnonzero(occupied[rows.clip(0, len(occupied) - 1), cols.clip(0, len(occupied) - 1)])
     return float(along_m[met[0]]) if met.size else CUT_OFF_M

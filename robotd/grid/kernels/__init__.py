@@ -33,6 +33,7 @@ except ImportError as error:
     squared_distances, grow_disk, pack_cells = twins.squared_distances, twins.grow_disk, twins.pack_cells
     wall_codes, skip_codes = twins.wall_codes, twins.skip_codes
     fit_poses, cast_beams = twins.fit_poses, twins.cast_beams
+    make_planes, renew_planes, search_poses = twins.make_planes, twins.renew_planes, twins.search_poses
 else:
     IN_USE = KernelsInUse(
         compiled=True, instructions=native.instruction_set(), reason="compiled when robotd was installed"
@@ -42,6 +43,7 @@ else:
     squared_distances, grow_disk, pack_cells = native.squared_distances, native.grow_disk, native.pack_cells
     wall_codes, skip_codes = native.wall_codes, native.skip_codes
     fit_poses, cast_beams = native.fit_poses, native.cast_beams
+    make_planes, renew_planes, search_poses = native.make_planes, native.renew_planes, native.search_poses
 
 __all__ = [
     "IN_USE",
@@ -54,7 +56,10 @@ __all__ = [
     "greatest",
     "grow_disk",
     "insert_rays",
+    "make_planes",
     "pack_cells",
+    "renew_planes",
+    "search_poses",
     "skip_codes",
     "squared_distances",
     "wall_codes",

@@ -5,7 +5,7 @@ from pathlib import Path
 from cffi import FFI
 
 HERE = Path(__file__).parent
-KERNELS = ("cast", "count", "distance", "draw", "fit", "grow", "insert", "pack")
+KERNELS = ("cast", "count", "distance", "draw", "fit", "grow", "insert", "pack", "planes", "search")
 """Each a source and the header that declares what Python calls."""
 
 builder = FFI()
@@ -17,7 +17,15 @@ builder.set_source(
     include_dirs=["robotd/grid/kernels/c"],
     depends=sorted(f"robotd/grid/kernels/c/{header.name}" for header in HERE.glob("*.h")),
     # Contraction would round differently from NumPy; no -march: a wheel must run elsewhere.
-    extra_compile_args=["-std=gnu99", "-O3", "-ffp-contract=off", "-fvisibility=hidden", "-Wall", "-Wextra"],
+    extra_compile_args=[
+        "-std=gnu99",
+        "-O3",
+        "-ffp-contract=off",
+        "-fvisibility=hidden",
+        "-Wall",
+        "-Wextra",
+        "-Wno-psabi",
+    ],
     extra_link_args=["-pthread"],
     optional=True,
     py_limited_api=True,

@@ -18,6 +18,7 @@ from robotd.grid.kernels.native.fitting import fit_poses
 from robotd.grid.kernels.native.growing import grow_disk
 from robotd.grid.kernels.native.inserting import insert_rays
 from robotd.grid.kernels.native.packing import pack_cells
+from robotd.grid.kernels.native.searching import make_planes, renew_planes, search_poses
 
 __all__ = [
     "INSTRUCTION_SETS",
@@ -30,7 +31,10 @@ __all__ = [
     "grow_disk",
     "insert_rays",
     "instruction_set",
+    "make_planes",
     "pack_cells",
+    "renew_planes",
+    "search_poses",
     "skip_codes",
     "squared_distances",
     "wall_codes",

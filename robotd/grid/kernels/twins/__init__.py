@@ -8,6 +8,7 @@ from robotd.grid.kernels.twins.fitting import fit_poses
 from robotd.grid.kernels.twins.growing import grow_disk
 from robotd.grid.kernels.twins.inserting import insert_rays
 from robotd.grid.kernels.twins.packing import pack_cells
+from robotd.grid.kernels.twins.searching import make_planes, renew_planes, search_poses
 
 __all__ = [
     "at_least",
@@ -18,7 +19,10 @@ __all__ = [
     "greatest",
     "grow_disk",
     "insert_rays",
+    "make_planes",
     "pack_cells",
+    "renew_planes",
+    "search_poses",
     "skip_codes",
     "squared_distances",
     "wall_codes",

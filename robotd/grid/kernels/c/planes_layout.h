@@ -1,0 +1,69 @@
+/* Where things lie in the planes of a search_map: shared by what fills them and what reads them. */
+#include <stddef.h>
+#include <stdint.h>
+
+#include "planes.h"
+
+#define WINDOW 16
+#define NEAR_MAX 63
+#define RING 16 /* offsets of a body's end from its head that have a key reach so far */
+
+enum { FREE, BLOCKING, GROWN };
+
+static inline int32_t up(int32_t value, int32_t step)
+{
+    return (value + step - 1) / step;
+}
+
+static inline int32_t floor_div(int32_t value, int32_t step) /* step is a power of two */
+{
+    return (value & -step) / step;
+}
+
+static inline int32_t clamp(int32_t value, int32_t low, int32_t high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+/* Cells: columns of 16, and rows with a window's margin on either side. */
+static inline int32_t strips(const search_map *map)
+{
+    return up(map->cols, WINDOW);
+}
+
+static inline int32_t strip_size(const search_map *map)
+{
+    return (up(map->rows, WINDOW) + 2) * WINDOW;
+}
+
+static inline uint16_t *cell_plane(const search_map *map, int32_t which)
+{
+    return map->cells + (size_t)which * (size_t)(strips(map) + 4) * (size_t)strip_size(map);
+}
+
+/* Pooled: words of 64 blocks, eight rows of blocks before the map, at least nine after it. */
+static inline int32_t block_rows(const search_map *map)
+{
+    return up(up(map->rows, map->pool), 8) * 8;
+}
+
+static inline int32_t block_words(const search_map *map)
+{
+    return up(up(map->cols, map->pool), 64);
+}
+
+static inline int32_t pooled_stride(const search_map *map)
+{
+    return block_rows(map) + 24;
+}
+
+static inline size_t phase_size(const search_map *map)
+{
+    return (size_t)(block_words(map) + 2) * (size_t)pooled_stride(map);
+}
+
+/* Whether a head far outside can be met: not if it ends nothing, or if the body has been blocked before. */
+static inline int32_t far_heads(const search_map *map, int32_t key)
+{
+    return map->outside_ends && !(map->outside_blocks && key > 0);
+}

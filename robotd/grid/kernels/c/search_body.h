@@ -1,0 +1,236 @@
+/* The search of one heading, written once and compiled for several instruction sets: search.c includes this file with
+ *   NAME(x)          the name of x for this instruction set
+ *   TARGET           the attribute that allows its instructions
+ *   VECTOR           how many bytes a vector has
+ *   FUNNEL(a, b, n)  the low 64 bits of (b, a) >> n, lane by lane, 0 <= n < 64
+ *   XOR3(a, b, c)    a ^ b ^ c           MAJORITY(a, b, c)  two of them or more
+ */
+
+typedef uint64_t NAME(vec) __attribute__((vector_size(VECTOR), aligned(8), may_alias));
+#define VEC NAME(vec)
+#define LANES ((int)(VECTOR / sizeof(uint64_t)))
+#define VECTORS (8 / LANES)
+
+/* Bound the ranks of all blocks of a tile from above: how many heads may lie on what ends beams. */
+static TARGET void NAME(bound_tile)(const search_job *job, const pooled_beam *beams, int32_t count, const int32_t *tile,
+                                    uint64_t *counter)
+{
+    const search_map *map = job->map;
+    const int32_t words = block_words(map), rows = block_rows(map), bits = job->bits;
+    const size_t stride = (size_t)pooled_stride(map);
+    VEC n[BITS_MAX * VECTORS];
+    memset(n, 0, (size_t)(bits * 8) * sizeof(uint64_t));
+    for (int32_t first = 0; first < count; first += 7) {
+        const uint64_t *from[7];
+        uint64_t shift[7];
+        for (int32_t i = 0; i < 7; i++) {
+            const pooled_beam *b = beams + (first + i < count ? first + i : first);
+            int32_t word = tile[0] + b->word, row = tile[1] + b->row;
+            const int outside = word < -2 || word > words || (word == -2 && b->shift < 2);
+            word = outside ? words : word;
+            row = row < -8 || row > rows + 1 ? rows + 1 : row;
+            shift[i] = outside ? 1 : b->shift;
+            from[i] = b->phase + (ptrdiff_t)(word + 2) * (ptrdiff_t)stride + (row + 8);
+        }
+        for (int v = 0; v < VECTORS; v++) {
+            VEC plane[7];
+            for (int32_t i = 0; i < 7; i++) {
+                const uint64_t *at = from[i] + v * LANES;
+                const uint64_t counted = first + i < count ? ~(uint64_t)0 : 0;
+                plane[i] = FUNNEL(*(const VEC *)at, *(const VEC *)(at + stride), shift[i]) & counted;
+            }
+            const VEC sum = XOR3(plane[0], plane[1], plane[2]), more = XOR3(plane[3], plane[4], plane[5]);
+            const VEC carry1 = MAJORITY(plane[0], plane[1], plane[2]), carry2 = MAJORITY(plane[3], plane[4], plane[5]);
+            const VEC carry3 = MAJORITY(sum, more, plane[6]);
+            const VEC ones = XOR3(sum, more, plane[6]), twos = XOR3(carry1, carry2, carry3);
+            const VEC fours = MAJORITY(carry1, carry2, carry3);
+            const VEC n0 = n[v], n1 = n[VECTORS + v], n2 = n[2 * VECTORS + v];
+            VEC carry = n0 & ones;
+            n[v] = n0 ^ ones;
+            n[VECTORS + v] = XOR3(n1, twos, carry);
+            carry = MAJORITY(n1, twos, carry);
+            n[2 * VECTORS + v] = XOR3(n2, fours, carry);
+            carry = MAJORITY(n2, fours, carry);
+            for (int32_t bit = 3; bit < bits; bit++) {
+                const VEC old = n[bit * VECTORS + v];
+                n[bit * VECTORS + v] = old ^ carry;
+                carry &= old;
+            }
+        }
+    }
+    memcpy(counter, n, (size_t)(bits * 8) * sizeof(uint64_t));
+}
+
+/* What the cells of a window see at an offset. */
+static inline TARGET window NAME(seen)(const search_map *map, const uint16_t *plane, int32_t row, int32_t col)
+{
+    const int32_t stride = strip_size(map);
+    const int32_t strip = clamp(floor_div(col, WINDOW), -2, strips(map));
+    const uint16_t *at = plane + (ptrdiff_t)(strip + 2) * stride + clamp(row, -WINDOW, stride - 2 * WINDOW) + WINDOW;
+    const int shift = col & (WINDOW - 1);
+    const window low = *(const window *)at, high = *(const window *)(at + stride);
+    return low >> shift | high << 1 << (WINDOW - 1 - shift);
+}
+
+static inline TARGET int NAME(any)(window cells)
+{
+    const pair four = (pair)cells;
+    return (four[0] | four[1] | four[2] | four[3]) != 0;
+}
+
+/* The cells from which a beam may be feasible: its head is right, and the end of its body is not blocked. */
+static inline TARGET window NAME(maybe)(const search_map *map, const beam *b, int32_t row, int32_t col)
+{
+    window blocked = NAME(seen)(map, cell_plane(map, BLOCKING), row + b->last[0], col + b->last[1]);
+    if (map->blocked_by > 1)
+        blocked &= NAME(seen)(map, cell_plane(map, BLOCKING), row + b->before[0], col + b->before[1]);
+    if (b->is_miss)
+        return ~blocked;
+    return NAME(seen)(map, cell_plane(map, GROWN), row + b->head[0], col + b->head[1]) & ~blocked;
+}
+
+/* Add one miss to the counters of some cells; returns those whose counters overflow. */
+static inline TARGET window NAME(add_one)(sheet *at, window carry)
+{
+    for (int32_t bit = 0; bit < at->bits; bit++) {
+        const window old = at->misses[bit];
+        at->misses[bit] = old ^ carry;
+        carry &= old;
+    }
+    return carry;
+}
+
+/* Count what the ends of the beams say; returns whether any cell is left. Counters begin so that they overflow with
+ * one miss more than allowed. */
+static TARGET int NAME(count_ends)(const search_job *job, const beam *beams, sheet *at, int32_t allowed)
+{
+    const search_map *map = job->map;
+    const int32_t count = job->reading_count;
+    at->bits = 3;
+    while (allowed >> at->bits)
+        at->bits++;
+    at->start = (1 << at->bits) - 1 - allowed;
+    for (int32_t bit = 0; bit < at->bits; bit++)
+        at->misses[bit] = (window){0} - (uint16_t)((at->start >> bit) & 1);
+    for (int32_t first = 0; first < count; first += 7) {
+        window miss[7] = {{0}};
+        for (int32_t i = 0; i < 7 && first + i < count; i++) {
+            at->maybe[first + i] = NAME(maybe)(map, beams + first + i, at->row, at->col);
+            miss[i] = ~at->maybe[first + i];
+        }
+        const window sum = XOR3_(miss[0], miss[1], miss[2]), more = XOR3_(miss[3], miss[4], miss[5]);
+        const window carry1 = MAJORITY_(miss[0], miss[1], miss[2]), carry2 = MAJORITY_(miss[3], miss[4], miss[5]);
+        const window carry3 = MAJORITY_(sum, more, miss[6]);
+        const window ones = XOR3_(sum, more, miss[6]), twos = XOR3_(carry1, carry2, carry3);
+        const window fours = MAJORITY_(carry1, carry2, carry3);
+        window *n = at->misses;
+        window carry = n[0] & ones;
+        n[0] ^= ones;
+        const window n1 = n[1], n2 = n[2];
+        n[1] = XOR3_(n1, twos, carry);
+        carry = MAJORITY_(n1, twos, carry);
+        n[2] = XOR3_(n2, fours, carry);
+        carry = MAJORITY_(n2, fours, carry);
+        for (int32_t bit = 3; bit < at->bits; bit++) {
+            const window old = n[bit];
+            n[bit] = old ^ carry;
+            carry &= old;
+        }
+        at->alive &= ~carry;
+        if (!NAME(any)(at->alive))
+            return 0;
+    }
+    return 1;
+}
+
+/* The cells, among some, from which a body meets too many cells that block. Steps are skipped as long as nothing that
+ * blocks is near the middle of the cells that are left. */
+static TARGET window NAME(blocked)(const search_map *map, const beam *b, const sheet *at, window cells)
+{
+    window once = {0}, blocked = {0};
+    for (int32_t k = b->start[0] == 0 && b->start[1] == 0; k < b->cells;) {
+        const int32_t row = b->start[0] + whole(0.5 + k * b->step[0]), col = b->start[1] + whole(0.5 + k * b->step[1]);
+        const int32_t clear = clearance(map, at->middle[0] + row, at->middle[1] + col) - at->radius;
+        if (clear > 0) {
+            k += clear;
+            continue;
+        }
+        const window here = NAME(seen)(map, cell_plane(map, BLOCKING), at->row + row, at->col + col);
+        if (map->blocked_by > 1)
+            blocked |= once & here;
+        else
+            blocked |= here;
+        once |= here;
+        if (!NAME(any)(cells & ~blocked))
+            break;
+        k++;
+    }
+    return blocked & cells;
+}
+
+static TARGET int NAME(count_bodies)(const search_job *job, const beam *beams, sheet *at)
+{
+    surround(at);
+    for (int32_t i = 0; i < job->reading_count; i++) {
+        const window cells = at->alive & at->maybe[i];
+        if (!NAME(any)(cells))
+            continue;
+        const window blocked = NAME(blocked)(job->map, beams + i, at, cells);
+        if (!NAME(any)(blocked))
+            continue;
+        const window dead = NAME(add_one)(at, blocked);
+        if (!NAME(any)(at->alive & dead))
+            continue;
+        at->alive &= ~dead;
+        if (!NAME(any)(at->alive))
+            return 0;
+        surround(at);
+    }
+    return 1;
+}
+
+/* Draw the beams of one heading; ray.py and probe.py say how. */
+static TARGET void NAME(draw_heading)(const search_job *job, int32_t heading, int32_t stride, beam *beams)
+{
+    const double *h = job->headings + 2 * (size_t)heading;
+    for (int32_t i = 0, reading = 0; i < job->reading_count; i++) {
+        const double *r = job->readings + 5 * (size_t)reading;
+        const double sine = job->sines[(size_t)heading * (size_t)job->reading_count + (size_t)reading];
+        const double cosine = job->cosines[(size_t)heading * (size_t)job->reading_count + (size_t)reading];
+        const double start_row = r[2] == 0.0 && r[3] == 0.0 ? 0.0 : (h[0] * r[2] + h[1] * r[3]) / job->resolution_m;
+        const double start_col = r[2] == 0.0 && r[3] == 0.0 ? 0.0 : (h[1] * r[2] - h[0] * r[3]) / job->resolution_m;
+        const double range_cells = r[1] / job->resolution_m;
+        const double tall = sine < 0.0 ? -sine : sine, wide = cosine < 0.0 ? -cosine : cosine;
+        const double dominant = tall > wide ? tall : wide;
+        const double shortened = range_cells - job->error_radius_cells;
+        const double bounded = shortened < job->reach_cells ? shortened : job->reach_cells;
+        beam *b = beams + i;
+        b->step[0] = sine / dominant;
+        b->step[1] = cosine / dominant;
+        b->start[0] = nearest(start_row);
+        b->start[1] = nearest(start_col);
+        b->cells = bounded > 0.0 ? -whole(-(bounded * dominant)) : 1;
+        b->cells = b->cells < 1 ? 1 : b->cells;
+        b->is_miss = r[4] > 0.0;
+        b->head[0] = nearest(start_row + range_cells * sine);
+        b->head[1] = nearest(start_col + range_cells * cosine);
+        for (int axis = 0; axis < 2; axis++) {
+            b->last[axis] = b->start[axis] + whole(0.5 + (b->cells - 1) * b->step[axis]);
+            b->before[axis] = b->cells < 2 ? 0 : b->start[axis] + whole(0.5 + (b->cells - 2) * b->step[axis]);
+        }
+        reading += stride;
+        reading -= reading < job->reading_count ? 0 : job->reading_count;
+    }
+}
+
+static const kernel NAME(kernel) = {NAME(draw_heading), NAME(bound_tile), NAME(count_ends), NAME(count_bodies)};
+
+#undef VEC
+#undef LANES
+#undef VECTORS
+#undef NAME
+#undef TARGET
+#undef VECTOR
+#undef FUNNEL
+#undef XOR3
+#undef MAJORITY

@@ -1,0 +1,111 @@
+"""What the search keeps of a map: bitmaps in windows and in blocks, and distances; filled by the kernels."""
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.grid.ray import ray_steps
+
+Window = tuple[slice, slice]
+"""Rows and columns, from a first to before a last."""
+
+RING = 16
+"""Bodies that end this near to their head are told apart by where they end."""
+_SECTORS = 16
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ground:
+    """A map as the search reads it; the arrays of :class:`robotd.localization.obstacles.Obstacles`."""
+
+    free: NDArray[np.bool_]
+    blocking: NDArray[np.bool_]
+    grown: NDArray[np.bool_]
+    """All ``bool[rows, cols]``, contiguous."""
+    outside_blocks: bool
+    outside_ends: bool
+    blocked_by: int
+    error_radius_cells: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Planes:
+    """See ``c/planes.h``; in bytes for every cell: 0.4 for ``cells``, 1 for ``near``, and for ``pooled`` 4 to 9."""
+
+    ground: Ground
+    pool: int
+    key_of: NDArray[np.int8]
+    """``int8[33, 33]``: a number from 1 for where a body ends, seen from its head; 0 where none does."""
+    cells: NDArray[np.uint16]
+    pooled: NDArray[np.uint64]
+    near: NDArray[np.uint8]
+
+    @property
+    def keys(self) -> int:
+        """How many keys there are, 0 included."""
+        return int(self.key_of.max()) + 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Question:
+    """What is asked of a search."""
+
+    readings: NDArray[np.float64]
+    """``float64[n, 5]``, as :func:`robotd.grid.readings.numbers_of` returns them; at least one, at most 65535."""
+    headings_rad: NDArray[np.float64]
+    resolution_m: float
+    slack: int
+    """Poses are wanted that explain so many readings fewer than the best."""
+    least_rank: int
+    """Nothing is wanted if the best explains fewer."""
+    limit: int
+    """How many poses at most."""
+    area: tuple[int, int, int, int]
+    """Rows from the first to before the second, columns from the third to before the fourth; inside the map."""
+    by_blocks: bool
+    """Whether to bound blocks of cells first; for an area of a few windows it does not pay."""
+    spans: NDArray[np.int32]
+    """``int32[rows of the area, 2]``: in each row, the first column where poses are wanted, and the one
+    after the last."""
+    reach_cells: float
+    """Where bodies end at the latest; more than the map is wide and high changes nothing."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """What a search found."""
+
+    best_rank: int
+    """The greatest rank, or 0 if it is less than what was asked for."""
+    least: int
+    """Every pose of at least this rank is here and no other: the best rank less the slack, at least 1; or more, where
+    there are more poses than the limit: then the least rank that leaves no more."""
+    poses: NDArray[np.int32]
+    """``int32[n, 4]``, ``(heading, row, col, rank)`` in this order."""
+
+
+@functools.lru_cache(maxsize=8)
+def endings(error_radius_cells: float, cells: int, reach_cells: int) -> NDArray[np.int8]:
+    """Return the sector of every offset at which bodies end from their heads, ``int8[33, 33]``, 0 where none does.
+
+    Found by drawing beams: an ending that was overlooked costs time and changes nothing.
+
+    Args:
+        error_radius_cells: by how much bodies are shorter.
+        cells: how many of the last cells of a body are meant.
+        reach_cells: endings farther away have no sector.
+    """
+    bearings_rad = np.repeat(np.arange(720) * (np.pi / 360), 40)
+    lengths = (error_radius_cells + 8.0 + np.tile(np.arange(40) / 20, 720))[:, None]
+    steps = ray_steps(bearings_rad)
+    ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)
+    counts = np.ceil((lengths - error_radius_cells) * np.abs(ahead).max(axis=1, keepdims=True))
+    sectors = np.zeros((2 * RING + 1, 2 * RING + 1), np.int8)
+    for back in range(1, cells + 1):
+        offsets = (np.floor(0.5 + (counts - back) * steps) - np.floor(0.5 + lengths * ahead)).astype(np.intp)
+        row, col = offsets[(np.abs(offsets) <= min(reach_cells, RING)).all(axis=1)].T
+        turns = np.arctan2(row, col) / (2 * np.pi)
+        sectors[row + RING, col + RING] = 1 + np.floor(turns % 1.0 * _SECTORS) % _SECTORS
+    return sectors
