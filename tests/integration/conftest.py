@@ -1,60 +1,13 @@
-"""A whole daemon on a whole simulated robot, in memory and in virtual time."""
+"""How integration tests come by a living daemon."""
 
-import asyncio
-import contextlib
-from collections.abc import AsyncIterator, Callable
+from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
-from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from robotd.app.compose import Daemon, compose
-from robotd.app.daemon import new_journal
-from robotd.config import Config
-from robotd.core.broadcast import Subscription
-from robotd.mission.compute import Compute
-from robotd.mission.events import Event, MissionPhase, MissionProgress
-from robotd.mission.requests import Mission
-from robotd.recording.preroll import PrerollJournal
-from robotd.sim.robot import EmulatedRobot
-from robotd.sim.runtime import connectors
-
-LEASE_S = 10_000.0
-
-
-class AtOnce:
-    """Computes where it is asked; the virtual loop would do the same in its executor."""
-
-    async def run(self, name: str, function: Callable[..., object], *args: object) -> object:
-        return function(*args)
-
-
-@dataclass(frozen=True, slots=True)
-class Living:
-    """A daemon that is up, the robot under it, and everything it says."""
-
-    daemon: Daemon
-    robot: EmulatedRobot
-    journal: PrerollJournal
-    events: Subscription[Event]
-
-    async def do(self, mission: Mission) -> tuple[list[Event], MissionProgress]:
-        """Carry out a mission and return all that was said, and how it ended."""
-        mission_id = self.daemon.control.start(mission, LEASE_S)
-        said: list[Event] = []
-        async for event in self.events:
-            said.append(event)
-            if isinstance(event, MissionProgress) and event.mission_id == mission_id and event.is_last:
-                return said, event
-        raise AssertionError("a subscription never ends")
-
-    async def done(self, mission: Mission) -> list[Event]:
-        """Carry out a mission that must succeed."""
-        said, end = await self.do(mission)
-        assert end.phase is MissionPhase.DONE, end
-        return said
-
+from tests.integration.living import Living, living
 
 Live = Callable[..., AbstractAsyncContextManager[Living]]
 
@@ -62,43 +15,4 @@ Live = Callable[..., AbstractAsyncContextManager[Living]]
 @pytest.fixture
 def live(tmp_path: Path) -> Live:
     """How to bring a daemon to life on an emulated robot: ``async with live(robot) as it``."""
-
-    @contextlib.asynccontextmanager
-    async def bring(robot: EmulatedRobot, config: Config | None = None, *, armed: bool = True) -> AsyncIterator[Living]:
-        config = in_directory(config or Config(), tmp_path)
-        journal = new_journal(config)
-        compute: Compute = AtOnce()  # type: ignore[assignment]  # object for any T: it hands back what it is given
-        async with connectors(robot) as connects:
-            daemon = compose(config, connects, compute, journal)
-            with daemon.control.events.subscribe(depth=1_000_000) as events:
-                tasks = [asyncio.create_task(part, name=name) for name, part in daemon.parts().items()]
-                try:
-                    await until_ready(daemon)
-                    if armed:
-                        await daemon.control.arm()
-                    yield Living(daemon, robot, journal, events)
-                finally:
-                    await daemon.control.stop("the test is over")
-                    for task in tasks:
-                        task.cancel()
-                    await asyncio.gather(*tasks, return_exceptions=True)
-
-    return bring
-
-
-def in_directory(config: Config, directory: Path) -> Config:
-    return replace(
-        config,
-        maps=replace(config.maps, dir=str(directory / "maps")),
-        recording=replace(config.recording, dir=str(directory / "recordings")),
-    )
-
-
-async def until_ready(daemon: Daemon) -> None:
-    async with asyncio.timeout(10.0):
-        with contextlib.ExitStack() as stack:
-            changes = {
-                device.name: stack.enter_context(device.status_changes.subscribe()) for device in daemon.robot.devices
-            }
-            while daemon.robot.absent:
-                await changes[daemon.robot.absent[0]].get()
+    return partial(living, tmp_path)

@@ -20,7 +20,8 @@ from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.world import load_world
-from tests.integration.conftest import Live, Living, until_ready
+from tests.integration.conftest import Live
+from tests.integration.living import Living, until_ready
 
 pytestmark = pytest.mark.slow
 

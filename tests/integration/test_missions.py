@@ -17,7 +17,8 @@ from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.recording.entries import CommandEntry
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.world import load_world
-from tests.integration.conftest import Live, Living
+from tests.integration.conftest import Live
+from tests.integration.living import Living
 
 QUICK = replace(Config(), sweep=SweepSettings(readings=120))
 

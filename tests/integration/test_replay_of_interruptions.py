@@ -12,7 +12,8 @@ from robotd.mission.modes import Mode
 from robotd.mission.requests import LocalizeMission, MapMission
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
-from tests.integration.conftest import Live, Living
+from tests.integration.conftest import Live
+from tests.integration.living import Living
 
 pytestmark = pytest.mark.slow
 

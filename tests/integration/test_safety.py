@@ -29,7 +29,7 @@ from robotd.recording.preroll import PrerollJournal
 from robotd.sim.robot import DEVICES, SimulatedRobot, own_board
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
-from tests.integration.conftest import in_directory, until_ready
+from tests.integration.living import in_directory, until_ready
 
 LEASE_S = 0.5
 REST_WITHIN_S = 1.5

@@ -24,7 +24,7 @@ from robotd.server.lock import lock_directory
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
-from tests.integration.conftest import until_ready
+from tests.integration.living import until_ready
 
 
 @pytest.fixture(name="short")
