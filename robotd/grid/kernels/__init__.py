@@ -32,8 +32,8 @@ except ImportError as error:
     greatest, at_least, insert_rays = twins.greatest, twins.at_least, twins.insert_rays
     squared_distances, grow_disk, pack_cells = twins.squared_distances, twins.grow_disk, twins.pack_cells
     wall_codes, skip_codes = twins.wall_codes, twins.skip_codes
-    fit_poses, cast_beams = twins.fit_poses, twins.cast_beams
     make_planes, renew_planes, search_poses = twins.make_planes, twins.renew_planes, twins.search_poses
+    fit_poses, scan_poses, cast_beams = twins.fit_poses, twins.scan_poses, twins.cast_beams
 else:
     IN_USE = KernelsInUse(
         compiled=True, instructions=native.instruction_set(), reason="compiled when robotd was installed"
@@ -42,8 +42,8 @@ else:
     greatest, at_least, insert_rays = native.greatest, native.at_least, native.insert_rays
     squared_distances, grow_disk, pack_cells = native.squared_distances, native.grow_disk, native.pack_cells
     wall_codes, skip_codes = native.wall_codes, native.skip_codes
-    fit_poses, cast_beams = native.fit_poses, native.cast_beams
     make_planes, renew_planes, search_poses = native.make_planes, native.renew_planes, native.search_poses
+    fit_poses, scan_poses, cast_beams = native.fit_poses, native.scan_poses, native.cast_beams
 
 __all__ = [
     "IN_USE",
@@ -59,6 +59,7 @@ __all__ = [
     "make_planes",
     "pack_cells",
     "renew_planes",
+    "scan_poses",
     "search_poses",
     "skip_codes",
     "squared_distances",

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 REACH_CELLS = 8
 """Farther than this from a wall all is equally far."""
+FAR_CODE = REACH_CELLS * REACH_CELLS
 DEPTH_CELLS = 4
 """Deeper than this in a wall all is equally deep."""
 SKIP_MAX = 15
@@ -44,3 +45,21 @@ class Fits:
     is greater than if neighbours erred independently."""
     beyond: NDArray[np.float64]
     """``float64[n, heads]``: how far each head lies beyond its wall, negative short of it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lattice:
+    """Poses at even steps round a start."""
+
+    start: NDArray[np.float64]
+    """``float64[3]``: x, y [cells], heading [rad]."""
+    steps: NDArray[np.int32]
+    """``int32[6]``: first and last number of steps along x, y and heading; none is empty."""
+    step_cells: int
+    step_rad: float
+
+    @property
+    def places(self) -> int:
+        """How many poses share a heading."""
+        x_first, x_last, y_first, y_last = self.steps[:4].tolist()
+        return int((x_last - x_first + 1) * (y_last - y_first + 1))

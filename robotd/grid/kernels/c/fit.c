@@ -234,3 +234,48 @@ void fit_poses(const fit_job *job)
         judge(job, &f, job->quality + 3 * (size_t)number, job->covariances + 9 * (size_t)number);
     }
 }
+
+/* Add what one head costs at all poses of one heading. */
+static inline void add_head(const scan_job *job, double x, double y)
+{
+    const int32_t *steps = job->steps, wide = steps[1] - steps[0] + 1, step = job->step_cells;
+    const double col = floor(x) + steps[0] * (double)step, row = floor(y) + steps[2] * (double)step;
+    const double last_col = floor(x) + steps[1] * (double)step, last_row = floor(y) + steps[3] * (double)step;
+    int32_t *totals = job->totals;
+    if (col >= 0.0 && row >= 0.0 && last_col < job->cols && last_row < job->rows) {
+        const int8_t *codes = job->codes + (size_t)row * (size_t)job->cols + (size_t)col;
+        for (int32_t i = steps[2]; i <= steps[3]; i++, codes += (size_t)step * (size_t)job->cols)
+            for (int32_t j = 0; j < wide; j++)
+                *totals++ += job->costs[codes[j * step] + 128];
+        return;
+    }
+    for (double at_row = row; at_row <= last_row; at_row += step)
+        for (double at_col = col; at_col <= last_col; at_col += step) {
+            const int32_t inside = at_col >= 0.0 && at_row >= 0.0 && at_col < job->cols && at_row < job->rows;
+            *totals++ += inside ? job->costs[job->codes[(size_t)at_row * (size_t)job->cols + (size_t)at_col] + 128]
+                                : job->far;
+        }
+}
+
+int32_t scan_poses(const scan_job *job)
+{
+    const int32_t *steps = job->steps, wide = steps[1] - steps[0] + 1, count = wide * (steps[3] - steps[2] + 1);
+    int32_t least = INT32_MAX;
+    for (int32_t turn = steps[4]; turn <= steps[5]; turn++) {
+        const double heading = job->start[2] + turn * job->step_rad, turned_cos = cos(heading), turned_sin = sin(heading);
+        memset(job->totals, 0, (size_t)count * sizeof *job->totals);
+        for (int32_t i = 0; i < job->head_count; i++) {
+            const double *head = job->heads + 2 * (size_t)i;
+            add_head(job, job->start[0] + (turned_cos * head[0] - turned_sin * head[1]),
+                     job->start[1] + (turned_sin * head[0] + turned_cos * head[1]));
+        }
+        for (int32_t i = 0; i < count; i++)
+            if (job->totals[i] < least) {
+                least = job->totals[i];
+                job->best[0] = steps[0] + i % wide;
+                job->best[1] = steps[2] + i / wide;
+                job->best[2] = turn;
+            }
+    }
+    return least;
+}

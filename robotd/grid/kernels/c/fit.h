@@ -18,3 +18,22 @@ typedef struct {
 } fit_job;
 
 void fit_poses(const fit_job *job);
+
+typedef struct {
+    const int8_t *codes;       /* [rows][cols] */
+    int32_t rows;
+    int32_t cols;
+    const int32_t *costs;      /* [256], by code + 128 */
+    int32_t far;               /* the cost of a head outside the map */
+    const double *heads;       /* [head_count][2] */
+    int32_t head_count;
+    const double *start;       /* [3] */
+    const int32_t *steps;      /* [6]: first and last number of steps along x, y and heading */
+    int32_t step_cells;
+    double step_rad;
+    int32_t *totals;           /* one for each step along x and y, for the kernel's own use */
+    int32_t *best;             /* [3]: number of steps along x, y and heading */
+} scan_job;
+
+/* Find the pose of a lattice whose heads cost least; returns that cost. The first of several, x running fastest. */
+int32_t scan_poses(const scan_job *job);

@@ -14,7 +14,7 @@ from robotd.grid.kernels.native.counting import (
 )
 from robotd.grid.kernels.native.distances import squared_distances
 from robotd.grid.kernels.native.drawing import draw_beams
-from robotd.grid.kernels.native.fitting import fit_poses
+from robotd.grid.kernels.native.fitting import fit_poses, scan_poses
 from robotd.grid.kernels.native.growing import grow_disk
 from robotd.grid.kernels.native.inserting import insert_rays
 from robotd.grid.kernels.native.packing import pack_cells
@@ -34,6 +34,7 @@ __all__ = [
     "make_planes",
     "pack_cells",
     "renew_planes",
+    "scan_poses",
     "search_poses",
     "skip_codes",
     "squared_distances",

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.fitting import Fits
-from robotd.grid.kernels.native.buffers import floats
+from robotd.grid.kernels.fitting import FAR_CODE, Fits, Lattice
+from robotd.grid.kernels.native.buffers import floats, ints
 
 
 def fit_poses(
@@ -30,3 +30,20 @@ def fit_poses(
     job.errors = floats(errors)
     lib.fit_poses(job)
     return fits
+
+
+def scan_poses(
+    codes: NDArray[np.int8], costs: NDArray[np.int32], heads: NDArray[np.float64], lattice: Lattice
+) -> tuple[NDArray[np.int32], int]:
+    """See the twin."""
+    best = np.zeros(3, np.int32)
+    totals = np.empty(lattice.places, np.int32)
+    job = ffi.new("scan_job *")
+    job.codes, job.costs = ffi.from_buffer("int8_t[]", codes), ints(costs)
+    job.rows, job.cols = codes.shape
+    job.far = int(costs[FAR_CODE + 128])
+    job.heads, job.head_count = floats(heads), len(heads)
+    job.start, job.steps = floats(lattice.start), ints(lattice.steps)
+    job.step_cells, job.step_rad = lattice.step_cells, lattice.step_rad
+    job.totals, job.best = ints(totals), ints(best)
+    return best, int(lib.scan_poses(job))

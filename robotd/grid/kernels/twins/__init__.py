@@ -4,7 +4,7 @@ from robotd.grid.kernels.twins.casting import cast_beams, skip_codes, wall_codes
 from robotd.grid.kernels.twins.counting import at_least, count_feasible, greatest
 from robotd.grid.kernels.twins.distances import squared_distances
 from robotd.grid.kernels.twins.drawing import draw_beams
-from robotd.grid.kernels.twins.fitting import fit_poses
+from robotd.grid.kernels.twins.fitting import fit_poses, scan_poses
 from robotd.grid.kernels.twins.growing import grow_disk
 from robotd.grid.kernels.twins.inserting import insert_rays
 from robotd.grid.kernels.twins.packing import pack_cells
@@ -22,6 +22,7 @@ __all__ = [
     "make_planes",
     "pack_cells",
     "renew_planes",
+    "scan_poses",
     "search_poses",
     "skip_codes",
     "squared_distances",

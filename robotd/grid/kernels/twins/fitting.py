@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid.kernels.fitting import (
+    FAR_CODE,
     HEADS_MIN,
     LAGS,
     LEAST_SPREAD_CELLS,
@@ -14,6 +15,7 @@ from robotd.grid.kernels.fitting import (
     UNKNOWN_CELLS,
     UNKNOWN_RAD,
     Fits,
+    Lattice,
 )
 
 _ROUNDS_MAX = 32
@@ -116,7 +118,7 @@ def _interpolated(
     low, high = corner + a * across, above + a * opposite
     slope_y = high - low
     distance, slope_x = low + b * slope_y, across + b * (opposite - across)
-    far = float(distances[REACH_CELLS * REACH_CELLS + 128])
+    far = float(distances[FAR_CODE + 128])
     return np.where(inside, distance, far), np.where(inside, slope_x, 0.0), np.where(inside, slope_y, 0.0)
 
 
@@ -214,3 +216,40 @@ def _together(errors: NDArray[np.float64]) -> float:
 def _sum(values: NDArray[np.float64]) -> float:
     """Add up one after the other, as C does."""
     return float(np.add.accumulate(values)[-1]) if len(values) else 0.0
+
+
+def scan_poses(
+    codes: NDArray[np.int8], costs: NDArray[np.int32], heads: NDArray[np.float64], lattice: Lattice
+) -> tuple[NDArray[np.int32], int]:
+    """Return the pose of a lattice at which the heads cost least, and how much.
+
+    Args:
+        codes: ``int8[rows, cols]``, squared distances.
+        costs: ``int32[256]``, what a head costs in a cell, by ``code + 128``; outside the map as far from any wall.
+        heads: ``float64[m, 2]``, ``(x, y)`` in the robot frame [cells].
+        lattice: the poses.
+
+    Returns:
+        ``int32[3]``, the number of steps along x, y and heading, of several equal ones the first, x running fastest;
+        and the cost.
+
+    O(poses m).
+    """
+    x_first, x_last, y_first, y_last, first, last = lattice.steps.tolist()
+    cols = lattice.step_cells * np.arange(x_first, x_last + 1)
+    rows = lattice.step_cells * np.arange(y_first, y_last + 1)[:, None]
+    best, least = (0, 0, 0), int(np.iinfo(np.int32).max)
+    start_x, start_y, start_rad = lattice.start.tolist()
+    for turn in range(first, last + 1):
+        heading_rad = start_rad + turn * lattice.step_rad
+        cos, sin = math.cos(heading_rad), math.sin(heading_rad)
+        x = np.floor(start_x + (cos * heads[:, 0] - sin * heads[:, 1]))[:, None, None] + cols
+        y = np.floor(start_y + (sin * heads[:, 0] + cos * heads[:, 1]))[:, None, None] + rows
+        inside = (x >= 0) & (y >= 0) & (x < codes.shape[1]) & (y < codes.shape[0])
+        met = codes[np.where(inside, y, 0).astype(np.intp), np.where(inside, x, 0).astype(np.intp)]
+        totals = costs[np.where(inside, met, FAR_CODE).astype(np.intp) + 128].sum(axis=0, dtype=np.int64).ravel()
+        place = int(totals.argmin())
+        if totals[place] < least:
+            least = int(totals[place])
+            best = x_first + place % len(cols), y_first + place // len(cols), turn
+    return np.array(best, np.int32), least
