@@ -10,6 +10,7 @@ from robotd.hardware.devices.board_pantilt import BoardPanTilt
 from robotd.hardware.devices.board_rangefinder import BoardRangefinder
 from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
+from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
@@ -33,7 +34,10 @@ class Dialect(Generic[S_contra, D_co]):
 _OURS = LineFormat(115_200)
 
 DRIVES: Mapping[str, Dialect[DriveSettings, Drive]] = {"board": Dialect(BoardDrive, _OURS)}
-PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {"board": Dialect(BoardPanTilt, _OURS)}
+PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {
+    "board": Dialect(BoardPanTilt, _OURS),
+    "ptu": Dialect(PtuPanTilt, LineFormat(9_600)),
+}
 RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {"board": Dialect(BoardRangefinder, _OURS)}
 
 DIALECTS: Mapping[str, Mapping[str, Dialect[PortSettings, object]]] = {

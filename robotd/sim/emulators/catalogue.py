@@ -5,9 +5,12 @@ from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
 from robotd.core.errors import ConfigError
+from robotd.hardware.transport.line_format import LineFormat
 from robotd.sim.boards.drive import DriveBoard
 from robotd.sim.boards.pantilt import PanTiltBoard
 from robotd.sim.boards.rangefinder import RangefinderBoard
+from robotd.sim.emulators.paced import Paced
+from robotd.sim.emulators.ptu import PtuEmulator
 from robotd.sim.host import HostedBoard
 from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant
 
@@ -29,6 +32,7 @@ DRIVES: Mapping[str, Emulator[DrivePlant]] = {
 }
 PANTILTS: Mapping[str, Emulator[HeadPlant]] = {
     "board": Emulator(lambda plant, boot_id: PanTiltBoard(plant, boot_id=boot_id)),
+    "ptu": Emulator(lambda plant, _: Paced(PtuEmulator(plant), LineFormat(9_600))),
 }
 RANGEFINDERS: Mapping[str, Emulator[LaserPlant]] = {
     "board": Emulator(lambda plant, boot_id: RangefinderBoard(plant, boot_id=boot_id)),

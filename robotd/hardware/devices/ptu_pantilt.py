@@ -1,0 +1,166 @@
+"""A FLIR / Directed Perception pan/tilt unit.
+
+It turns open loop: what it reads back are the steps it commanded, so an axis that met its stop (``!P``, ``!T``) has
+lost steps and knows no longer where it points. That is latched as a fault, and only a reset, which turns both axes to
+their stops and takes up to half a minute, ends it: :meth:`PtuPanTilt.clear_faults` does it.
+"""
+
+import asyncio
+import math
+from dataclasses import dataclass
+from typing import NoReturn
+
+from robotd.core.angles import wrap_rad
+from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
+from robotd.hardware.devices.bought_device import BoughtDevice, is_a
+from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
+from robotd.hardware.devices.settings import PanTiltSettings
+from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.link.dialogue import Dialogue, Heard
+from robotd.hardware.wire.ptu import STOP_BYTES, Banner, Done, LimitHit, Message, PtuWire, Refused, command
+
+RESET_S = 40.0
+"""A reset takes up to 30 s."""
+_ANSWER_S = 0.5
+_TRIES = 3
+_IDLE_POLL_S = 1.0
+_ARC_SECONDS_PER_RAD = 3600.0 * 180.0 / math.pi
+
+
+@dataclass(frozen=True, slots=True)
+class _Axes:
+    """What the unit says of itself when greeted."""
+
+    pan_steps_per_rad: float
+    tilt_steps_per_rad: float
+    limits_steps: tuple[int, int, int, int]
+    """Pan min, pan max, tilt min, tilt max."""
+
+
+class PtuPanTilt(BoughtDevice[Message]):
+    """Implements :class:`robotd.hardware.devices.pantilt.PanTilt`."""
+
+    NAME = "pantilt"
+    STOP = STOP_BYTES
+
+    def __init__(self, settings: PanTiltSettings, wiring: Wiring) -> None:
+        """Make the device; angles outside it have the zeros of its mount applied."""
+        super().__init__(PtuWire(), wiring)
+        self._mount = settings.mount
+        self._axes: _Axes | None = None
+        self._is_resetting = False
+        self._one_aim = asyncio.Lock()
+
+    async def limits(self) -> PanTiltLimits:
+        """Return the limits that the unit found at its last reset, in the robot frame."""
+        self._talk()
+        axes = self._known_axes()
+        pan_min, pan_max, tilt_min, tilt_max = axes.limits_steps
+        return PanTiltLimits(
+            pan_min / axes.pan_steps_per_rad + self._mount.pan_zero_rad,
+            pan_max / axes.pan_steps_per_rad + self._mount.pan_zero_rad,
+            tilt_min / axes.tilt_steps_per_rad + self._mount.tilt_zero_rad,
+            tilt_max / axes.tilt_steps_per_rad + self._mount.tilt_zero_rad,
+        )
+
+    async def aim(self, pan_rad: float, tilt_rad: float, *, timeout_s: float) -> AimReadback:
+        """Turn the head and return where it came to rest; see :meth:`robotd.hardware.devices.pantilt.PanTilt.aim`."""
+        async with self._one_aim:
+            dialogue, axes = self._talk_armed(), self._known_axes()
+            pan = round(self._pan_of_head(pan_rad) * axes.pan_steps_per_rad)
+            tilt = round((tilt_rad - self._mount.tilt_zero_rad) * axes.tilt_steps_per_rad)
+            try:
+                async with asyncio.timeout(timeout_s):
+                    await self._order(dialogue, command("PP", pan))
+                    await self._order(dialogue, command("TP", tilt))
+                    time_ns = await self._arrived(dialogue, pan, tilt)
+            except TimeoutError:
+                self.stop_now()
+                raise LinkTimeout(f"{self.name}: still turning after {timeout_s:g} s") from None
+        return AimReadback(
+            time_ns,
+            pan / axes.pan_steps_per_rad + self._mount.pan_zero_rad,
+            tilt / axes.tilt_steps_per_rad + self._mount.tilt_zero_rad,
+        )
+
+    async def _arrived(self, dialogue: Dialogue[Message], pan: int, tilt: int) -> int:
+        """Ask where the head is until it is there; return when that was said."""
+        while True:
+            at_pan = await self._order(dialogue, command("PP"))
+            at_tilt = await self._order(dialogue, command("TP"))
+            self._talk_armed()
+            if (_whole(at_pan.message), _whole(at_tilt.message)) == (pan, tilt):
+                return at_tilt.time_ns
+
+    async def _greet(self, dialogue: Dialogue[Message]) -> None:
+        dialogue.post(STOP_BYTES)
+        for mode in ("FT", "ED", "CI", "I", "LE"):
+            await self._set_up(dialogue, mode)
+        numbers = [await self._number(dialogue, query) for query in ("PR", "TR", "PN", "PX", "TN", "TX")]
+        pan_arc_seconds, tilt_arc_seconds, *limits = numbers
+        if pan_arc_seconds <= 0.0 or tilt_arc_seconds <= 0.0:
+            raise RemoteProtocolError(f"{self.name}: expected seconds of arc per step, got {numbers[:2]}")
+        pan_min, pan_max, tilt_min, tilt_max = (int(limit) for limit in limits)
+        self._axes = _Axes(
+            _ARC_SECONDS_PER_RAD / pan_arc_seconds,
+            _ARC_SECONDS_PER_RAD / tilt_arc_seconds,
+            (pan_min, pan_max, tilt_min, tilt_max),
+        )
+
+    async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
+        """It speaks only when asked, so that it is still there must be asked."""
+        while True:
+            await asyncio.sleep(_IDLE_POLL_S)
+            if not self._is_resetting:
+                await dialogue.ask(command("PP"), is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES)
+
+    async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
+        """Reset, if steps were lost: both axes turn to their stops."""
+        if not self._health.faults:
+            return
+        self._is_resetting = True
+        try:
+            await dialogue.ask(command("R"), is_a(Done, Refused), timeout_s=RESET_S)
+        finally:
+            self._is_resetting = False
+
+    def _report(self, heard: Heard[Message]) -> None:
+        message = heard.message
+        if isinstance(message, LimitHit) and not self._is_resetting and self._dialogue is not None:
+            axis = "pan" if message.axis == "P" else "tilt"
+            self._latch("lost_steps", f"the {axis} axis met its stop: it must be reset")
+        elif isinstance(message, Banner) and "PAN-TILT" in message.text.upper() and self._dialogue is not None:
+            self._latch("restarted", "the unit was switched off and on, and found its stops anew")
+
+    async def _order(self, dialogue: Dialogue[Message], data: bytes) -> Heard[Message]:
+        heard = await dialogue.ask(data, is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES)
+        if isinstance(heard.message, Refused):
+            raise DeviceError(self.name, "refused", heard.message.text)
+        return heard
+
+    async def _set_up(self, dialogue: Dialogue[Message], mode: str) -> None:
+        heard = await dialogue.ask(command(mode), is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES)
+        if isinstance(heard.message, Refused):
+            raise RemoteProtocolError(f"{self.name}: refused {mode}: {heard.message.text}")
+
+    async def _number(self, dialogue: Dialogue[Message], query: str) -> float:
+        heard = await dialogue.ask(command(query), is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES)
+        number = heard.message.number if isinstance(heard.message, Done) else None
+        if number is None:
+            raise RemoteProtocolError(f"{self.name}: expected a number for {query}, got {heard.message}")
+        return number
+
+    def _known_axes(self) -> _Axes:
+        if self._axes is None:
+            raise DeviceError(self.name, "unknown", "it was never greeted")
+        return self._axes
+
+    def _pan_of_head(self, pan_rad: float) -> float:
+        """Return the pan of the head; beyond a half turn, the same direction from the other side."""
+        pan_rad -= self._mount.pan_zero_rad
+        return pan_rad if abs(pan_rad) <= math.pi else wrap_rad(pan_rad)
+
+
+def _whole(message: Message) -> int | None:
+    number = message.number if isinstance(message, Done) else None
+    return None if number is None else round(number)

@@ -1,0 +1,125 @@
+"""The ASCII dialect of FLIR / Directed Perception pan/tilt units: PTU-46, D46, E46, D48E, D100E, D300.
+
+Commands are letters, a number if one is set, and a space. Answers are ``*`` or ``* text`` on success and ``! text`` on
+refusal; ``!P`` and ``!T`` come at any time, glued to whatever follows: an axis met its stop. After power-up the command
+is echoed before the answer on its line. The answer to a reset may lack its line end, so a line may hold two answers.
+"""
+
+import re
+from dataclasses import dataclass
+
+LINE_MAX_BYTES = 256
+"""What is longer without a line end is noise."""
+
+_LIMIT = re.compile(r"!([PT])")
+_NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?")
+_ENDS = re.compile(rb"[\r\n]")
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """``*``: the command was carried out, or the query answered."""
+
+    text: str
+    """What the query gave; empty for a command."""
+
+    @property
+    def number(self) -> float | None:
+        """The first number of the answer, be it terse or verbose; None if it has none."""
+        found = _NUMBER.search(self.text)
+        return float(found[0]) if found else None
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """``!``: the command was not carried out."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class LimitHit:
+    """``!P`` or ``!T``: an axis met its stop. With limits enforced, and no reset under way, steps were lost."""
+
+    axis: str
+    """``P`` or ``T``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Banner:
+    """Text that answers nothing: power-up, reset of the supply."""
+
+    text: str
+
+
+Message = Done | Refused | LimitHit | Banner
+
+
+def command(letters: str, number: int | None = None) -> bytes:
+    """Return a command, or without a number a query or a plain command.
+
+    >>> command("PP", -2500)
+    b'PP-2500 '
+    """
+    return f"{letters}{'' if number is None else number} ".encode("ascii")
+
+
+STOP_BYTES = b" " + command("H")
+"""Halts both axes. The space ends a command that was cut in half, so that the halt is not taken for its letters."""
+
+
+class PtuWire:
+    """The receiving half."""
+
+    def __init__(self) -> None:
+        self._line = bytearray()
+        self._counters = {"replies": 0, "refusals": 0, "limit_hits": 0, "bytes_skipped": 0}
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """What was counted since start."""
+        return self._counters
+
+    def feed(self, data: bytes) -> list[Message]:
+        """Take bytes as they come; return the messages that are whole now."""
+        messages: list[Message] = []
+        for byte in data:
+            if _ENDS.match(bytes((byte,))):
+                messages += self._finish()
+                continue
+            self._line.append(byte)
+            if bytes(self._line[-2:]) in {b"!P", b"!T"}:
+                messages += self._take_limits()
+            elif len(self._line) > LINE_MAX_BYTES:
+                self._skip()
+        return messages
+
+    def reset(self) -> None:
+        """Forget the beginning of a line."""
+        self._line.clear()
+
+    def _take_limits(self) -> list[Message]:
+        """Take a limit mark out of the line at once: it ends no line, and the next may be long in coming."""
+        axis = chr(self._line[-1])
+        del self._line[-2:]
+        self._counters["limit_hits"] += 1
+        return [LimitHit(axis)]
+
+    def _finish(self) -> list[Message]:
+        if any(not 0x20 <= byte < 0x7F for byte in self._line):
+            self._skip()
+            return []
+        text = self._line.decode("ascii")
+        self._line.clear()
+        if "*" in text:
+            answers = text.split("*")[1:]
+            self._counters["replies"] += len(answers)
+            return [Done(answer.strip()) for answer in answers]
+        if "!" in text:
+            self._counters["refusals"] += 1
+            return [Refused(text.partition("!")[2].strip())]
+        return [Banner(text.strip())] if text.strip() else []
+
+    def _skip(self) -> None:
+        self._counters["bytes_skipped"] += len(self._line)
+        self._line.clear()
