@@ -84,5 +84,6 @@ def mission_settings(config: Config) -> MissionSettings:
         driving=config.driving,
         grid=config.grid,
         localization=config.localization,
+        refinement=config.refinement,
         planning=config.planning,
     )

@@ -39,8 +39,10 @@ def pose_in_words(pose: Pose2) -> str:
 
 def region_in_words(region: Region) -> str:
     """Return one candidate region: where, how large, how well explained."""
-    size = f"{region.x_max_m - region.x_min_m:.2f} x {region.y_max_m - region.y_min_m:.2f} m"
-    return f"{pose_in_words(region.centre)}; {size}, {region.cells} cells, {region.best_rank} readings explained"
+    extent = region.extent
+    size = f"{extent.x_max_m - extent.x_min_m:.2f} x {extent.y_max_m - extent.y_min_m:.2f} m"
+    turn = f"{math.degrees(extent.heading_max_rad - extent.heading_min_rad):.1f} deg"
+    return f"{pose_in_words(region.centre)}; {size} x {turn}, {region.best_rank} readings explained"
 
 
 def estimate_in_words(estimate: PoseEstimate) -> str:
@@ -51,7 +53,7 @@ def estimate_in_words(estimate: PoseEstimate) -> str:
         extra = "" if estimate.state is PoseState.PREDICTED else f" ({support}{so_far})"
         return f"{estimate.state}: {pose_in_words(estimate.best)}{extra}"
     if estimate.regions:
-        return f"{estimate.state}: {len(estimate.regions)} regions ({support}{so_far})"
+        return f"{estimate.state}: {_regions(estimate)} ({support}{so_far})"
     return f"{estimate.state} ({support}{so_far})"
 
 
@@ -66,8 +68,12 @@ def estimate_in_short(estimate: PoseEstimate) -> str:
     if estimate.best is not None:
         return f"{estimate.state} ({estimate.best.x_m:.2f}, {estimate.best.y_m:.2f}) m"
     if estimate.regions:
-        return f"{estimate.state}, {len(estimate.regions)} regions, {support}"
+        return f"{estimate.state}, {_regions(estimate)}, {support}"
     return f"{estimate.state}, {support} explained"
+
+
+def _regions(estimate: PoseEstimate) -> str:
+    return f"{len(estimate.regions) + estimate.regions_left_out} regions"
 
 
 def counts_in_words(sweep: SweepProgress) -> str:

@@ -9,7 +9,8 @@ from robotd.grid.occupancy import GridSettings
 from robotd.hardware.devices.catalogue import DIALECTS, line_format
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
 from robotd.hardware.transport.address import connector
-from robotd.localization.localizer import LocalizationSettings
+from robotd.localization.refinement import RefinementSettings
+from robotd.localization.settings import LocalizationSettings
 from robotd.mission.steering import DrivingSettings
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.planning.path import PlanningSettings
@@ -28,6 +29,7 @@ class Config:
     driving: DrivingSettings = field(default_factory=DrivingSettings)
     grid: GridSettings = field(default_factory=GridSettings)
     localization: LocalizationSettings = field(default_factory=LocalizationSettings)
+    refinement: RefinementSettings = field(default_factory=RefinementSettings)
     planning: PlanningSettings = field(default_factory=PlanningSettings)
     maps: MapsSettings = field(default_factory=MapsSettings)
     recording: RecordingSettings = field(default_factory=RecordingSettings)

@@ -1,4 +1,4 @@
-"""What the daemon says about where the robot is: a state and all regions, never a bare guess."""
+"""What the daemon says about where the robot is: a state and its regions, never a bare guess."""
 
 import enum
 from dataclasses import dataclass
@@ -20,19 +20,67 @@ class PoseState(enum.StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Region:
-    """A connected set of cells, all of high rank: one answer to *where*."""
+class Extent:
+    """How far a region reaches, outer edges, map frame."""
 
-    centre: Pose2
-    """Mean of its cells of greatest rank, map frame."""
     x_min_m: float
     x_max_m: float
     y_min_m: float
     y_max_m: float
-    """Extent of its cells, outer edges, map frame."""
+    heading_min_rad: float
+    """In ``[-pi, pi)``."""
+    heading_max_rad: float
+    """Counter-clockwise from the least, so never less, and up to a whole turn more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """The smallest circle that holds a region's cells, map frame."""
+
+    x_m: float
+    y_m: float
+    radius_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Cover:
+    """The cells of a region, row by row; of a large and ragged region coarser blocks that hold all of its cells."""
+
+    block_cells: int
+    """Cells along the side of a block: 1, so that blocks are cells of the map, or a power of two."""
+    runs: tuple[tuple[int, int, int], ...]
+    """``(row, first column, last column)`` of blocks side by side, ascending; block ``(r, c)`` holds the cells of rows
+    ``r * block_cells`` and on, columns ``c * block_cells`` and on."""
+
+
+Row = tuple[float, float, float]
+Covariance = tuple[Row, Row, Row]
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """A connected set of poses, all of high rank: one answer to *where*."""
+
+    pose: Pose2
+    """Where in it the readings fit best, below the size of a cell, map frame."""
+    covariance: Covariance
+    """Of x, y [m] and heading [rad] of ``pose``, by rows: what is left of its error, the map's own included."""
+    residual_m: float
+    """How far the readings' ends lie from the walls at ``pose``: root of the weighted mean square."""
+    centre: Pose2
+    """Mean of its poses of greatest rank, map frame."""
+    extent: Extent
+    circle: Circle
+    cover: Cover
     cells: int
+    """Cells of the map that it holds."""
+    poses: int
+    """Cells, each counted with every heading."""
     best_rank: int
-    """Readings explained at its best cells."""
+    """Readings explained at its best poses."""
+    explained: tuple[bool, ...]
+    """Whether its best pose explains each reading, in the order of the estimate's ``bearings_rad``; that pose is one of
+    greatest rank, and of these the one nearest to the centre."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +93,7 @@ class PoseEstimate:
     best: Pose2 | None
     """The pose, map frame; only when it is unique (``localized`` or ``predicted``)."""
     regions: tuple[Region, ...]
-    """All of them, best first; empty when ``lost`` or ``predicted``."""
+    """The best, best first; empty when ``lost`` or ``predicted``."""
     best_rank: int
     """Readings explained at the best cells (the paper's kappa)."""
     readings: int
@@ -54,3 +102,12 @@ class PoseEstimate:
     """False while the sweep it is built from is still under way."""
     map_id: str
     """Which map it speaks of."""
+    regions_left_out: int = 0
+    """Further regions, none better than those listed."""
+    bearings_rad: tuple[float, ...] = ()
+    """Directions of the readings it is built from, robot frame, in the order in which they were made."""
+
+    def unexplained_rad(self, region: Region) -> tuple[float, ...]:
+        """Return the directions of the readings that a region does not explain, robot frame."""
+        pairs = zip(self.bearings_rad, region.explained, strict=True)
+        return tuple(bearing_rad for bearing_rad, explained in pairs if not explained)

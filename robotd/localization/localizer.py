@@ -6,87 +6,37 @@ bears bad readings and obstacles that are not on the map (fig. 6), and it does n
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from robotd.core.reading import RangeReading
-from robotd.grid.binary import BinaryMap
+from robotd.grid.readings import numbers_of
+from robotd.localization.described import Situation, described
 from robotd.localization.estimate import PoseEstimate, PoseState, Region
-from robotd.localization.prepared import PreparedMap
-from robotd.localization.rank import RankGrid, even_headings
-from robotd.localization.regions import regions_of
-
-
-@dataclass(frozen=True, slots=True)
-class LocalizationSettings:
-    """What counts as explained, and what as an answer.
-
-    The defaults were chosen on simulated rooms and on two real buildings (5 cm cells, 120 kept-out scans each): the
-    true pose explained 75 to 90 % of the readings, the best pose in a building where the robot was not 17 to 69 %.
-    """
-
-    range_error_m: float = 0.075
-    """The paper's eps: how far an obstacle on the map may lie from the head of a reading."""
-    heading_error_rad: float = 0.0175
-    """How far the heading that odometry gives may be off: headings up to so far away are tried too."""
-    heading_step_rad: float = 0.00875
-    """Step between the headings that are tried."""
-    localized_share: float = 0.5
-    """Share of the readings that the best pose must explain; below it the robot is lost."""
-    rival_share: float = 0.15
-    """A pose is still an answer if it explains fewer readings than the best by no more than this share of all."""
-    unique_within_m: float = 0.5
-    """The pose is unique if all answers lie this near to the best: no rival elsewhere, no region a corridor long."""
-    readings_min: int = 12
-    """With fewer readings than this nothing is said."""
-
-    def __post_init__(self) -> None:
-        """Refuse impossible values."""
-        if not self.range_error_m >= 0.0:
-            raise ValueError(f"range_error_m must not be negative, got {self.range_error_m}")
-        if not self.heading_error_rad >= 0.0:
-            raise ValueError(f"heading_error_rad must not be negative, got {self.heading_error_rad}")
-        if not self.heading_step_rad > 0.0:
-            raise ValueError(f"heading_step_rad must be positive, got {self.heading_step_rad}")
-        if not 0.0 < self.localized_share <= 1.0:
-            raise ValueError(f"localized_share must lie in (0, 1], got {self.localized_share}")
-        if not 0.0 <= self.rival_share < 1.0:
-            raise ValueError(f"rival_share must lie in [0, 1), got {self.rival_share}")
-        if not self.unique_within_m > 0.0:
-            raise ValueError(f"unique_within_m must be positive, got {self.unique_within_m}")
-        if self.readings_min < 1:
-            raise ValueError(f"readings_min must be at least 1, got {self.readings_min}")
-
-    def headings_near(self, heading_rad: float) -> tuple[float, ...]:
-        """Return the headings to try when odometry says ``heading_rad``, in ascending order.
-
-        >>> LocalizationSettings(heading_error_rad=0.2, heading_step_rad=0.1).headings_near(1.0)
-        (0.8, 0.9, 1.0, 1.1, 1.2)
-        """
-        steps = math.floor(self.heading_error_rad / self.heading_step_rad + 1e-9)
-        return tuple(heading_rad + step * self.heading_step_rad for step in range(-steps, steps + 1))
-
-    def headings_all_round(self) -> tuple[float, ...]:
-        """Return the headings to try when nothing is known, evenly all round, in steps no longer than the setting."""
-        return even_headings(math.ceil(math.tau / self.heading_step_rad - 1e-9))
+from robotd.localization.rank import RankGrid
+from robotd.localization.ready_map import ReadyMap
+from robotd.localization.refinement import RefinementSettings
+from robotd.localization.regions import pieces_of
 
 
 class Localizer:
     """Localizes on one map, stop after stop; an estimate may be asked for after any reading."""
 
-    def __init__(self, binary: BinaryMap, settings: LocalizationSettings, map_id: str, *, threads: int = 1) -> None:
-        """Prepare for a map.
+    def __init__(
+        self, the_map: ReadyMap, map_id: str, *, refinement: RefinementSettings | None = None, threads: int = 1
+    ) -> None:
+        """Begin with no readings, heading 0.
 
         Args:
-            binary: the map.
-            settings: what counts as an answer.
+            the_map: the map, and what counts as an answer.
             map_id: what estimates call the map.
+            refinement: how poses are refined.
             threads: how many threads may share the work when it is much; no estimate depends on it.
         """
         self._threads = threads
-        self._map = PreparedMap.of_binary(binary, settings.range_error_m / binary.spec.resolution_m)
-        self._settings = settings
+        self._map = the_map
+        self._settings = the_map.settings
+        self._refinement = refinement or RefinementSettings()
         self._map_id = map_id
-        self._ranks = self._blank((0.0,))
+        self.begin((0.0,))
 
     @property
     def ranks(self) -> RankGrid:
@@ -97,9 +47,10 @@ class Localizer:
         """Forget the readings of the last stop.
 
         Args:
-            headings_rad: the robot's possible headings in the map frame; one if odometry knows it.
+            headings_rad: the robot's possible headings in the map frame, ascending; one if odometry knows it.
         """
-        self._ranks = self._blank(headings_rad)
+        self._ranks = RankGrid(self._map.prepared, headings_rad, threads=self._threads)
+        self._readings: list[RangeReading] = []
 
     def add(self, *readings: RangeReading) -> None:
         """Count measured readings, hits or misses; many at once cost less than one after the other.
@@ -108,6 +59,7 @@ class Localizer:
             ValueError: a reading measured nothing; then none is counted.
         """
         self._ranks.add(*readings)
+        self._readings.extend(readings)
 
     def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
         """Return what the readings so far say.
@@ -116,35 +68,45 @@ class Localizer:
             time_ns: when the robot was there.
             final: whether the sweep is whole.
         """
-        state, regions = self._judge()
+        regions, left_out = self._regions()
+        state = self._judge(regions, left_out)
         return PoseEstimate(
             time_ns=time_ns,
             state=state,
-            best=regions[0].centre if state is PoseState.LOCALIZED else None,
+            best=regions[0].pose if state is PoseState.LOCALIZED else None,
             regions=regions,
             best_rank=self._ranks.best_rank,
-            readings=self._ranks.readings,
+            readings=len(self._readings),
             final=final,
             map_id=self._map_id,
+            regions_left_out=left_out,
+            bearings_rad=tuple(reading.bearing_rad for reading in self._readings),
         )
 
-    def _judge(self) -> tuple[PoseState, tuple[Region, ...]]:
-        settings, best_rank, readings = self._settings, self._ranks.best_rank, self._ranks.readings
+    def _regions(self) -> tuple[tuple[Region, ...], int]:
+        """Return the regions that explain enough of the readings, and how many more there are."""
+        settings, best_rank, readings = self._settings, self._ranks.best_rank, len(self._readings)
         if readings < settings.readings_min or best_rank < settings.localized_share * readings:
-            return PoseState.LOST, ()
-        slack = math.ceil(settings.rival_share * readings)
-        regions = regions_of(self._ranks, max(1, best_rank - slack))
-        spread_m = max(_farthest_m(region, regions[0]) for region in regions)
-        return (PoseState.LOCALIZED if spread_m <= settings.unique_within_m else PoseState.AMBIGUOUS), regions
+            return (), 0
+        poses = self._ranks.cells_of_rank(max(1, best_rank - math.ceil(settings.rival_share * readings)))
+        headings_rad = self._ranks.headings_rad
+        pieces = pieces_of(poses, self._ranks.rank_at(poses), headings_rad, settings.regions_max)
+        situation = Situation(self._map, headings_rad, numbers_of(self._readings), self._refinement)
+        return described(pieces.best, situation), pieces.left_out
 
-    def _blank(self, headings_rad: Sequence[float]) -> RankGrid:
-        return RankGrid(self._map, headings_rad, threads=self._threads)
+    def _judge(self, regions: tuple[Region, ...], left_out: int) -> PoseState:
+        if not regions:
+            return PoseState.LOST
+        spread_m = max(_farthest_m(region, regions[0]) for region in regions)
+        is_one_place = left_out == 0 and spread_m <= self._settings.unique_within_m
+        return PoseState.LOCALIZED if is_one_place else PoseState.AMBIGUOUS
 
 
 def _farthest_m(region: Region, best: Region) -> float:
     """Return how far the box round a region reaches from the centre of the best one."""
     x_m, y_m = best.centre.x_m, best.centre.y_m
+    extent = region.extent
     return math.hypot(
-        max(region.x_max_m - x_m, x_m - region.x_min_m),
-        max(region.y_max_m - y_m, y_m - region.y_min_m),
+        max(extent.x_max_m - x_m, x_m - extent.x_min_m),
+        max(extent.y_max_m - y_m, y_m - extent.y_min_m),
     )

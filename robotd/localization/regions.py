@@ -1,4 +1,4 @@
-"""From cells of high rank to regions: the connected pieces of loc, each an answer to *where*.
+"""From poses of high rank to regions: the connected pieces of loc, each an answer to *where*.
 
 [BrownDonald2000]_ sec. 2.2.1: loc may be several separate regions, and all of them are the answer.
 """
@@ -9,29 +9,58 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.core.pose import Pose2
-from robotd.grid.spec import GridSpec
-from robotd.localization.estimate import Region
-from robotd.localization.rank import RankGrid
-
 _NEIGHBOUR_LINES = ((0, 1), (1, -1), (1, 0), (1, 1))
 """Steps ``(heading, row)`` to half of the neighbouring lines; the other half see this one as theirs."""
 
 
-def regions_of(ranks: RankGrid, least_rank: int) -> tuple[Region, ...]:
-    """Return the connected regions of all poses that explain at least ``least_rank`` readings.
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """The poses of one region."""
 
-    Ordered by best rank, then by size, then by place: all of them, whatever their number.
+    poses: NDArray[np.intp]
+    """``intp[n, 3]``, ``(heading, row, col)``, ascending."""
+    ranks: NDArray[np.uint16]
+    """``uint16[n]``."""
+
+    @property
+    def best(self) -> NDArray[np.intp]:
+        """Its poses of greatest rank."""
+        best: NDArray[np.intp] = self.poses[self.ranks == self.ranks.max()]
+        return best
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pieces:
+    """The best regions, and how many more there are."""
+
+    best: tuple[Piece, ...]
+    left_out: int
+
+
+def pieces_of(poses: NDArray[np.intp], ranks: NDArray[np.uint16], headings_rad: tuple[float, ...], most: int) -> Pieces:
+    """Part poses into connected regions.
+
+    Args:
+        poses: ``intp[n, 3]``, ``(heading, row, col)``, ascending and each once.
+        ranks: their ranks, ``uint16[n]``.
+        headings_rad: the headings, ascending; the first is next to the last if they go all round.
+        most: how many regions to return.
+
+    Returns:
+        Those of greatest rank, then of most poses, then of the first place.
     """
-    poses = ranks.cells_of_rank(least_rank)
     if len(poses) == 0:
-        return ()
-    labels = connected_components(poses, headings=len(ranks.headings_rad), wrap=_go_round(ranks.headings_rad))
-    order = np.argsort(labels, kind="stable")
-    pieces = np.split(order, np.flatnonzero(np.diff(labels[order])) + 1)
-    values = ranks.rank_at(poses)
-    regions = [_region(poses[piece], values[piece], ranks.spec, ranks.headings_rad) for piece in pieces]
-    return tuple(sorted(regions, key=lambda region: (-region.best_rank, -region.cells)))
+        return Pieces((), 0)
+    labels = connected_components(poses, headings=len(headings_rad), wrap=_go_round(headings_rad))
+    sizes = np.bincount(labels)
+    best_ranks = np.zeros(len(sizes), np.uint16)
+    np.maximum.at(best_ranks, labels, ranks)
+    order = np.lexsort((np.arange(len(sizes)), -sizes, -best_ranks.astype(np.intp)))
+    members = np.argsort(labels, kind="stable")
+    ends = np.cumsum(sizes)
+    chosen = (members[ends[label] - sizes[label] : ends[label]] for label in order[:most])
+    best = tuple(Piece(poses[which], ranks[which]) for which in chosen)
+    return Pieces(best, len(sizes) - len(best))
 
 
 def connected_components(poses: NDArray[np.intp], *, headings: int, wrap: bool) -> NDArray[np.intp]:
@@ -101,28 +130,6 @@ def _join(count: int, links: NDArray[np.intp]) -> NDArray[np.intp]:
         np.minimum.at(root, np.maximum(one, other)[apart], np.minimum(one, other)[apart])
         while (root != root[root]).any():
             root = root[root]
-
-
-def _region(
-    poses: NDArray[np.intp], ranks: NDArray[np.uint16], spec: GridSpec, headings_rad: tuple[float, ...]
-) -> Region:
-    best_rank = int(ranks.max())
-    best = poses[ranks == best_rank]
-    x_m, y_m = spec.centre_of(float(best[:, 1].mean()), float(best[:, 2].mean()))
-    angles = np.array(headings_rad)[best[:, 0]]
-    heading_rad = math.atan2(float(np.sin(angles).mean()), float(np.cos(angles).mean()))
-    half_m = spec.resolution_m / 2
-    x_min_m, y_min_m = spec.centre_of(*poses[:, 1:].min(axis=0).tolist())
-    x_max_m, y_max_m = spec.centre_of(*poses[:, 1:].max(axis=0).tolist())
-    return Region(
-        centre=Pose2(x_m, y_m, heading_rad),
-        x_min_m=x_min_m - half_m,
-        x_max_m=x_max_m + half_m,
-        y_min_m=y_min_m - half_m,
-        y_max_m=y_max_m + half_m,
-        cells=len(poses),
-        best_rank=best_rank,
-    )
 
 
 def _go_round(headings_rad: tuple[float, ...]) -> bool:

@@ -14,6 +14,7 @@ from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import RangeReading
 from robotd.localization.estimate import PoseEstimate, PoseState, Region
 from robotd.localization.localizer import Localizer
+from robotd.localization.ready_map import ReadyMap
 from robotd.mission.compute import cores
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import MissionPhase
@@ -56,8 +57,9 @@ def _learn(place: MapInUse, in_odom: Pose2, estimate: PoseEstimate, near_m: floa
 
 
 def _reaches(region: Region, pose: Pose2, near_m: float) -> bool:
-    beside_m = max(region.x_min_m - pose.x_m, pose.x_m - region.x_max_m)
-    above_m = max(region.y_min_m - pose.y_m, pose.y_m - region.y_max_m)
+    extent = region.extent
+    beside_m = max(extent.x_min_m - pose.x_m, pose.x_m - extent.x_max_m)
+    above_m = max(extent.y_min_m - pose.y_m, pose.y_m - extent.y_max_m)
     return max(beside_m, above_m) <= near_m
 
 
@@ -117,8 +119,14 @@ class Narrowing:
 
 
 def _prepare(context: MissionContext, place: MapInUse, heading_rad: float) -> Localizer:
-    localizer = Localizer(place.binary(), context.settings.localization, place.map_id, threads=cores())
-    localizer.begin(context.settings.localization.headings_near(heading_rad))
+    settings = context.settings.localization
+    localizer = Localizer(
+        ReadyMap.of(place.ternary(), settings),
+        place.map_id,
+        refinement=context.settings.refinement,
+        threads=cores(),
+    )
+    localizer.begin(settings.headings_near(heading_rad))
     return localizer
 
 

@@ -9,6 +9,7 @@ from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import Sweep
 from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.ternary import TernaryMap
 from robotd.mission.events import MapChanged
 
 _NO_CELLS: NDArray[np.intp] = np.empty(0, dtype=np.intp)
@@ -77,3 +78,7 @@ class MapInUse:
     def binary(self) -> BinaryMap:
         """Return the thresholded map."""
         return BinaryMap.from_grid(self.grid)
+
+    def ternary(self) -> TernaryMap:
+        """Return the map with unknown cells apart."""
+        return TernaryMap.from_grid(self.grid)

@@ -93,4 +93,5 @@ def describe(estimate: PoseEstimate) -> str:
         return f"{estimate.state} at {pose_text(estimate.best)}: {share}"
     if not estimate.regions:
         return f"{estimate.state}: no pose explains more than {share}"
-    return f"{estimate.state}: {len(estimate.regions)} regions explain up to {share}"
+    regions = len(estimate.regions) + estimate.regions_left_out
+    return f"{estimate.state}: {regions} regions explain up to {share}"

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 
 from robotd.grid.occupancy import GridSettings
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
-from robotd.localization.localizer import LocalizationSettings
+from robotd.localization.refinement import RefinementSettings
+from robotd.localization.settings import LocalizationSettings
 from robotd.mission.steering import DrivingSettings
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.planning.path import PlanningSettings
@@ -20,4 +21,5 @@ class MissionSettings:
     driving: DrivingSettings = field(default_factory=DrivingSettings)
     grid: GridSettings = field(default_factory=GridSettings)
     localization: LocalizationSettings = field(default_factory=LocalizationSettings)
+    refinement: RefinementSettings = field(default_factory=RefinementSettings)
     planning: PlanningSettings = field(default_factory=PlanningSettings)

@@ -13,11 +13,12 @@ from robotd.cli.demo.truth import true_pose
 from robotd.cli.verb import FAILED, OK
 from robotd.config import Config
 from robotd.core.reading import Sweep
-from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
+from robotd.grid.ternary import TernaryMap
 from robotd.localization.localizer import Localizer
 from robotd.localization.rank import RankGrid
+from robotd.localization.ready_map import ReadyMap
 from robotd.mission.events import MapChanged
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
 from robotd.mission.steering import DrivingSettings
@@ -109,8 +110,9 @@ def _draw(
 
 def rank_of(the_map: MapChanged, sweep: Sweep, heading_rad: float) -> RankGrid:
     """Return the rank grid of a sweep on a map: what the daemon saw when it decided."""
-    binary = BinaryMap.from_grid(OccupancyGrid(the_map.spec, the_map.values))
-    localizer = Localizer(binary, Config().localization, the_map.map_id)
+    settings = Config().localization
+    the_ternary = TernaryMap.from_grid(OccupancyGrid(the_map.spec, the_map.values))
+    localizer = Localizer(ReadyMap.of(the_ternary, settings), the_map.map_id)
     localizer.begin((heading_rad,))
     for reading in sweep.measured:
         localizer.add(reading)

@@ -23,7 +23,8 @@ from robotd.cli.verb import INTERRUPTED, OK, Verb
 from robotd.core.errors import RecordingError, RobotdError
 from robotd.grid import kernels
 from robotd.grid.occupancy import GridSettings
-from robotd.localization.localizer import LocalizationSettings
+from robotd.localization.refinement import RefinementSettings
+from robotd.localization.settings import LocalizationSettings
 from robotd.mission.compute import cores
 from robotd.sim.carmen import CarmenLog, read_carmen
 
@@ -39,6 +40,7 @@ class _Plan:
     reach: Reach
     grid: GridSettings
     localization: LocalizationSettings
+    refinement: RefinementSettings
     threads: int
 
     def document(self) -> dict[str, Any]:
@@ -70,7 +72,7 @@ def _eval(arguments: argparse.Namespace) -> int:
 
 
 def _plan(arguments: argparse.Namespace) -> _Plan:
-    settings = config.load(arguments.config).localization if arguments.config else LocalizationSettings()
+    read = config.load(arguments.config) if arguments.config else config.Config()
     grid = GridSettings(
         resolution_m=arguments.resolution,
         rows=1,
@@ -79,7 +81,7 @@ def _plan(arguments: argparse.Namespace) -> _Plan:
         lower_alpha=arguments.lower_alpha,
     )
     reach = Reach(arguments.range_max, min(arguments.clear, arguments.range_max))
-    return _Plan(arguments.cases, arguments.seed, reach, grid, settings, cores())
+    return _Plan(arguments.cases, arguments.seed, reach, grid, read.localization, read.refinement, cores())
 
 
 def _drawing() -> Callable[[Path, LogReport], None]:
@@ -107,7 +109,7 @@ def _evaluate(plan: _Plan, name: str, log: CarmenLog) -> LogReport:
     except ValueError as error:
         raise RecordingError(f"{name}: no map can be made of it: {error}") from error
     cases: list[Case] = []
-    searcher = Searcher(grid, plan.localization, plan.reach, plan.threads)
+    searcher = Searcher(grid, plan.localization, plan.refinement, plan.reach, plan.threads)
     with _bar() as bar, suppress(KeyboardInterrupt):
         task = bar.add_task(name, total=len(division.queries))
         for case in searcher.cases(division.queries):
@@ -169,7 +171,10 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         help="how far a beam that met nothing is believed to be free [m] (default: 8)",
     )
     parser.add_argument(
-        "--config", type=Path, metavar="FILE", help="take the settings of localization from a configuration of robotd"
+        "--config",
+        type=Path,
+        metavar="FILE",
+        help="take the settings of localization from a configuration of robotd",
     )
     parser.add_argument(
         "--pictures", type=Path, metavar="DIR", help="draw each case that is not right into a file there"

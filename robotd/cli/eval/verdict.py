@@ -76,7 +76,9 @@ def is_near(pose: Pose2, truth: Pose2) -> bool:
 
 def _holds(region: Region, truth: Pose2) -> bool:
     """Whether the truth lies in a region, or as near to it as a right answer must."""
-    beside_m = max(region.x_min_m - truth.x_m, truth.x_m - region.x_max_m, 0.0)
-    above_m = max(region.y_min_m - truth.y_m, truth.y_m - region.y_max_m, 0.0)
-    turned_rad = abs(wrap_rad(region.centre.heading_rad - truth.heading_rad))
+    extent = region.extent
+    beside_m = max(extent.x_min_m - truth.x_m, truth.x_m - extent.x_max_m, 0.0)
+    above_m = max(extent.y_min_m - truth.y_m, truth.y_m - extent.y_max_m, 0.0)
+    middle_rad = (extent.heading_min_rad + extent.heading_max_rad) / 2
+    turned_rad = abs(wrap_rad(middle_rad - truth.heading_rad)) - (extent.heading_max_rad - middle_rad)
     return math.hypot(beside_m, above_m) <= RIGHT_M and turned_rad <= RIGHT_RAD

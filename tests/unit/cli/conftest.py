@@ -12,7 +12,7 @@ from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
 from robotd.grid.spec import GridSpec
 from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.localization.estimate import PoseEstimate, PoseState, Region
+from robotd.localization.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.mission.events import MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.mission.modes import Mode
 from robotd.mission.requests import Mission
@@ -36,7 +36,19 @@ STATUS = Status(
     map_name=None,
     recording=None,
 )
-REGION = Region(Pose2(1.0, 2.0, 0.0), 0.9, 1.1, 1.9, 2.1, cells=4, best_rank=280)
+REGION = Region(
+    pose=Pose2(1.0, 2.0, 0.0),
+    covariance=((1e-4, 0.0, 0.0), (0.0, 1e-4, 0.0), (0.0, 0.0, 1e-5)),
+    residual_m=0.02,
+    centre=Pose2(1.0, 2.0, 0.0),
+    extent=Extent(0.9, 1.1, 1.9, 2.1, -0.1, 0.1),
+    circle=Circle(1.0, 2.0, 0.15),
+    cover=Cover(1, ((40, 20, 21), (41, 20, 21))),
+    cells=4,
+    poses=4,
+    best_rank=280,
+    explained=(True,) * 280 + (False,) * 20,
+)
 ESTIMATE = PoseEstimate(5, PoseState.LOCALIZED, REGION.centre, (REGION,), 280, 300, final=True, map_id="m")
 AMBIGUOUS = PoseEstimate(4, PoseState.AMBIGUOUS, None, (REGION, REGION), 140, 150, final=False, map_id="m")
 ENTRY = MapEntryInfo("lab", 3, "abcdef0123456789", 1_700_000_000_000_000_000, 40, 60, 0.05)

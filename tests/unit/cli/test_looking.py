@@ -18,7 +18,7 @@ def test_a_pose_is_its_state_and_all_its_regions(client: Any, capsys: pytest.Cap
     assert client.asked[0] == ("subscribe", "pose")
     first, second = capsys.readouterr().out.splitlines()
     assert first.startswith("localized: x 1.000 m, y 2.000 m")
-    assert second.startswith("  x 1.000 m, y 2.000 m, heading 0.0 deg; 0.20 x 0.20 m, 4 cells, 280 readings")
+    assert second.startswith("  x 1.000 m, y 2.000 m, heading 0.0 deg; 0.20 x 0.20 m x 11.5 deg, 280 readings")
 
 
 def test_no_pose_in_time_is_a_failure(client: Any, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,11 +11,21 @@ from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.spec import GridSpec
+from robotd.grid.ternary import TernaryMap
 from robotd.localization.estimate import PoseEstimate, PoseState
-from robotd.localization.localizer import LocalizationSettings, Localizer
+from robotd.localization.localizer import Localizer
+from robotd.localization.ready_map import ReadyMap
+from robotd.localization.refinement import RefinementSettings, Walls
+from robotd.localization.settings import LocalizationSettings
 
 SETTINGS = LocalizationSettings()
+DRAWN = RefinementSettings(walls=Walls.FACES)
 SPEC = GridSpec(0.05, -1.0, -2.0, (100, 160))
+
+
+def ready(binary: BinaryMap, settings: LocalizationSettings = SETTINGS) -> ReadyMap:
+    """Return a drawn map, of which all is known, made ready."""
+    return ReadyMap.of(TernaryMap(binary.spec, binary.occupied, ~binary.occupied), settings)
 
 
 def room(*boxes: tuple[float, float, float, float]) -> BinaryMap:
@@ -58,7 +68,7 @@ def walk(occupied: NDArray[np.bool_], row: float, col: float, bearing: float) ->
 def localized(
     binary: BinaryMap, pose: Pose2, number: int = 60, settings: LocalizationSettings = SETTINGS
 ) -> PoseEstimate:
-    localizer = Localizer(binary, settings, "a map")
+    localizer = Localizer(ready(binary, settings), "a map", refinement=DRAWN)
     localizer.begin((pose.heading_rad,))
     for reading in seen_from(binary, pose, number):
         localizer.add(reading)
@@ -72,9 +82,11 @@ def test_a_noisy_sweep_finds_the_robot_to_a_cell(pose: Pose2) -> None:
     estimate = localized(LAB, pose)
     assert estimate.state is PoseState.LOCALIZED
     assert estimate.best is not None
-    assert estimate.best.distance_m(pose) < 0.06
+    assert estimate.best.distance_m(pose) < 0.03
     assert estimate.best.heading_rad == pytest.approx(pose.heading_rad)
-    assert estimate.regions[0].centre == estimate.best
+    assert estimate.regions[0].pose == estimate.best
+    assert estimate.regions[0].centre.distance_m(pose) < 0.06
+    assert estimate.regions[0].explained.count(True) == estimate.best_rank
     assert (estimate.time_ns, estimate.final, estimate.map_id, estimate.readings) == (7, True, "a map", 60)
 
 
@@ -91,19 +103,19 @@ def test_a_room_like_itself_is_ambiguous_and_both_places_are_told() -> None:
 
 def test_a_long_corridor_without_marks_is_ambiguous_though_its_region_is_one() -> None:
     corridor = room((-1.0, 1.0, 7.0, 3.0), (-1.0, -2.0, 7.0, -0.5))
-    localizer = Localizer(corridor, SETTINGS, "a map")
+    localizer = Localizer(ready(corridor), "a map")
     localizer.begin((0.0,))
     for reading in seen_from(corridor, Pose2(3.0, 0.25, 0.0), 60, cut_off_m=1.5):
         localizer.add(reading)
     estimate = localizer.estimate(0, final=True)
     assert estimate.state is PoseState.AMBIGUOUS
-    assert max(region.x_max_m - region.x_min_m for region in estimate.regions) > 2.0
+    assert max(region.extent.x_max_m - region.extent.x_min_m for region in estimate.regions) > 2.0
 
 
 def test_a_robot_that_was_turned_or_carried_elsewhere_is_lost() -> None:
     elsewhere = room((-1.0, -2.0, 0.0, 3.0), (6.0, -2.0, 7.0, 3.0), (2.0, 1.8, 2.2, 3.0), (3.5, -2.0, 3.7, -1.0))
     for binary, pose, believed_rad in ((LAB, Pose2(0.0, 0.0, 0.3), 1.1), (elsewhere, Pose2(3.0, 0.9, 0.3), 0.7)):
-        localizer = Localizer(LAB, SETTINGS, "a map")
+        localizer = Localizer(ready(LAB), "a map")
         localizer.begin((believed_rad,))
         for reading in seen_from(binary, pose, 60):
             localizer.add(reading)
@@ -118,7 +130,7 @@ def test_too_few_readings_say_nothing() -> None:
 
 
 def test_a_new_stop_forgets_the_old_one() -> None:
-    localizer = Localizer(LAB, SETTINGS, "a map")
+    localizer = Localizer(ready(LAB), "a map")
     for pose in (Pose2(0.0, 0.0, 0.0), Pose2(6.1, 2.0, 1.0)):
         localizer.begin((pose.heading_rad,))
         for reading in seen_from(LAB, pose, 60):

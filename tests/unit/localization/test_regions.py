@@ -1,6 +1,7 @@
 """Connected regions against a flood from cell to cell."""
 
 import math
+from dataclasses import astuple
 
 import numpy as np
 import pytest
@@ -10,11 +11,17 @@ from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.grid.binary import BinaryMap
 from robotd.grid.spec import GridSpec
+from robotd.grid.ternary import TernaryMap
+from robotd.localization.described import Situation, described
+from robotd.localization.estimate import Cover, Region
 from robotd.localization.prepared import PreparedMap
 from robotd.localization.rank import RankGrid, even_headings
-from robotd.localization.regions import connected_components, regions_of
+from robotd.localization.ready_map import ReadyMap
+from robotd.localization.refinement import RefinementSettings
+from robotd.localization.regions import connected_components, pieces_of
+from robotd.localization.settings import LocalizationSettings
+from robotd.localization.shapes import cover_of
 
 cubes = hnp.arrays(np.bool_, hnp.array_shapes(min_dims=3, max_dims=3, max_side=7))
 
@@ -64,11 +71,23 @@ def test_a_spiral_is_one_region() -> None:
 
 
 def two_rooms() -> PreparedMap:
+    return ready_rooms().prepared
+
+
+def ready_rooms() -> ReadyMap:
     """Two equal rooms of 4 x 5 cells of 0.5 m, with a wall between."""
     occupied = np.ones((6, 13), np.bool_)
     occupied[1:5, 1:6] = False
     occupied[1:5, 7:12] = False
-    return PreparedMap.of_binary(BinaryMap(GridSpec(0.5, -1.0, 0.0, (6, 13)), occupied), 0.0)
+    ternary = TernaryMap(GridSpec(0.5, -1.0, 0.0, (6, 13)), occupied, ~occupied)
+    return ReadyMap.of(ternary, LocalizationSettings(range_error_m=0.0, blocked_by=1))
+
+
+def regions_of(ranks: RankGrid, least_rank: int, most: int = 99) -> tuple[Region, ...]:
+    poses = ranks.cells_of_rank(least_rank)
+    pieces = pieces_of(poses, ranks.rank_at(poses), ranks.headings_rad, most)
+    situation = Situation(ready_rooms(), ranks.headings_rad, np.empty((0, 5)), RefinementSettings())
+    return described(pieces.best, situation)
 
 
 def test_every_region_is_told_with_its_place_and_extent() -> None:
@@ -78,7 +97,9 @@ def test_every_region_is_told_with_its_place_and_extent() -> None:
     left, right = regions_of(ranks, 2)
     assert (left.centre.x_m, left.centre.y_m, left.centre.heading_rad) == pytest.approx((0.75, 1.75, 0.0))
     assert right.centre.x_m == pytest.approx(3.75)
-    assert (left.x_min_m, left.x_max_m, left.y_min_m, left.y_max_m) == pytest.approx((0.5, 1.0, 1.5, 2.0))
+    assert astuple(left.extent) == pytest.approx((0.5, 1.0, 1.5, 2.0, 0.0, 0.0))
+    assert astuple(left.circle) == pytest.approx((0.75, 1.75, math.hypot(0.25, 0.25)))
+    assert left.cover == Cover(1, ((3, 3, 3),))
     assert (left.cells, left.best_rank) == (1, 2)
 
 
@@ -104,3 +125,40 @@ def test_headings_are_joined_across_north() -> None:
     assert len(east) == 2  # one in each room
     assert {int(heading) for heading, _, _ in ranks.best_cells if heading < 9 or heading > 27} >= {35, 0, 1}
     assert all(abs(region.centre.heading_rad) < 0.05 for region in east)
+    for region in east:
+        low_rad, high_rad = region.extent.heading_min_rad, region.extent.heading_max_rad
+        assert -0.5 < low_rad < -math.radians(10.0)
+        assert math.radians(10.0) < high_rad < 0.5
+        assert (region.cells, region.poses >= 3) == (1, True)
+
+
+def test_a_region_that_goes_all_round_reaches_a_whole_turn() -> None:
+    ranks = RankGrid(two_rooms(), even_headings(12))
+    ranks.add(RangeReading(0, 0.0, ReadingStatus.MISS, 0.3))
+    for region in regions_of(ranks, 1):
+        extent = region.extent
+        assert extent.heading_max_rad - extent.heading_min_rad == pytest.approx(math.tau)
+        assert (region.cells, region.poses) == (20, 240)
+
+
+def test_regions_beyond_the_most_are_counted_and_none_is_better() -> None:
+    poses = np.array([(0, 0, 2 * col) for col in range(9)])
+    ranks = np.array([5, 9, 7, 9, 1, 2, 3, 4, 8], np.uint16)
+    pieces = pieces_of(poses, ranks, (0.0,), 4)
+    assert [(int(piece.poses[0, 2]), int(piece.ranks[0])) for piece in pieces.best] == [(2, 9), (6, 9), (16, 8), (4, 7)]
+    assert pieces.left_out == 5
+
+
+@settings(max_examples=80)
+@given(hnp.arrays(np.bool_, hnp.array_shapes(min_dims=2, max_dims=2, max_side=12)), st.integers(1, 6))
+def test_a_cover_is_short_and_holds_every_cell(mask: NDArray[np.bool_], most: int) -> None:
+    cells = np.argwhere(mask)
+    if len(cells) == 0:
+        return
+    cover = cover_of(cells, most)
+    block = cover.block_cells
+    held = {(row, col) for row, first, last in cover.runs for col in range(first, last + 1)}
+    assert held == {(row // block, col // block) for row, col in cells.tolist()}
+    assert len(cover.runs) <= most
+    assert block == 1 or len(cover_of(cells, 99).runs) > most
+    assert cover.runs == tuple(sorted(cover.runs))

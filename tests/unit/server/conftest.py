@@ -15,7 +15,7 @@ from robotd.core.errors import MapError, MissionError
 from robotd.core.pose import Pose2
 from robotd.grid.spec import GridSpec
 from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.localization.estimate import PoseEstimate, PoseState, Region
+from robotd.localization.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.maps.store import MapEntry
 from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.mission.lease import Lease
@@ -169,7 +169,19 @@ class FakeControl:
 
 def an_estimate(state: PoseState, time_ns: int = 9) -> PoseEstimate:
     """A pose as a robot would publish it."""
-    region = Region(Pose2(1.0, 2.0, 0.25), 0.9, 1.1, 1.9, 2.1, 12, 280)
+    region = Region(
+        pose=Pose2(1.0, 2.0, 0.25),
+        covariance=((1e-4, 0.0, 0.0), (0.0, 1e-4, 0.0), (0.0, 0.0, 1e-5)),
+        residual_m=0.02,
+        centre=Pose2(1.0, 2.0, 0.25),
+        extent=Extent(0.9, 1.1, 1.9, 2.1, -0.1, 0.1),
+        circle=Circle(1.0, 2.0, 0.15),
+        cover=Cover(1, ((40, 20, 21), (41, 20, 21))),
+        cells=4,
+        poses=12,
+        best_rank=280,
+        explained=(True,) * 280 + (False,) * 20,
+    )
     return PoseEstimate(time_ns, state, Pose2(1.0, 2.0, 0.25), (region,), 280, 300, True, "d1")
 
 

@@ -15,7 +15,7 @@ from robotd.core.pose import Odometry, Pose2, Twist2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.spec import GridSpec
 from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.localization.estimate import PoseEstimate, PoseState, Region
+from robotd.localization.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
 from robotd.mission.modes import Mode
 from robotd.server.map_wire import MapPayload, pack_map, unpack_map
@@ -33,7 +33,21 @@ from robotd.server.topics import (
 numbers = st.floats(-1e6, 1e6)
 times = st.integers(0, 2**62)
 poses = st.builds(Pose2, numbers, numbers, st.floats(-3.2, 3.2))
-regions = st.builds(Region, poses, numbers, numbers, numbers, numbers, st.integers(1, 9), st.integers(0, 300))
+counts = st.integers(0, 300)
+regions = st.builds(
+    Region,
+    pose=poses,
+    covariance=st.tuples(*[st.tuples(*[numbers] * 3)] * 3),
+    residual_m=numbers,
+    centre=poses,
+    extent=st.builds(Extent, *[numbers] * 6),
+    circle=st.builds(Circle, *[numbers] * 3),
+    cover=st.builds(Cover, st.just(2), st.lists(st.tuples(counts, counts, counts), max_size=3).map(tuple)),
+    cells=counts,
+    poses=counts,
+    best_rank=counts,
+    explained=st.lists(st.booleans(), max_size=9).map(tuple),
+)
 devices = st.builds(
     DeviceStatus,
     st.just("drive"),
@@ -58,6 +72,8 @@ events: st.SearchStrategy[Published] = st.one_of(
         st.integers(0, 300),
         st.booleans(),
         st.text(max_size=8),
+        counts,
+        st.lists(numbers, max_size=4).map(tuple),
     ),
     st.builds(
         Status,

@@ -1,0 +1,51 @@
+"""A map made ready for all that localization does on it: counting readings, and refining poses."""
+
+import copy
+from dataclasses import dataclass
+
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.ternary import TernaryMap
+from robotd.grid.wall_field import WallField
+from robotd.grid.window import CellWindow
+from robotd.localization.obstacles import Obstacles, UnknownCells
+from robotd.localization.prepared import PreparedMap
+from robotd.localization.settings import LocalizationSettings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReadyMap:
+    """What is worked out once for a map; it never changes, so it may be shared by threads."""
+
+    ternary: TernaryMap
+    settings: LocalizationSettings
+    """How it was read."""
+    prepared: PreparedMap
+    """For counting."""
+    walls: WallField
+    """For refinement."""
+
+    @classmethod
+    def of(cls, ternary: TernaryMap, settings: LocalizationSettings) -> "ReadyMap":
+        """Make a map ready. O(cells)."""
+        unknown, error_radius_cells = settings.unknown, settings.range_error_m / ternary.spec.resolution_m
+        obstacles = Obstacles.of_map(ternary, unknown, error_radius_cells, blocked_by=settings.blocked_by)
+        prepared = PreparedMap.of(obstacles, ternary.spec, error_radius_cells)
+        return cls(ternary, settings, prepared, WallField(ternary.spec, ternary.occupied, obstacles.blocking))
+
+    def updated(self, grid: OccupancyGrid, changed: CellWindow) -> "ReadyMap":
+        """Return the map of a grid that differs from the one this is of in a window alone.
+
+        The same as made from nothing. O(cells of the window, and of a rim round it), and a copy of what is kept.
+        """
+        if changed.is_empty:
+            return self
+        ternary = self.ternary.updated(grid, changed)
+        prepared = self._prepared(ternary, self.settings.unknown, changed)
+        walls = copy.deepcopy(self.walls)
+        walls.update(ternary.occupied, prepared.obstacles.blocking, changed.slices)
+        return ReadyMap(ternary, self.settings, prepared, walls)
+
+    def _prepared(self, ternary: TernaryMap, unknown: UnknownCells, changed: CellWindow) -> PreparedMap:
+        radius_cells = self.prepared.error_radius_cells
+        obstacles = self.prepared.obstacles.updated(ternary, unknown, radius_cells, changed)
+        return self.prepared.updated(obstacles, changed.grown(int(radius_cells), ternary.spec.shape))
