@@ -3,13 +3,12 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from fractions import Fraction
 
 from robotd.localization.exact.rationals import Rational, rational
 from robotd.localization.exact.surds import Number, sign, sqrt
 
-_LARGEST_DENOMINATOR = 2**15
-"""Of the half angle's tangent: directions are then within 1e-9 rad of what is asked for."""
+_NEAR = Rational(1, 2 * 10**9)
+"""How far the half angle's tangent may be from what is asked for: directions are then within 1e-9 rad."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +51,7 @@ def direction(bearing_rad: float) -> tuple[Rational, Rational]:
     """
     quarters = round(bearing_rad / (math.pi / 2.0))
     half = rational(math.tan((bearing_rad - quarters * math.pi / 2.0) / 2.0))
-    tangent = rational(_simple(half))
+    tangent = _simplest(half - _NEAR, half + _NEAR)
     norm = 1 + tangent * tangent
     cos, sin = (1 - tangent * tangent) / norm, 2 * tangent / norm
     for _ in range(quarters % 4):
@@ -72,6 +71,11 @@ def theta_slices(beams: Iterable[Beam], headings_rad: Iterable[float]) -> list[t
     return [tuple(one.turned(turn) for one in fixed) for turn in map(direction, headings_rad)]
 
 
-def _simple(number: Rational) -> str:
-    """Return a fraction near a number with a small denominator."""
-    return str(Fraction(int(number.numerator), int(number.denominator)).limit_denominator(_LARGEST_DENOMINATOR))
+def _simplest(low: Rational, high: Rational) -> Rational:
+    """Return the fraction of smallest denominator between two: short numbers make fast arithmetic."""
+    if high < 0:
+        return -_simplest(-high, -low)
+    whole = Rational(max(0, math.ceil(low)))
+    if whole <= high:
+        return whole
+    return whole - 1 + 1 / _simplest(1 / (high - whole + 1), 1 / (low - whole + 1))

@@ -36,6 +36,11 @@ def ring_of(corners: Iterable[Sequence[int | str | float]]) -> Ring:
     return tuple(point for number, point in enumerate(points) if point != points[number - 1])
 
 
+def turned(ring: Ring, *, counter_clockwise: bool) -> Ring:
+    """Return a ring that runs as it should."""
+    return ring if (sign(twice_area(ring)) > 0) == counter_clockwise else ring[::-1]
+
+
 def room(outline: Ring, thickness: Rational) -> Polygon:
     """Return the walls around a free room: a rectangle, this much larger on all sides, with the room as its hole."""
     xs, ys = sorted(point.x for point in outline), sorted(point.y for point in outline)
@@ -69,9 +74,5 @@ def _with_on(border: Border, *, on: bool) -> Border:
 
 
 def _closed(polygon: Polygon) -> PlanarSet:
-    outer = _turned(polygon.outer, counter_clockwise=True)
-    return area_within([outer, *(_turned(hole, counter_clockwise=False) for hole in polygon.holes)], closed=True)
-
-
-def _turned(ring: Ring, *, counter_clockwise: bool) -> Ring:
-    return ring if (sign(twice_area(ring)) > 0) == counter_clockwise else ring[::-1]
+    outer = turned(polygon.outer, counter_clockwise=True)
+    return area_within([outer, *(turned(hole, counter_clockwise=False) for hole in polygon.holes)], closed=True)

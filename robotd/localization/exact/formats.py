@@ -1,0 +1,135 @@
+"""Maps of polygons as text: GeoJSON, WKT and TOML, with every decimal taken exactly as it is written.
+
+TOML has ``outline_m`` for a room (free inside) and ``[[obstacle]]`` with ``points_m`` and ``holes_m``; the simulation's
+worlds are read as well: the closed ``[[wall]]`` around the start is the room, the others are solid.
+"""
+
+import json
+import re
+import tomllib
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Final
+
+from robotd.localization.exact.locate import contains
+from robotd.localization.exact.planar import area_within
+from robotd.localization.exact.points import Point
+from robotd.localization.exact.polygons import Polygon, Ring, ring_of, room, turned
+from robotd.localization.exact.rationals import Rational, rational
+
+_ROOM_WALL: Final = Rational(1)
+"""How thick to make the walls around a room that is given by its inside [m]; no beam sees their outside."""
+_WORDS = re.compile(r"[A-Za-z]+|[(),;=]|[^\s(),;=]+")
+
+
+def polygons_of_geojson(text: str) -> list[Polygon]:
+    """Return all polygons of a GeoJSON document, whatever features and collections they are in.
+
+    Raises:
+        ValueError: it is none, or has no polygons, or one has no area.
+    """
+    return _some(_of_geometry(json.loads(text, parse_float=str)))
+
+
+def polygons_of_wkt(text: str) -> list[Polygon]:
+    """Return all polygons of one or more geometries in well-known text; other kinds are passed over.
+
+    Raises:
+        ValueError: there are none, or their parentheses do not match, or one has no area.
+    """
+    words = _WORDS.findall(text)
+    found: list[Polygon] = []
+    while words:
+        kind = words.pop(0).upper()
+        if kind in ("POLYGON", "MULTIPOLYGON") and words and words[0] == "(":
+            nested = _nested(words)
+            found.extend(map(_polygon, [nested] if kind == "POLYGON" else nested))
+    return _some(found)
+
+
+def polygons_of_toml(text: str) -> list[Polygon]:
+    """Return the polygons of a map or of a simulated world in TOML.
+
+    Raises:
+        ValueError: it is neither, or a wall is open, or one has no area.
+    """
+    document = tomllib.loads(text, parse_float=str)
+    if "wall" in document:
+        return _of_world(document)
+    found = [_polygon([item["points_m"], *item.get("holes_m", [])]) for item in document.get("obstacle", [])]
+    if "outline_m" in document:
+        found.append(room(ring_of(document["outline_m"]), _ROOM_WALL))
+    return _some(found)
+
+
+FORMATS: Final[dict[str, Callable[[str], list[Polygon]]]] = {
+    ".toml": polygons_of_toml,
+    ".geojson": polygons_of_geojson,
+    ".json": polygons_of_geojson,
+    ".wkt": polygons_of_wkt,
+}
+"""What reads a file, by its ending."""
+
+
+def _some(polygons: Iterator[Polygon] | list[Polygon]) -> list[Polygon]:
+    found = list(polygons)
+    if not found:
+        raise ValueError("no polygons in it")
+    return found
+
+
+def _polygon(rings: Sequence[Sequence[Sequence[Any]]]) -> Polygon:
+    outer, *holes = (ring_of(corner[:2] for corner in ring) for ring in rings)
+    return Polygon(outer, tuple(holes))
+
+
+def _of_geometry(item: dict[str, Any]) -> Iterator[Polygon]:
+    match item.get("type"):
+        case "FeatureCollection":
+            for feature in item["features"]:
+                yield from _of_geometry(feature)
+        case "Feature":
+            yield from _of_geometry(item["geometry"] or {})
+        case "GeometryCollection":
+            for geometry in item["geometries"]:
+                yield from _of_geometry(geometry)
+        case "Polygon":
+            yield _polygon(item["coordinates"])
+        case "MultiPolygon":
+            yield from map(_polygon, item["coordinates"])
+
+
+def _nested(words: list[str]) -> list[Any]:
+    """Take one parenthesis off the front: of others, or of a list of corners."""
+    inside: list[Any] = []
+    corner: list[str] = []
+    words.pop(0)
+    while words:
+        if words[0] == "(":
+            inside.append(_nested(words))
+            continue
+        word = words.pop(0)
+        if word in (",", ")"):
+            if corner:
+                inside.append(corner)
+            corner = []
+        else:
+            corner.append(word)
+        if word == ")":
+            return inside
+    raise ValueError("a parenthesis is not closed")
+
+
+def _of_world(document: dict[str, Any]) -> list[Polygon]:
+    start = document["start"]
+    at = Point(rational(start["x_m"]), rational(start["y_m"]))
+    found = []
+    for number, wall in enumerate(document["wall"], 1):
+        if not wall.get("closed", True) or len(wall["points_m"]) < 3:
+            raise ValueError(f"wall {number} encloses nothing: the exact algorithm takes areas")
+        ring = ring_of(wall["points_m"])
+        found.append(room(ring, _ROOM_WALL) if _surrounds(ring, at) else Polygon(ring))
+    return found
+
+
+def _surrounds(ring: Ring, point: Point) -> bool:
+    return contains(area_within([turned(ring, counter_clockwise=True)], closed=True), point)

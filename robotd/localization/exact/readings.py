@@ -1,0 +1,39 @@
+"""Range readings as a table: ``bearing_deg,range_m,status``, one line a reading, the first line the names."""
+
+import csv
+import math
+from collections.abc import Iterable
+
+from robotd.localization.exact.beams import Beam, beam
+from robotd.localization.exact.rationals import rational
+
+_COLUMNS = {"bearing_deg", "range_m"}
+_STATUS = {"hit": True, "miss": False}
+
+
+def beams_of(lines: Iterable[str]) -> list[Beam]:
+    """Return the beams of a table for heading 0; a ``miss`` is an over-range reading, and no status is a hit.
+
+    Ranges are exact decimals; a bearing is taken as the rational direction next to it.
+
+    Raises:
+        ValueError: a column is missing, or something in a line is impossible.
+    """
+    table = csv.DictReader(line for line in lines if line.strip() and not line.startswith("#"))
+    missing = sorted(_COLUMNS - set(table.fieldnames or ()))
+    if missing:
+        raise ValueError(f"no column {', '.join(missing)}")
+    beams = [_beam(row, number) for number, row in enumerate(table, 1)]
+    if not beams:
+        raise ValueError("no readings in it")
+    return beams
+
+
+def _beam(row: dict[str, str], number: int) -> Beam:
+    status = (row.get("status") or "hit").strip()
+    reach = rational(row["range_m"])
+    if status not in _STATUS:
+        raise ValueError(f"reading {number}: the status is hit or miss, got {status}")
+    if reach <= 0:
+        raise ValueError(f"reading {number}: range_m must be positive, got {row['range_m']}")
+    return beam(math.radians(float(row["bearing_deg"])), reach, is_hit=_STATUS[status])

@@ -1,0 +1,106 @@
+"""One map in all formats is one map; what is no map is refused with a reason."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from numpy.typing import NDArray
+
+from robotd.localization.exact.formats import polygons_of_geojson, polygons_of_toml, polygons_of_wkt
+from robotd.localization.exact.locate import contains
+from robotd.localization.exact.measure import face_areas
+from robotd.localization.exact.outlines import outlines
+from robotd.localization.exact.points import Point
+from robotd.localization.exact.polygons import edge_count, solid
+from robotd.localization.exact.rationals import rational
+from robotd.localization.exact.readings import beams_of
+from robotd.localization.exact.surds import sqrt
+from robotd.localization.exact.sweep import arrange
+
+GEOJSON = """{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
+{"type": "MultiPolygon", "coordinates": [[[[0,0],[3,0],[3,3],[0,3],[0,0]],[[1,1],[1,2.1],[2,2.1],[2,1],[1,1]]],
+[[[5,0],[6,0],[5.5,0.7],[5,0]]]]}}]}"""
+WKT = """POLYGON ((0 0, 3 0, 3 3, 0 3, 0 0), (1 1, 2 1, 2 2.1, 1 2.1, 1 1))
+MULTIPOLYGON (((5 0, 6 0, 5.5 7e-1, 5 0)))"""
+TOML = """[[obstacle]]
+points_m = [[0, 0], [3, 0], [3, 3], [0, 3]]
+holes_m = [[[1, 1], [2, 1], [2, 2.1], [1, 2.1]]]
+[[obstacle]]
+points_m = [[5, 0], [6, 0], [5.5, 0.7]]"""
+
+
+@pytest.mark.parametrize(
+    ("read", "text"), [(polygons_of_geojson, GEOJSON), (polygons_of_wkt, WKT), (polygons_of_toml, TOML)]
+)
+def test_a_map_is_the_same_in_every_format(read, text: str) -> None:  # type: ignore[no-untyped-def]  # three readers
+    obstacles = solid(read(text))
+    assert edge_count(obstacles) == 11
+    for x, y, expected in [
+        ("1.5", "2.1", True),
+        ("1.5", "2.09", False),
+        ("5.5", "0.7", True),
+        ("5.5", "0.7001", False),
+    ]:
+        assert contains(obstacles, Point(rational(x), rational(y))) == expected
+
+
+@pytest.mark.parametrize(
+    ("read", "text", "message"),
+    [
+        (polygons_of_geojson, '{"type": "Point", "coordinates": [1, 2]}', "no polygons"),
+        (polygons_of_wkt, "POLYGON ((0 0, 1 0, 1 1", "not closed"),
+        (polygons_of_wkt, "POLYGON ((0 0, 1 0, 2 0))", "an area"),
+        (polygons_of_toml, "name = 'nothing'", "no polygons"),
+        (polygons_of_toml, "start = {x_m = 0, y_m = 0}\n[[wall]]\npoints_m = [[1, 1], [2, 2]]", "encloses nothing"),
+    ],
+)
+def test_what_is_no_map_is_refused(read, text: str, message: str) -> None:  # type: ignore[no-untyped-def]  # the same
+    with pytest.raises(ValueError, match=message):
+        read(text)
+
+
+def test_a_simulated_world_is_a_room_with_obstacles() -> None:
+    world = Path(__file__).parents[4] / "robotd/sim/worlds/laboratory.toml"
+    obstacles = solid(polygons_of_toml(world.read_text(encoding="utf-8")))
+    assert not contains(obstacles, Point(rational("1.2"), rational("1.2")))
+    assert contains(obstacles, Point(rational("-0.5"), rational(3)))
+    assert contains(obstacles, Point(rational("6.5"), rational(4)))
+
+
+@settings(max_examples=40, deadline=None)
+@given(hnp.arrays(np.bool_, st.tuples(st.integers(1, 5), st.integers(1, 5))), st.booleans())
+def test_outlines_surround_just_the_occupied_cells(occupied: NDArray[np.bool_], outside: bool) -> None:
+    cell = rational("0.5")
+    walls = outlines(occupied, cell, x=rational(-1), y=rational(2), outside=outside)
+    for (row, col), is_occupied in np.ndenumerate(np.pad(occupied, 1, constant_values=outside)):
+        centre = Point(cell * (2 * col - 1) / 2 - 1, cell * (2 * row - 1) / 2 + 2)
+        assert contains(walls, centre) == is_occupied
+    arrangement = arrange([walls])
+    bounded = sum(area for area, mask in zip(face_areas(arrangement), arrangement.faces, strict=True) if mask ^ outside)
+    assert bounded == pytest.approx(0.25 * (occupied ^ outside).sum())
+
+
+def test_readings_are_read_exactly() -> None:
+    east, miss = beams_of(["# two readings\n", "bearing_deg,range_m,status\n", "0,1.05,hit\n", "45,2,miss\n"])
+    assert (east.dx, east.dy) == (rational("1.05"), rational(0))
+    assert east.is_hit
+    assert miss.length == 2
+    assert not miss.is_hit
+    assert float(miss.dx) == pytest.approx(float(sqrt(rational(2))), abs=2e-9)
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        (["bearing_deg\n", "0\n"], "no column range_m"),
+        (["bearing_deg,range_m\n"], "no readings"),
+        (["bearing_deg,range_m\n", "0,-1\n"], "must be positive"),
+        (["bearing_deg,range_m,status\n", "0,1,fault\n"], "hit or miss"),
+    ],
+)
+def test_impossible_readings_are_refused(lines: list[str], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        beams_of(lines)
