@@ -49,7 +49,7 @@ def cast(obstacles: PlanarSet, beam: Beam, eps: Rational, pose: Point) -> Verdic
         return Verdict(Outcome.BLOCKED, free_length=Rational(0))
     if beam.is_hit:
         end = pose.moved(beam.dx, beam.dy)
-        square = _nearest_square(obstacles, end)
+        square = distance_square(obstacles, end)
         if compare(square, eps * eps) > 0:
             return Verdict(Outcome.ENDS_IN_THE_OPEN, nearest=sqrt(square))
     return Verdict(Outcome.HOLDS)
@@ -58,6 +58,14 @@ def cast(obstacles: PlanarSet, beam: Beam, eps: Rational, pose: Point) -> Verdic
 def rank_at(obstacles: PlanarSet, beams: Iterable[Beam], eps: Rational, pose: Point) -> int:
     """Return rnk(M, Z, p) of one point."""
     return sum(cast(obstacles, beam, eps, pose).outcome is Outcome.HOLDS for beam in beams)
+
+
+def distance_square(obstacles: PlanarSet, point: Point) -> Number:
+    """Return the square of the distance from a point to the map."""
+    if contains(obstacles, point):
+        return Rational(0)
+    squares = (_square(border, point) for border in obstacles.borders)
+    return min(squares, key=cmp_to_key(compare))
 
 
 def _entry(obstacles: PlanarSet, beam: Beam, pose: Point) -> Number | None:
@@ -85,14 +93,6 @@ def _meeting(border: Border, beam: Beam, pose: Point) -> Iterator[Number]:
 
 def _along(beam: Beam, share: Number, pose: Point) -> Point:
     return pose.moved(share * beam.dx, share * beam.dy)
-
-
-def _nearest_square(obstacles: PlanarSet, point: Point) -> Number:
-    """Return the square of the distance from a point to the map."""
-    if contains(obstacles, point):
-        return Rational(0)
-    squares = (_square(border, point) for border in obstacles.borders)
-    return min(squares, key=cmp_to_key(compare))
 
 
 def _square(border: Border, point: Point) -> Number:
