@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid import kernels
-from robotd.grid.kernels.layout import PackedMap, Words, tiles_of
+from robotd.grid.kernels.layout import PackedMap, Words, any_of_a_tile, tiles_of
 from robotd.grid.window import CellWindow
 
 
@@ -34,11 +34,13 @@ def repacked(
         kernels.pack_cells(copied, mask, packed.origin, changed)
         return copied
 
-    words = anew(packed.free, free)
+    cells, stops, ends = anew(packed.free, free), anew(packed.blocking, blocking), anew(packed.grown, grown)
     return replace(
         packed,
-        free=words,
-        blocking=anew(packed.blocking, blocking),
-        grown=anew(packed.grown, grown),
-        tiles=tiles_of(words),
+        free=cells,
+        blocking=stops,
+        grown=ends,
+        stopping=any_of_a_tile(stops),
+        ending=any_of_a_tile(ends),
+        tiles=tiles_of(cells),
     )

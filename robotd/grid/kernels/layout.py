@@ -55,6 +55,10 @@ class PackedMap:
     """What stops a beam."""
     grown: Words
     """What can end a beam, grown by the error radius."""
+    stopping: Words
+    """OR of 32 rows of the blocking ones, from each row on: the columns of a tile in which a beam can stop there."""
+    ending: Words
+    """The same of the grown ones: the columns in which a beam can end."""
     tiles: NDArray[np.int32]
     """``int32[tiles, 2]``: column of words, and first row, of every tile with a free cell."""
     shape: tuple[int, int]
@@ -78,12 +82,15 @@ class PackedMap:
         """Pack the three masks ``bool[rows, cols]`` of a map, and what lies outside."""
         first_row, first_col = int(free.any(axis=1).argmax()), int(free.any(axis=0).argmax())
         origin = -first_row % TILE_ROWS, -first_col % WORD_CELLS
+        stops, ends = pack(blocking, origin, outside=outside_blocks), pack(grown, origin, outside=outside_ends)
         packed = pack(free, origin, outside=False)
         rows, cols = free.shape
         return cls(
             packed,
-            pack(blocking, origin, outside=outside_blocks),
-            pack(grown, origin, outside=outside_ends),
+            stops,
+            ends,
+            any_of_a_tile(stops),
+            any_of_a_tile(ends),
             tiles_of(packed),
             (rows, cols),
             origin,
@@ -103,6 +110,14 @@ class PackedMap:
     def blank_counters(self, headings: int, bits: int) -> Words:
         """Return counters that have counted nothing."""
         return np.zeros((len(self.tiles), headings, max(bits, BITS_MIN), TILE_ROWS), np.uint64)
+
+
+def any_of_a_tile(plane: Words) -> Words:
+    """Return the OR of each word and the 31 below it of a plane ``uint64[..., rows]``; 0 beyond the last row."""
+    windows = plane.copy()
+    for step in (1, 2, 4, 8, 16):
+        windows[:, :-step] |= windows[:, step:]
+    return windows
 
 
 def tiles_of(free: Words) -> NDArray[np.int32]:

@@ -3,7 +3,8 @@
  * For one direction the bodies of all beams are prefixes of one chain of cells. Directions are taken in batches: per tile,
  * the chains of a batch are walked once, and what is free up to the end of each body is kept. Then, heading by heading, the
  * beams of the batch are counted seven at a time: what is kept of the body, and the grown map seen from the head. So
- * the counters of one heading stay in the first-level cache, and what is kept of a batch in the second.
+ * the counters of one heading stay in the first-level cache, and what is kept of a batch in the second. What a tile sees
+ * of the map at an offset is looked at only where it can matter: its columns, taken together over 32 rows, tell.
  */
 #include <pthread.h>
 #include <stddef.h>
@@ -15,6 +16,15 @@
 
 #define TILE 32
 #define THREADS_MAX 16
+#define FOUND_MAX 112 /* sixteen sevens */
+
+/* What one thread keeps of the bodies of a batch in one tile: the free cells that each leaves open. Bodies of one chain
+ * that leave the same cells share a plane. */
+typedef struct {
+    uint64_t *planes;   /* [slots + 3][32]; the last three are all free cells, none, and all cells */
+    uint64_t *columns;  /* [slots]: the columns of the tile that have an open cell */
+    int32_t *plane_of;  /* [slots] */
+} bodies;
 
 /* Where to find the plane of one beam in one tile. */
 typedef struct {
@@ -28,19 +38,26 @@ static inline int32_t clamp(int32_t value, int32_t low, int32_t high)
     return value < low ? low : value > high ? high : value;
 }
 
-/* The words that hold, from bit `offset[1] & 63` on, what the cells of a tile see at an offset. */
-static inline const uint64_t *seen_from(const count_job *job, const uint64_t *map, const int32_t *tile,
-                                        const int32_t *offset)
+/* Where in a plane the words are that hold, from bit `offset[1] & 63` on, what the cells of a tile see at an offset. */
+static inline size_t seen_from(const count_job *job, const int32_t *tile, const int32_t *offset)
 {
     const int32_t word = clamp(tile[0] + (offset[1] >> 6), -2, job->words);
     const int32_t row = clamp(tile[1] + offset[0], -TILE, job->rows);
-    return map + (size_t)(word + 2) * ((size_t)job->rows + 2 * TILE) + (size_t)(row + TILE);
+    return (size_t)(word + 2) * ((size_t)job->rows + 2 * TILE) + (size_t)(row + TILE);
+}
+
+/* Of columns that were taken together over the rows of a tile: those that its cells see. */
+static inline uint64_t columns_from(const uint64_t *low, size_t stride, uint64_t shift)
+{
+    return low[0] >> shift | low[stride] << 1 << (63 - shift);
 }
 
 #define NAME(x) x##_portable
 #define TARGET
 #define VECTOR 16
 #define FUNNEL(a, b, n) ((a) >> (n) | ((b) + (b)) << (63 - (n)))
+#define ANY(a) ((a)[0] | (a)[1])
+#define IS_ZERO(a) (ANY(a) == 0)
 #define XOR3(a, b, c) (a ^ b ^ c)
 #define MAJORITY(a, b, c) ((a & b) | (c & (a ^ b)))
 #include "count_body.h"
@@ -55,6 +72,8 @@ static inline const uint64_t *seen_from(const count_job *job, const uint64_t *ma
 #define FUNNEL(a, b, n)                                                                                                \
     ((VEC)_mm256_or_si256(_mm256_srl_epi64((__m256i)(a), _mm_cvtsi64_si128((long long)(n))),                           \
                           _mm256_sll_epi64((__m256i)(b), _mm_cvtsi64_si128((long long)(64 - (n))))))
+#define ANY(a) ((a)[0] | (a)[1] | (a)[2] | (a)[3])
+#define IS_ZERO(a) _mm256_testz_si256((__m256i)(a), (__m256i)(a))
 #define XOR3(a, b, c) (a ^ b ^ c)
 #define MAJORITY(a, b, c) ((a & b) | (c & (a ^ b)))
 #include "count_body.h"
@@ -64,6 +83,8 @@ static inline const uint64_t *seen_from(const count_job *job, const uint64_t *ma
 #define TARGET __attribute__((target("avx512f,avx512vbmi2")))
 #define VECTOR 64
 #define FUNNEL(a, b, n) ((VEC)_mm512_shrdv_epi64((__m512i)(a), (__m512i)(b), _mm512_set1_epi64((long long)(n))))
+#define ANY(a) ((uint64_t)_mm512_reduce_or_epi64((__m512i)(a)))
+#define IS_ZERO(a) (_mm512_test_epi64_mask((__m512i)(a), (__m512i)(a)) == 0)
 #define XOR3(a, b, c) TERNARY(a, b, c, 0x96)
 #define MAJORITY(a, b, c) TERNARY(a, b, c, 0xE8)
 #include "count_body.h"
@@ -108,20 +129,25 @@ static void complement(const count_job *job, int32_t tile)
 static void count_tile(const worker *self, int32_t tile)
 {
     const count_job *job = self->job;
-    uint64_t *kept = job->kept + (size_t)self->number * (size_t)(job->slots + 2) * TILE;
-    memset(kept + (size_t)job->slots * TILE, 0, TILE * sizeof *kept);
-    memset(kept + (size_t)(job->slots + 1) * TILE, 0xff, TILE * sizeof *kept);
+    static const int32_t here[2] = {0, 0};
+    const size_t slots = (size_t)job->slots, number = (size_t)self->number;
+    const bodies kept = {job->planes + number * (slots + 3) * TILE, job->columns + number * slots,
+                         job->plane_of + number * slots};
+    uint64_t *last = kept.planes + slots * TILE;
+    memcpy(last, job->free + seen_from(job, job->tiles + 2 * tile, here), TILE * sizeof *last);
+    memset(last + TILE, 0, TILE * sizeof *last);
+    memset(last + 2 * TILE, 0xff, TILE * sizeof *last);
 #ifdef HAS_X86
     if (self->level == AVX512) {
-        count_tile_avx512(job, tile, kept);
+        count_tile_avx512(job, tile, &kept);
         return;
     }
     if (self->level == AVX2) {
-        count_tile_avx2(job, tile, kept);
+        count_tile_avx2(job, tile, &kept);
         return;
     }
 #endif
-    count_tile_portable(job, tile, kept);
+    count_tile_portable(job, tile, &kept);
 }
 
 static void *work(void *argument)

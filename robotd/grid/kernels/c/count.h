@@ -13,6 +13,8 @@ typedef struct {
     const uint64_t *free;      /* [words + 4][rows + 64]: where the robot may stand */
     const uint64_t *blocking;  /* the same: what stops a beam */
     const uint64_t *grown;     /* the same: what ends a beam, grown by the error radius */
+    const uint64_t *stopping;  /* the same: OR of 32 rows of blocking from each on: columns in which a beam can stop */
+    const uint64_t *ending;    /* the same of grown: columns in which a beam can end */
     int32_t blocked_by;        /* how many blocking cells block a body, 1 or 2 */
     int32_t words;             /* columns of words in the map */
     int32_t rows;              /* rows of the map, rounded up to whole tiles */
@@ -28,7 +30,9 @@ typedef struct {
     int32_t headings;
     int32_t bits;              /* planes of a counter, at least 3 */
     uint64_t *counters;        /* [tile_count][headings][bits][32] */
-    uint64_t *kept;            /* [threads][slots + 2][32], for the kernel's own use */
+    uint64_t *planes;          /* [threads][slots + 3][32], for the kernel's own use */
+    uint64_t *columns;         /* [threads][slots], the same */
+    int32_t *plane_of;         /* [threads][slots], the same */
 } count_job;
 
 /* Count every beam at every cell from which it is feasible, or take it back.

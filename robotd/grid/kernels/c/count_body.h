@@ -3,6 +3,8 @@
  *   TARGET           the attribute that allows its instructions
  *   VECTOR           how many bytes a vector has
  *   FUNNEL(a, b, n)  the low 64 bits of (b, a) >> n, lane by lane, 0 <= n < 64
+ *   ANY(a)           the OR of its lanes
+ *   IS_ZERO(a)       whether that is 0
  *   XOR3(a, b, c)    a ^ b ^ c           MAJORITY(a, b, c)  two of them or more
  */
 
@@ -12,35 +14,60 @@ typedef uint64_t NAME(vec) __attribute__((vector_size(VECTOR), aligned(8), may_a
 #define VECTORS (TILE / LANES)
 #define AT(words, i) (*(const VEC *)((words) + (i) * LANES))
 
-/* Walk the chains of a batch and keep, in its slots, the free cells that are not blocked so far. */
-static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, int32_t batch, uint64_t *kept,
+static inline TARGET uint64_t NAME(any)(const VEC *words)
+{
+    VEC all = words[0];
+    for (int i = 1; i < VECTORS; i++)
+        all |= words[i];
+    return ANY(all);
+}
+
+/* Walk one chain and keep, for its slots, the free cells that are not blocked so far. */
+static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, int32_t group, const bodies *kept,
                                      const int twice)
 {
-    static const int32_t here[2] = {0, 0};
     const size_t stride = (size_t)job->rows + 2 * TILE;
-    const uint64_t *free = seen_from(job, job->free, tile, here);
-    for (int32_t group = job->batches[batch]; group < job->batches[batch + 1]; group++) {
-        VEC open[VECTORS], met[VECTORS] = {{0}};
-        for (int i = 0; i < VECTORS; i++)
-            open[i] = AT(free, i);
-        for (int32_t cell = job->groups[group]; cell < job->groups[group + 1]; cell++) {
-            const int32_t *offset = job->chains + 3 * (size_t)cell;
-            const uint64_t *low = seen_from(job, job->blocking, tile, offset), *high = low + stride;
-            const uint64_t shift = (uint64_t)(offset[1] & 63);
+    const int32_t all_free = job->slots, none = job->slots + 1;
+    const int32_t *offset = job->chains + 3 * (size_t)job->groups[group];
+    const int32_t *end = job->chains + 3 * (size_t)job->groups[group + 1];
+    VEC open[VECTORS], met[VECTORS] = {{0}};
+    for (int i = 0; i < VECTORS; i++)
+        open[i] = AT(kept->planes + (size_t)all_free * TILE, i);
+    uint64_t columns = NAME(any)(open);
+    int32_t plane = all_free, is_new = 0;
+    for (; offset < end; offset += 3) {
+        const size_t at = seen_from(job, tile, offset);
+        const uint64_t shift = (uint64_t)(offset[1] & 63);
+        if ((columns_from(job->stopping + at, stride, shift) & columns) != 0) {
+            const uint64_t *low = job->blocking + at, *high = low + stride;
+            VEC all_gone = {0};
             for (int i = 0; i < VECTORS; i++) {
                 const VEC blocking = FUNNEL(AT(low, i), AT(high, i), shift);
+                VEC gone = open[i] & blocking;
                 if (twice) {
-                    open[i] &= ~(met[i] & blocking);
+                    gone &= met[i];
                     met[i] |= blocking;
-                } else
-                    open[i] &= ~blocking;
+                }
+                open[i] ^= gone;
+                all_gone |= gone;
             }
-            if (offset[2] < 0)
-                continue;
-            VEC *slot = (VEC *)(kept + (size_t)offset[2] * TILE);
-            for (int i = 0; i < VECTORS; i++)
-                slot[i] = open[i];
+            if (!IS_ZERO(all_gone)) {
+                columns = NAME(any)(open);
+                is_new = 1;
+            }
         }
+        const int32_t slot = offset[2];
+        if (slot < 0)
+            continue;
+        if (is_new) {
+            plane = columns != 0 ? slot : none;
+            VEC *cells = (VEC *)(kept->planes + (size_t)slot * TILE);
+            for (int i = 0; i < VECTORS; i++)
+                cells[i] = open[i];
+            is_new = 0;
+        }
+        kept->columns[slot] = columns;
+        kept->plane_of[slot] = plane;
     }
 }
 
@@ -66,7 +93,7 @@ static inline TARGET void NAME(add_seven)(uint64_t *counter, const source *beams
         carry = MAJORITY(n1, twos, carry);
         n[2 * VECTORS] = XOR3(n2, fours, carry);
         carry = MAJORITY(n2, fours, carry);
-        for (int32_t bit = 3; bit < bits; bit++) {
+        for (int32_t bit = 3; bit < bits && !IS_ZERO(carry); bit++) {
             const VEC old = n[bit * VECTORS];
             n[bit * VECTORS] = old ^ carry;
             carry &= old;
@@ -74,38 +101,89 @@ static inline TARGET void NAME(add_seven)(uint64_t *counter, const source *beams
     }
 }
 
-static inline TARGET source NAME(source_of)(const count_job *job, const int32_t *tile, const int32_t *beam,
-                                            const uint64_t *kept)
+/* counter += times, wherever the robot may stand. */
+static TARGET void NAME(add_everywhere)(uint64_t *counter, const uint64_t *free, uint32_t times, int32_t bits)
 {
-    const uint64_t *body = kept + (size_t)beam[0] * TILE, *everything = kept + (size_t)(job->slots + 1) * TILE;
-    if (beam[1] == NO_HEAD)
-        return (source){everything, everything, 0, body};
-    const uint64_t *low = seen_from(job, job->grown, tile, beam + 1);
-    return (source){low, low + (size_t)job->rows + 2 * TILE, (uint64_t)(beam[2] & 63), body};
+    for (int i = 0; i < VECTORS; i++) {
+        const VEC here = AT(free, i);
+        VEC *n = (VEC *)counter + i, carry = {0};
+        for (int32_t bit = 0; bit < bits; bit++) {
+            const VEC old = n[bit * VECTORS], add = here & -(uint64_t)(times >> bit & 1);
+            n[bit * VECTORS] = XOR3(old, add, carry);
+            carry = MAJORITY(old, add, carry);
+        }
+    }
 }
 
-static TARGET void NAME(count_tile)(const count_job *job, int32_t number, uint64_t *kept)
+/* Find the beams of a list that have something to say of a tile. Most do not: their bodies are blocked from all of it,
+ * or all that they leave open lies in columns in which no beam ends. And a miss whose body nothing blocks says the same of
+ * all free cells: these are counted in `everywhere`. Returns how many of the first `most` were found, and where to go on. */
+static inline TARGET int32_t NAME(telling)(const count_job *job, const int32_t *tile, const int32_t **next,
+                                           const int32_t *end, const bodies *kept, source *found, int32_t count,
+                                           uint32_t *everywhere)
+{
+    const size_t stride = (size_t)job->rows + 2 * TILE;
+    const uint64_t *all = kept->planes + (size_t)(job->slots + 2) * TILE;
+    const int32_t *beam = *next;
+    for (; beam < end && count < FOUND_MAX; beam += 3) {
+        const int32_t slot = beam[0], plane = kept->plane_of[slot];
+        const uint64_t *body = kept->planes + (size_t)plane * TILE;
+        if (beam[1] == NO_HEAD) {
+            const int32_t free = plane == job->slots;
+            found[count] = (source){all, all, 0, body};
+            *everywhere += (uint32_t)free;
+            count += !free && kept->columns[slot] != 0;
+        } else {
+            const size_t at = seen_from(job, tile, beam + 1);
+            const uint64_t shift = (uint64_t)(beam[2] & 63);
+            found[count] = (source){job->grown + at, job->grown + at + stride, shift, body};
+            count += (columns_from(job->ending + at, stride, shift) & kept->columns[slot]) != 0;
+        }
+    }
+    *next = beam;
+    return count;
+}
+
+static TARGET void NAME(count_list)(const count_job *job, const int32_t *tile, const int32_t *beam, const int32_t *end,
+                                    const bodies *kept, uint64_t *counter)
+{
+    const uint64_t *free = kept->planes + (size_t)job->slots * TILE, *none = free + TILE;
+    source found[FOUND_MAX];
+    int32_t count = 0;
+    uint32_t everywhere = 0;
+    while (beam < end) {
+        count = NAME(telling)(job, tile, &beam, end, kept, found, count, &everywhere);
+        int32_t added = 0;
+        for (; added + 7 <= count; added += 7)
+            NAME(add_seven)(counter, found + added, job->bits);
+        memmove(found, found + added, (size_t)(count - added) * sizeof *found);
+        count -= added;
+    }
+    if (count > 0) {
+        while (count < 7)
+            found[count++] = (source){none, none, 0, none};
+        NAME(add_seven)(counter, found, job->bits);
+    }
+    if (everywhere > 0)
+        NAME(add_everywhere)(counter, free, everywhere, job->bits);
+}
+
+static TARGET void NAME(count_tile)(const count_job *job, int32_t number, const bodies *kept)
 {
     const int32_t *tile = job->tiles + 2 * number;
     const size_t counter_size = (size_t)job->bits * TILE;
     uint64_t *counters = job->counters + (size_t)number * (size_t)job->headings * counter_size;
-    const uint64_t *nothing = kept + (size_t)job->slots * TILE;
     for (int32_t batch = 0; batch < job->batch_count; batch++) {
-        if (job->blocked_by > 1)
-            NAME(walk)(job, tile, batch, kept, 1);
-        else
-            NAME(walk)(job, tile, batch, kept, 0);
+        for (int32_t group = job->batches[batch]; group < job->batches[batch + 1]; group++)
+            if (job->blocked_by > 1)
+                NAME(walk)(job, tile, group, kept, 1);
+            else
+                NAME(walk)(job, tile, group, kept, 0);
         const int32_t *list = job->lists + (size_t)batch * (size_t)job->headings;
-        for (int32_t heading = 0; heading < job->headings; heading++) {
-            for (int32_t first = list[heading]; first < list[heading + 1]; first += 7) {
-                source beams[7];
-                for (int32_t i = 0; i < 7; i++)
-                    beams[i] = first + i < list[heading + 1]
-                                   ? NAME(source_of)(job, tile, job->beams + 3 * (size_t)(first + i), kept)
-                                   : (source){nothing, nothing, 0, nothing};
-                NAME(add_seven)(counters + (size_t)heading * counter_size, beams, job->bits);
-            }
-        }
+        for (int32_t heading = 0; heading < job->headings; heading++)
+            NAME(count_list)(job, tile, job->beams + 3 * (size_t)list[heading],
+                             job->beams + 3 * (size_t)list[heading + 1], kept,
+                             counters + (size_t)heading * counter_size);
     }
 }
 
@@ -117,5 +195,7 @@ static TARGET void NAME(count_tile)(const count_job *job, int32_t number, uint64
 #undef TARGET
 #undef VECTOR
 #undef FUNNEL
+#undef ANY
+#undef IS_ZERO
 #undef XOR3
 #undef MAJORITY

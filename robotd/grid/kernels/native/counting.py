@@ -32,9 +32,12 @@ def count_feasible(
         ValueError: this processor lacks those instructions.
     """
     tiles, headings, bits, _ = counters.shape
-    kept = np.empty((min(threads, _THREADS_MAX), beams.slots + 2, TILE_ROWS), np.uint64)
+    workers = min(threads, _THREADS_MAX)
+    planes = np.empty((workers, beams.slots + 3, TILE_ROWS), np.uint64)
+    columns, plane_of = np.empty((workers, beams.slots), np.uint64), np.empty((workers, beams.slots), np.int32)
     job = ffi.new("count_job *")
     job.free, job.blocking, job.grown = words(the_map.free), words(the_map.blocking), words(the_map.grown)
+    job.stopping, job.ending = words(the_map.stopping), words(the_map.ending)
     job.blocked_by = the_map.blocked_by
     job.words, job.rows = the_map.words, the_map.rows
     job.tiles, job.tile_count = ints(the_map.tiles), tiles
@@ -42,9 +45,10 @@ def count_feasible(
     job.batches, job.batch_count = ints(beams.batches), len(beams.batches) - 1
     job.lists, job.beams, job.slots = ints(beams.lists), ints(beams.beams), beams.slots
     job.headings, job.bits = headings, bits
-    job.counters, job.kept = words(counters), words(kept)
+    job.counters = words(counters)
+    job.planes, job.columns, job.plane_of = words(planes), words(columns), ints(plane_of)
     level = -1 if instructions is None else INSTRUCTION_SETS.index(instructions)
-    if not lib.count_feasible(job, subtract, min(threads, _THREADS_MAX), level):
+    if not lib.count_feasible(job, subtract, workers, level):
         raise ValueError(f"this processor has no {instructions}")
 
 
