@@ -14,7 +14,7 @@ along a wall no reading can tell: ``map_error_m`` is added for that. A direction
 import enum
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +80,10 @@ class PoseBox:
         ):
             raise ValueError(f"bounds in the wrong order: {self}")
 
+    def begun_at(self, start: Pose2) -> "PoseBox":
+        """Return the same box with another start."""
+        return replace(self, start=start)
+
     @classmethod
     def around(cls, start: Pose2, half_m: float, half_rad: float) -> "PoseBox":
         """Return the box that reaches so far to all sides of a pose."""
@@ -93,6 +97,27 @@ class PoseBox:
             heading_rad - half_rad,
             heading_rad + half_rad,
         )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Heads:
+    """Where the readings of a sweep end, in the robot frame."""
+
+    at_cells: NDArray[np.float64]
+    """``float64[hits, 2]``: x, y."""
+    is_hit: NDArray[np.bool_]
+    """``bool[m]``: which readings these are; misses have no head."""
+
+    @classmethod
+    def of(cls, readings: NDArray[np.float64], resolution_m: float) -> "Heads":
+        """Take them from ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`."""
+        is_hit = readings[:, 4] == 0.0
+        hits = readings if is_hit.all() else readings[is_hit]
+        at_cells = np.empty((len(hits), 2))
+        at_cells[:, 0] = hits[:, 2] + hits[:, 1] * np.cos(hits[:, 0])
+        at_cells[:, 1] = hits[:, 3] + hits[:, 1] * np.sin(hits[:, 0])
+        at_cells /= resolution_m
+        return cls(at_cells, is_hit)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,17 +165,22 @@ def refine(
 
     O(n m) for each of at most 32 steps.
     """
+    return refine_heads(field, Heads.of(readings, field.spec.resolution_m), boxes, settings)
+
+
+def refine_heads(
+    field: WallField, heads: Heads, boxes: Sequence[PoseBox], settings: RefinementSettings
+) -> RefinedPoses:
+    """Do as :func:`refine` with readings that are used more than once."""
     spec = field.spec
-    is_hit = readings[:, 4] == 0.0
-    hits = readings if is_hit.all() else readings[is_hit]
     fits = kernels.fit_poses(
         field.codes,
-        _DISTANCES[settings.walls],
-        _heads(hits) / spec.resolution_m,
+        DISTANCES[settings.walls],
+        heads.at_cells,
         _in_cells(boxes, spec),
         settings.outlier_m / spec.resolution_m,
     )
-    return _in_metres(fits, is_hit, spec, settings)
+    return _in_metres(fits, heads.is_hit, spec, settings)
 
 
 def expected_ranges(
@@ -164,20 +194,14 @@ def expected_ranges(
         poses: ``float64[n, 3]``: x, y [m] and heading [rad], map frame.
         blocked_by: how many blocking cells a beam must meet to be stopped, 1 or 2.
     """
-    spec, headings = field.spec, poses[:, 2]
-    beams = np.column_stack((readings[:, 2:4] / spec.resolution_m, np.cos(readings[:, 0]), np.sin(readings[:, 0])))
-    origin = np.array([spec.origin_x_m, spec.origin_y_m])
-    at = np.column_stack(((poses[:, :2] - origin) / spec.resolution_m, np.cos(headings), np.sin(headings)))
+    spec = field.spec
+    beams, at = np.empty((len(readings), 4)), np.empty((len(poses), 4))
+    beams[:, :2] = readings[:, 2:4] / spec.resolution_m
+    beams[:, 2], beams[:, 3] = np.cos(readings[:, 0]), np.sin(readings[:, 0])
+    at[:, :2] = spec.positions_at(poses[:, :2])[:, ::-1]
+    at[:, 2], at[:, 3] = np.cos(poses[:, 2]), np.sin(poses[:, 2])
     ways, stops = kernels.cast_beams(field.skips, beams, at, blocked_by)
     return ExpectedRanges(ways * spec.resolution_m, stops == ENDS)
-
-
-def _heads(hits: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the heads of hits in the robot frame, ``float64[m, 2]`` [m]."""
-    heads = np.empty((len(hits), 2))
-    heads[:, 0] = hits[:, 2] + hits[:, 1] * np.cos(hits[:, 0])
-    heads[:, 1] = hits[:, 3] + hits[:, 1] * np.sin(hits[:, 0])
-    return heads
 
 
 def _in_cells(boxes: Sequence[PoseBox], spec: GridSpec) -> NDArray[np.float64]:
@@ -219,4 +243,5 @@ def _distances(walls: Walls) -> NDArray[np.float64]:
     return np.where(codes > 0, roots, 0.0)
 
 
-_DISTANCES = {walls: _distances(walls) for walls in Walls}
+DISTANCES = {walls: _distances(walls) for walls in Walls}
+"""What distance each code of a wall field stands for, ``float64[256]`` [cells], by ``code + 128``."""

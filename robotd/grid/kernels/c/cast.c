@@ -115,16 +115,10 @@ void skip_codes(const uint8_t *ends, const uint8_t *blocks, int32_t rows, int32_
     }
 }
 
-/* How far to a line across; for ever, if the beam runs along it. */
-static inline double way_to(double side, double start, double ahead, double per_cell)
-{
-    return fabs(ahead) < ALONG ? INFINITY : (side - start) * per_cell;
-}
-
 /* The cell of a point on a side, which rounding does not take round the corner. */
 static inline int64_t cell_of(double at, int64_t cell, int64_t skip)
 {
-    const int64_t found = (int64_t)floor(at) + 1, least = cell - skip + 1, most = cell + skip - 1;
+    const int64_t found = (int64_t)at + 1, least = cell - skip + 1, most = cell + skip - 1;
     return found < least ? least : found > most ? most : found;
 }
 
@@ -134,8 +128,11 @@ static double cast(const uint8_t *skips, int32_t rows, int32_t cols, const doubl
     *stops = BLOCKS;
     if (!(start[0] >= 0.0 && start[1] >= 0.0 && start[0] < cols - 2 && start[1] < rows - 2))
         return 0.0;
-    int64_t col = (int64_t)floor(start[0]) + 1, row = (int64_t)floor(start[1]) + 1;
-    const double per_col = 1.0 / ahead[0], per_row = 1.0 / ahead[1];
+    int64_t col = (int64_t)start[0] + 1, row = (int64_t)start[1] + 1;
+    /* A beam that runs along a side never crosses it. */
+    const int32_t along_x = fabs(ahead[0]) < ALONG, along_y = fabs(ahead[1]) < ALONG;
+    const double per_col = along_x ? 0.0 : 1.0 / ahead[0], never_x = along_x ? INFINITY : 0.0;
+    const double per_row = along_y ? 0.0 : 1.0 / ahead[1], never_y = along_y ? INFINITY : 0.0;
     const int32_t right = ahead[0] > 0.0, up = ahead[1] > 0.0;
     double way = 0.0, run_way = 0.0;
     for (int32_t met = 0, in_run = 0;;) {
@@ -150,8 +147,9 @@ static double cast(const uint8_t *skips, int32_t rows, int32_t cols, const doubl
         if ((meets && met >= blocked_by) || col == 0 || row == 0 || col == cols - 1 || row == rows - 1)
             return run_way;
         const int64_t skip = meets ? 1 : code;
-        const double to_x = way_to((double)(right ? col - 1 + skip : col - skip), start[0], ahead[0], per_col);
-        const double to_y = way_to((double)(up ? row - 1 + skip : row - skip), start[1], ahead[1], per_row);
+        const int64_t side_x = right ? col - 1 + skip : col - skip, side_y = up ? row - 1 + skip : row - skip;
+        const double to_x = ((double)side_x - start[0]) * per_col + never_x;
+        const double to_y = ((double)side_y - start[1]) * per_row + never_y;
         if (to_x <= to_y) {
             way = to_x;
             row = cell_of(start[1] + way * ahead[1], row, skip);

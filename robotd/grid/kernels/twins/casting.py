@@ -108,7 +108,7 @@ def _way(side: NDArray[np.intp], start: NDArray[np.float64], ahead: NDArray[np.f
 
 def _cell(at: NDArray[np.float64], cell: NDArray[np.intp], skip: NDArray[np.intp]) -> NDArray[np.intp]:
     """Return the cell of a point on a side, which rounding does not take round the corner."""
-    return np.clip(np.floor(at).astype(np.intp) + 1, cell - skip + 1, cell + skip - 1)
+    return np.clip(at.astype(np.intp) + 1, cell - skip + 1, cell + skip - 1)
 
 
 def _squares(sources: NDArray[np.bool_], reach: int) -> NDArray[np.int16]:
