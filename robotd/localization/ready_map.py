@@ -1,6 +1,5 @@
 """A map made ready for all that localization does on it: counting readings, and refining poses."""
 
-import copy
 from dataclasses import dataclass
 
 from robotd.grid.occupancy import OccupancyGrid
@@ -30,7 +29,7 @@ class ReadyMap:
         unknown, error_radius_cells = settings.unknown, settings.range_error_m / ternary.spec.resolution_m
         obstacles = Obstacles.of_map(ternary, unknown, error_radius_cells, blocked_by=settings.blocked_by)
         prepared = PreparedMap.of(obstacles, ternary.spec, error_radius_cells)
-        return cls(ternary, settings, prepared, WallField(ternary.spec, ternary.occupied, obstacles.blocking))
+        return cls(ternary, settings, prepared, WallField.of(ternary.spec, ternary.occupied, obstacles.blocking))
 
     def updated(self, grid: OccupancyGrid, changed: CellWindow) -> "ReadyMap":
         """Return the map of a grid that differs from the one this is of in a window alone.
@@ -41,8 +40,7 @@ class ReadyMap:
             return self
         ternary = self.ternary.updated(grid, changed)
         prepared = self._prepared(ternary, self.settings.unknown, changed)
-        walls = copy.deepcopy(self.walls)
-        walls.update(ternary.occupied, prepared.obstacles.blocking, changed.slices)
+        walls = self.walls.updated(ternary.occupied, prepared.obstacles.blocking, changed)
         return ReadyMap(ternary, self.settings, prepared, walls)
 
     def _prepared(self, ternary: TernaryMap, unknown: UnknownCells, changed: CellWindow) -> PreparedMap:

@@ -4,6 +4,7 @@ from hypothesis import strategies as st
 
 from robotd.grid.spec import GridSpec
 from robotd.grid.wall_field import WallField
+from robotd.grid.window import CellWindow
 
 SHAPE = (90, 110)
 SPEC = GridSpec(0.05, 0.0, 0.0, SHAPE)
@@ -21,11 +22,19 @@ def test_a_field_that_was_updated_is_as_if_made_anew(
 ) -> None:
     random = np.random.default_rng(seed)
     walls, blocking = random.random(SHAPE) < share, random.random(SHAPE) < share
-    field = WallField(SPEC, walls, blocking)
-    window = slice(rows[0], min(90, sum(rows))), slice(cols[0], min(110, sum(cols)))
-    size = walls[window].shape
-    walls[window], blocking[window] = random.random(size) < 3 * share, random.random(size) < 3 * share
-    field.update(walls, blocking, window)
-    anew = WallField(SPEC, walls, blocking)
-    np.testing.assert_array_equal(field.codes, anew.codes)
-    np.testing.assert_array_equal(field.skips, anew.skips)
+    field = WallField.of(SPEC, walls, blocking)
+    before = field.codes.copy(), field.skips.copy()
+    window = CellWindow(rows[0], min(90, sum(rows)), cols[0], min(110, sum(cols)))
+    walls[window.slices] = random.random(window.shape) < 3 * share
+    blocking[window.slices] = random.random(window.shape) < 3 * share
+    updated, anew = field.updated(walls, blocking, window), WallField.of(SPEC, walls, blocking)
+    np.testing.assert_array_equal(updated.codes, anew.codes)
+    np.testing.assert_array_equal(updated.skips, anew.skips)
+    np.testing.assert_array_equal(field.codes, before[0])
+    np.testing.assert_array_equal(field.skips, before[1])
+
+
+def test_a_field_stays_as_it_is_if_nothing_changed() -> None:
+    walls = np.zeros(SHAPE, np.bool_)
+    field = WallField.of(SPEC, walls, walls)
+    assert field.updated(walls, walls, CellWindow(0, 0, 0, 0)) is field

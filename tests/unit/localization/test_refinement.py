@@ -32,7 +32,7 @@ def room() -> NDArray[np.bool_]:
 
 
 def field_of(walls: NDArray[np.bool_], spec: GridSpec = SPEC) -> WallField:
-    return WallField(spec, walls, walls)
+    return WallField.of(spec, walls, walls)
 
 
 def sweep_from(
