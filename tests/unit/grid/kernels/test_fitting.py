@@ -1,4 +1,4 @@
-"""C fits poses as NumPy does."""
+"""C fits poses, and looks for them on a lattice, as NumPy does."""
 
 import importlib
 
@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robotd.grid.kernels import twins
+from robotd.grid.kernels.fitting import Lattice
 
 try:
     native = importlib.import_module("robotd.grid.kernels.native")
@@ -37,3 +38,27 @@ def test_poses_and_all_that_is_said_of_them_are_equal(
         np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-9, atol=1e-9)
     assert (one.poses >= boxes[:, 3:6]).all()
     assert (one.poses <= boxes[:, 6:]).all()
+
+
+steps = st.tuples(st.integers(-4, 0), st.integers(0, 4)).map(list)
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    st.integers(0, 2**32),
+    st.tuples(st.integers(1, 60), st.integers(1, 60)),
+    st.sampled_from([0, 1, 30]),
+    st.tuples(steps, steps, steps),
+    st.integers(1, 3),
+)
+def test_the_same_pose_of_a_lattice_is_found(
+    seed: int, shape: tuple[int, int], heads: int, bounds: tuple[list[int], list[int], list[int]], step_cells: int
+) -> None:
+    random = np.random.default_rng(seed)
+    codes = twins.wall_codes(random.random(shape) < 0.02)
+    costs = np.minimum(np.abs(np.arange(-128, 128)), 64).astype(np.int32)
+    start = random.uniform(-0.2, 1.2, 3) * (shape[1], shape[0], 6.0)
+    lattice = Lattice(start, np.array(bounds, np.int32).ravel(), step_cells, 0.05)
+    arguments = (codes, costs, random.normal(size=(heads, 2)) * 12.0, lattice)
+    (one, one_cost), (other, other_cost) = native.scan_poses(*arguments), twins.scan_poses(*arguments)
+    assert (one.tolist(), one_cost) == (other.tolist(), other_cost)
