@@ -38,6 +38,7 @@ WORDS = {
     ),
     "eval": ("eval.verbs", "tell how often localization is right, ambiguous, lost, or sure and wrong on real logs"),
     "config": ("configuration", "check and show configurations"),
+    "exact": ("exact", "localize on a map of polygons by the exact combinatorial algorithm, without rounding"),
     "doctor": ("doctor", "say what this installation consists of, which kernels it uses and why, and what it can see"),
     "demo": ("demo.verbs", "show the main job, end to end, on a robot that is not there"),
 }

@@ -1,37 +1,35 @@
 """Maps of polygons as text: GeoJSON, WKT and TOML, with every decimal taken exactly as it is written.
 
-TOML has ``outline_m`` for a room (free inside) and ``[[obstacle]]`` with ``points_m`` and ``holes_m``; the simulation's
-worlds are read as well: the closed ``[[wall]]`` around the start is the room, the others are solid.
+TOML has ``outline_m`` for a room (all beyond is solid) and ``[[obstacle]]`` with ``points_m`` and ``holes_m``; the
+simulation's worlds are read as well: the closed ``[[wall]]`` around the start is the room, the others are solid.
 """
 
 import json
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Final
 
 from robotd.localization.exact.locate import contains
-from robotd.localization.exact.planar import area_within
+from robotd.localization.exact.planar import PlanarSet, area_within
 from robotd.localization.exact.points import Point
-from robotd.localization.exact.polygons import Polygon, Ring, ring_of, room, turned
-from robotd.localization.exact.rationals import Rational, rational
+from robotd.localization.exact.polygons import Polygon, Ring, ring_of, solid, turned
+from robotd.localization.exact.rationals import rational
 
-_ROOM_WALL: Final = Rational(1)
-"""How thick to make the walls around a room that is given by its inside [m]; no beam sees their outside."""
 _WORDS = re.compile(r"[A-Za-z]+|[(),;=]|[^\s(),;=]+")
 
 
-def polygons_of_geojson(text: str) -> list[Polygon]:
-    """Return all polygons of a GeoJSON document, whatever features and collections they are in.
+def map_of_geojson(text: str) -> PlanarSet:
+    """Return the union of all polygons of a GeoJSON document, whatever features and collections they are in.
 
     Raises:
         ValueError: it is none, or has no polygons, or one has no area.
     """
-    return _some(_of_geometry(json.loads(text, parse_float=str)))
+    return _solid(_of_geometry(json.loads(text, parse_float=str)))
 
 
-def polygons_of_wkt(text: str) -> list[Polygon]:
-    """Return all polygons of one or more geometries in well-known text; other kinds are passed over.
+def map_of_wkt(text: str) -> PlanarSet:
+    """Return the union of all polygons of geometries in well-known text; other kinds are passed over.
 
     Raises:
         ValueError: there are none, or their parentheses do not match, or one has no area.
@@ -43,11 +41,11 @@ def polygons_of_wkt(text: str) -> list[Polygon]:
         if kind in ("POLYGON", "MULTIPOLYGON") and words and words[0] == "(":
             nested = _nested(words)
             found.extend(map(_polygon, [nested] if kind == "POLYGON" else nested))
-    return _some(found)
+    return _solid(found)
 
 
-def polygons_of_toml(text: str) -> list[Polygon]:
-    """Return the polygons of a map or of a simulated world in TOML.
+def map_of_toml(text: str) -> PlanarSet:
+    """Return what is solid in a map or in a simulated world in TOML.
 
     Raises:
         ValueError: it is neither, or a wall is open, or one has no area.
@@ -56,25 +54,23 @@ def polygons_of_toml(text: str) -> list[Polygon]:
     if "wall" in document:
         return _of_world(document)
     found = [_polygon([item["points_m"], *item.get("holes_m", [])]) for item in document.get("obstacle", [])]
-    if "outline_m" in document:
-        found.append(room(ring_of(document["outline_m"]), _ROOM_WALL))
-    return _some(found)
+    return _solid(found, ring_of(document["outline_m"]) if "outline_m" in document else None)
 
 
-FORMATS: Final[dict[str, Callable[[str], list[Polygon]]]] = {
-    ".toml": polygons_of_toml,
-    ".geojson": polygons_of_geojson,
-    ".json": polygons_of_geojson,
-    ".wkt": polygons_of_wkt,
+FORMATS: Final[dict[str, Callable[[str], PlanarSet]]] = {
+    ".toml": map_of_toml,
+    ".geojson": map_of_geojson,
+    ".json": map_of_geojson,
+    ".wkt": map_of_wkt,
 }
 """What reads a file, by its ending."""
 
 
-def _some(polygons: Iterator[Polygon] | list[Polygon]) -> list[Polygon]:
+def _solid(polygons: Iterable[Polygon], room: Ring | None = None) -> PlanarSet:
     found = list(polygons)
-    if not found:
+    if not found and room is None:
         raise ValueError("no polygons in it")
-    return found
+    return solid(found, room=room)
 
 
 def _polygon(rings: Sequence[Sequence[Sequence[Any]]]) -> Polygon:
@@ -119,16 +115,20 @@ def _nested(words: list[str]) -> list[Any]:
     raise ValueError("a parenthesis is not closed")
 
 
-def _of_world(document: dict[str, Any]) -> list[Polygon]:
+def _of_world(document: dict[str, Any]) -> PlanarSet:
     start = document["start"]
     at = Point(rational(start["x_m"]), rational(start["y_m"]))
-    found = []
+    room: Ring | None = None
+    obstacles: list[Polygon] = []
     for number, wall in enumerate(document["wall"], 1):
         if not wall.get("closed", True) or len(wall["points_m"]) < 3:
             raise ValueError(f"wall {number} encloses nothing: the exact algorithm takes areas")
         ring = ring_of(wall["points_m"])
-        found.append(room(ring, _ROOM_WALL) if _surrounds(ring, at) else Polygon(ring))
-    return found
+        if room is None and _surrounds(ring, at):
+            room = ring
+        else:
+            obstacles.append(Polygon(ring))
+    return solid(obstacles, room=room)
 
 
 def _surrounds(ring: Ring, point: Point) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from robotd.localization.exact.planar import Border, PlanarSet, area_within, twice_area
 from robotd.localization.exact.points import Point
-from robotd.localization.exact.rationals import Rational, rational
+from robotd.localization.exact.rationals import rational
 from robotd.localization.exact.surds import sign
 from robotd.localization.exact.sweep import arrange
 
@@ -41,22 +41,19 @@ def turned(ring: Ring, *, counter_clockwise: bool) -> Ring:
     return ring if (sign(twice_area(ring)) > 0) == counter_clockwise else ring[::-1]
 
 
-def room(outline: Ring, thickness: Rational) -> Polygon:
-    """Return the walls around a free room: a rectangle, this much larger on all sides, with the room as its hole."""
-    xs, ys = sorted(point.x for point in outline), sorted(point.y for point in outline)
-    west, east, south, north = xs[0] - thickness, xs[-1] + thickness, ys[0] - thickness, ys[-1] + thickness
-    return Polygon((Point(west, south), Point(east, south), Point(east, north), Point(west, north)), (outline,))
-
-
-def solid(polygons: Iterable[Polygon]) -> PlanarSet:
-    """Return the union of polygons, closed: M.
+def solid(polygons: Iterable[Polygon], *, room: Ring | None = None) -> PlanarSet:
+    """Return the union of polygons, closed: M; and of all that lies outside a room, if there is one.
 
     Shared edges are no cracks, overlaps no borders. Two polygons that touch in a point leave one there.
 
     Raises:
         ValueError: a ring crosses or overlaps itself or another of its polygon.
     """
-    return arrange([_closed(polygon) for polygon in polygons]).select(bool)
+    sets = [_closed(polygon) for polygon in polygons]
+    if room is not None:
+        outside = area_within([turned(room, counter_clockwise=False)], closed=True)
+        sets.append(PlanarSet(outside.borders, far=True))
+    return arrange(sets).select(bool)
 
 
 def edge_count(obstacles: PlanarSet) -> int:

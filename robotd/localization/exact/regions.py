@@ -4,6 +4,7 @@
 they are areas; without, segments and single points.
 """
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -128,4 +129,9 @@ def _box(arrangement: Arrangement, cells: _Cells) -> tuple[float, float, float, 
     around = (edge for edge in arrangement.edges if edge.left in faces or edge.right in faces)
     ends += [end for edge in around for end in ends_of(arrangement, edge)]
     xs, ys = [x for x, _ in ends], [y for _, y in ends]
-    return min(xs), min(ys), max(xs), max(ys)
+    return (
+        min(xs, default=-math.inf),
+        min(ys, default=-math.inf),
+        max(xs, default=math.inf),
+        max(ys, default=math.inf),
+    )

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from robotd.localization.exact.beams import Beam
 from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.points import Point
-from robotd.localization.exact.polygons import Polygon, ring_of, room, solid
+from robotd.localization.exact.polygons import Polygon, ring_of, solid
 from robotd.localization.exact.rationals import rational
 
 SHAPES = [
@@ -27,9 +27,10 @@ def polygons(draw: st.DrawFn) -> Polygon:
     return Polygon(ring_of([(y + dx, x + dy) if flip else (x + dx, y + dy) for x, y in shape]))
 
 
-ROOM = room(ring_of([(-1, -1), (7, -1), (7, 6), (6, 7), (-1, 7)]), rational(1))
+INSIDE = ring_of([(-1, -1), (7, -1), (7, 6), (6, 7), (-1, 7)])
+ROOM = Polygon(ring_of([(-2, -2), (8, -2), (8, 8), (-2, 8)]), (INSIDE,))
 obstacle_lists = st.lists(polygons(), min_size=1, max_size=3)
-solids = st.builds(lambda obstacles, walls: solid([*obstacles, *walls]), obstacle_lists, st.sampled_from([[], [ROOM]]))
+solids = st.builds(lambda obstacles, room: solid(obstacles, room=room), obstacle_lists, st.sampled_from([None, INSIDE]))
 
 lengths = st.integers(-4, 4).map(rational)
 vectors = st.tuples(lengths, lengths).filter(any)

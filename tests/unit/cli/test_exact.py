@@ -1,0 +1,101 @@
+"""``robotctl exact`` answers without a daemon, in text, in JSON and in a picture."""
+
+import json
+from pathlib import Path
+
+import pytest
+from matplotlib.image import imread
+
+from robotd.cli.exact import read_map
+from robotd.cli.main import main
+from robotd.core.errors import MapError
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.spec import GridSpec
+from robotd.localization.exact.locate import contains
+from robotd.localization.exact.points import Point
+from robotd.localization.exact.rationals import rational
+from robotd.maps.store import MapStore
+
+MAP = """outline_m = [[0, 0], [8, 0], [8, 6], [0, 6]]
+[[obstacle]]
+points_m = [[3, 3], [4, 3], [4, 4], [3, 4]]
+"""
+READINGS = """bearing_deg,range_m,status
+0,7,hit
+90,4,hit
+180,1,hit
+270,2,hit
+45,1.5,miss
+"""
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> list[str]:
+    (tmp_path / "room.toml").write_text(MAP, encoding="utf-8")
+    (tmp_path / "readings.csv").write_text(READINGS, encoding="utf-8")
+    return [str(tmp_path / "room.toml"), str(tmp_path / "readings.csv")]
+
+
+def test_exact_readings_leave_one_point(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["exact", *files, "--eps-m", "0", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["best_rank"] == 5
+    (region,) = answer["regions"]
+    assert region["kind"] == "point"
+    assert region["box_m"] == [1.0, 2.0, 1.0, 2.0]
+    assert region["readings"] == [0, 1, 2, 3, 4]
+
+
+def test_with_an_error_radius_it_is_an_area_which_is_drawn(
+    files: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    picture = tmp_path / "where.png"
+    assert main(["exact", *files, "--eps-m", "0.1", "--out", str(picture)]) == 0
+    assert "area" in capsys.readouterr().out
+    pixels = imread(picture)
+    blue = (pixels[..., 2] > 0.6) & (pixels[..., 0] < 0.2)
+    assert 20 < blue.sum() < 3000  # 0.2 m by 0.2 m of 8 m by 6 m
+
+
+def test_an_unknown_heading_is_found(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    turned = "bearing_deg,range_m\n-90,7\n0,4\n90,1\n180,2\n"
+    Path(files[1]).write_text(turned, encoding="utf-8")
+    assert main(["exact", *files, "--eps-m", "0", "--headings", "4", "--json"]) == 0
+    headings = {region["heading_deg"] for region in json.loads(capsys.readouterr().out)["regions"]}
+    assert headings == {90.0, 270.0}  # the room is the same from the other side, but for the obstacle
+
+
+def test_it_says_why_a_reading_does_not_hold(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["exact", *files, "--at", "1", "3.5"]) == 0
+    said = capsys.readouterr().out
+    assert "blocked after 2.0000 m" in said
+    assert "ends in the open, 1.0000 m from the next obstacle" in said
+    assert main(["exact", *files, "--at", "1", "3.5", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["rank"] == 2
+
+
+def test_it_finds_the_smallest_error(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    Path(files[1]).write_text("bearing_deg,range_m\n0,7.1\n180,1.1\n", encoding="utf-8")
+    assert main(["exact", *files, "--smallest-error", "1", "--json"]) == 0
+    bracket = json.loads(capsys.readouterr().out)
+    assert bracket["above_m"] < 0.1 <= bracket["at_most_m"] < bracket["above_m"] + 0.0011
+
+
+def test_a_saved_map_of_cells_is_a_map_of_polygons(tmp_path: Path) -> None:
+    grid = OccupancyGrid(GridSpec(0.5, -1.0, 0.0, (4, 6)))
+    grid.cells[:] = 0
+    grid.cells[1, 2] = 255
+    MapStore(tmp_path).save("cells", grid, {}, 0)
+    walls = read_map(tmp_path / "cells")
+    assert contains(walls, Point(rational("0.25"), rational("0.75")))
+    assert not contains(walls, Point(rational("0.75"), rational("0.75")))
+    assert contains(walls, Point(rational(100), rational(100)))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"), [("map.txt", MAP, "the ending must be"), ("map.toml", "x = 1", "no polygons")]
+)
+def test_what_is_no_map_is_refused(tmp_path: Path, name: str, text: str, message: str) -> None:
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    with pytest.raises(MapError, match=message):
+        read_map(tmp_path / name)
