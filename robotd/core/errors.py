@@ -13,6 +13,7 @@
     ├── DeviceError            the board answered that it will not, or reported a fault
     ├── MissionError           the request cannot be done now; says why
     ├── MapError               a stored map is missing or damaged; says what
+    ├── TooLarge               it would take more memory than it may; says how much
     ├── RecordingError         a recording is missing or damaged; says what and where
     ├── ServerError            the server refused; carries its error code
     └── RequestTimeout         the server did not answer in time
@@ -84,6 +85,10 @@ class MissionError(RobotdError):
 
 class MapError(RobotdError):
     """A stored map is missing or damaged; the message says which part."""
+
+
+class TooLarge(RobotdError):
+    """It would take more memory than it may; says how much."""
 
 
 class RecordingError(RobotdError):

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.errors import TooLarge
 from robotd.core.reading import RangeReading
 from robotd.grid import kernels
 from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, BeamSettings, Words, unpack
@@ -20,6 +21,9 @@ _READINGS_MAX = int(np.iinfo(np.uint16).max)
 _BITS_AT_FIRST = 9
 """A sweep of 300 readings fits; counters that must hold more are widened."""
 
+_BYTES_MAX = 1 << 30
+"""A rank grid that would be larger is refused."""
+
 _WORTH_THREADS = 1000
 """Fewer beams than this are counted sooner than a thread is started."""
 
@@ -28,6 +32,11 @@ class RankGrid:
     """Counts feasible readings for every cell and every heading; it can be looked at after any of them.
 
     Only free cells are poses; the rank of all others stays 0.
+
+    The counts of 2048 cells (a tile of 32 x 64 with a free cell in it), at one heading, take 256 bytes for every binary
+    digit, of which there are nine up to 511 readings: 300 headings of a room of 7 x 9 m at 50 mm take 10 MB, of
+    256 x 256 free cells 22 MB, of 1024 x 1024 free cells 350 MB. More than 1 GiB is refused; :func:`.counted.count_all`
+    counts maps of any size.
     """
 
     def __init__(self, the_map: PreparedMap, headings_rad: Sequence[float], *, threads: int = 1) -> None:
@@ -37,6 +46,9 @@ class RankGrid:
             the_map: the map; what is derived from it is shared, nothing is copied.
             headings_rad: the headings to try, map frame: one where it is known, else the theta slices.
             threads: how many threads may share the counting; the counts do not depend on it.
+
+        Raises:
+            TooLarge: the counts would take more than 1 GiB.
         """
         self.spec = the_map.spec
         self.headings_rad = tuple(headings_rad)
@@ -46,7 +58,8 @@ class RankGrid:
         self._map = the_map.packed
         reach_cells = 2 * max(the_map.spec.shape)
         self._how = BeamSettings(the_map.spec.resolution_m, the_map.error_radius_cells, reach_cells)
-        self._counters = self._map.blank_counters(len(self.headings_rad), _BITS_AT_FIRST)
+        self._refuse_if_too_large(0)
+        self._counters = self._map.blank_counters(len(self.headings_rad), bits_of(0))
 
     def add(self, *readings: RangeReading) -> None:
         """Count measured readings, hits or misses; many at once cost less than one after the other.
@@ -56,9 +69,11 @@ class RankGrid:
 
         Raises:
             ValueError: a reading measured nothing, or it is the 65536th; then none was counted.
+            TooLarge: the counts of so many readings would take more than 1 GiB; then none was counted.
         """
         if self.readings + len(readings) > _READINGS_MAX:
             raise ValueError(f"a rank grid counts {_READINGS_MAX} readings")
+        self._refuse_if_too_large(self.readings + len(readings))
         self._count(readings, subtract=False)
 
     def remove(self, *readings: RangeReading) -> None:
@@ -78,9 +93,17 @@ class RankGrid:
             return
         beams = kernels.draw_beams(numbers_of(readings), self._headings, self._how)
         self.readings += -len(readings) if subtract else len(readings)
-        self._counters = _widened(self._counters, self.readings.bit_length())
+        self._counters = _widened(self._counters, bits_of(self.readings))
         threads = self._threads if len(beams.beams) >= _WORTH_THREADS else 1
         kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
+
+    def _refuse_if_too_large(self, readings: int) -> None:
+        needed = self._map.counter_bytes(len(self.headings_rad), bits_of(readings))
+        if needed > _BYTES_MAX:
+            raise TooLarge(
+                f"counting {readings} readings at {len(self.headings_rad)} headings on a map of {self.spec.rows} x "
+                f"{self.spec.cols} cells takes {needed / 2**30:.1f} GiB; at most {_BYTES_MAX / 2**30:.1f} GiB"
+            )
 
     @property
     def rank(self) -> NDArray[np.uint16]:
@@ -130,6 +153,11 @@ class RankGrid:
     def best_cells(self) -> NDArray[np.intp]:
         """The poses of greatest rank (the paper's loc), as :meth:`cells_of_rank`."""
         return self.cells_of_rank(self.best_rank)
+
+
+def bits_of(readings: int) -> int:
+    """Return how many binary digits the counts of so many readings have."""
+    return max(_BITS_AT_FIRST, readings.bit_length())
 
 
 def even_headings(count: int) -> tuple[float, ...]:

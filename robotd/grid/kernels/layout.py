@@ -107,6 +107,10 @@ class PackedMap:
         """Rows, a multiple of the tile's."""
         return int(self.free.shape[1]) - 2 * TILE_ROWS
 
+    def counter_bytes(self, headings: int, bits: int) -> int:
+        """Return how much memory counters take: 256 bytes for every tile, heading and bit."""
+        return len(self.tiles) * headings * max(bits, BITS_MIN) * TILE_ROWS * 8
+
     def blank_counters(self, headings: int, bits: int) -> Words:
         """Return counters that have counted nothing."""
         return np.zeros((len(self.tiles), headings, max(bits, BITS_MIN), TILE_ROWS), np.uint64)

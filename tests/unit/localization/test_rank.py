@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
+from robotd.core.errors import TooLarge
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.spec import GridSpec
@@ -174,6 +175,17 @@ def test_counters_grow_with_what_they_count() -> None:
         ranks.remove(one)
     with pytest.raises(ValueError, match="65535"):
         ranks.add(*[one] * 65536)
+
+
+def test_counts_that_would_not_fit_are_refused_with_how_much_they_need() -> None:
+    the_map = map_of(np.zeros((4096, 4096), np.bool_))
+    with pytest.raises(TooLarge, match=r"0 readings at 300 headings on a map of 4096 x 4096 cells takes 5\.3 GiB"):
+        RankGrid(the_map, even_headings(300))
+    ranks = RankGrid(the_map, even_headings(50))
+    reading = RangeReading(0, 0.0, ReadingStatus.OK, 1.0)
+    with pytest.raises(TooLarge, match="40000 readings at 50 headings"):
+        ranks.add(*[reading] * 40000)
+    assert ranks.readings == 0
 
 
 def test_a_map_without_free_cells_has_no_poses() -> None:
