@@ -25,7 +25,7 @@ class BoughtDevice(ABC, Generic[M]):
 
     NAME: ClassVar[str]
     """``drive``, ``pantilt`` or ``rangefinder``."""
-    STOP: ClassVar[bytes]
+    STOP: bytes
     """What stops all that moves or shines, preformatted; safe to send at any time."""
 
     def __init__(self, wire: Wire[M], wiring: Wiring, *, quiet_s: float = 0.05) -> None:

@@ -8,6 +8,7 @@ from robotd.core.errors import ConfigError
 from robotd.hardware.devices.board_drive import BoardDrive
 from robotd.hardware.devices.board_pantilt import BoardPanTilt
 from robotd.hardware.devices.board_rangefinder import BoardRangefinder
+from robotd.hardware.devices.dimetix_rangefinder import DimetixRangefinder
 from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
@@ -38,7 +39,10 @@ PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {
     "board": Dialect(BoardPanTilt, _OURS),
     "ptu": Dialect(PtuPanTilt, LineFormat(9_600)),
 }
-RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {"board": Dialect(BoardRangefinder, _OURS)}
+RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {
+    "board": Dialect(BoardRangefinder, _OURS),
+    "dimetix": Dialect(DimetixRangefinder, LineFormat(19_200, 7, "E", 1)),
+}
 
 DIALECTS: Mapping[str, Mapping[str, Dialect[PortSettings, object]]] = {
     "drive": DRIVES,  # type: ignore[dict-item]  # whoever looks here makes no adapter

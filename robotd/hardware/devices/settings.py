@@ -91,6 +91,8 @@ class RangefinderSettings(PortSettings):
 
     port: str = "/dev/robotd/rangefinder"
     """A device path, best one under ``/dev/serial/by-id``, or ``tcp://host:port``."""
+    device_id: int = 0
+    """Which device on the line, where several can share one: the switch on a Dimetix, 0 to 9."""
     range_bias_m: float = 0.0
     """Added to every range along the beam."""
     range_min_m: float = 0.3
@@ -101,6 +103,8 @@ class RangefinderSettings(PortSettings):
     def __post_init__(self) -> None:
         """Refuse what the port or the calibration refuses."""
         PortSettings.__post_init__(self)
+        if not 0 <= self.device_id <= 9:
+            raise ValueError(f"device_id must be 0 to 9, got {self.device_id}")
         _ = self.calibration
 
     @property

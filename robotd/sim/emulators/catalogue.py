@@ -9,6 +9,7 @@ from robotd.hardware.transport.line_format import LineFormat
 from robotd.sim.boards.drive import DriveBoard
 from robotd.sim.boards.pantilt import PanTiltBoard
 from robotd.sim.boards.rangefinder import RangefinderBoard
+from robotd.sim.emulators.dimetix import DimetixEmulator
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.ptu import PtuEmulator
 from robotd.sim.host import HostedBoard
@@ -36,6 +37,7 @@ PANTILTS: Mapping[str, Emulator[HeadPlant]] = {
 }
 RANGEFINDERS: Mapping[str, Emulator[LaserPlant]] = {
     "board": Emulator(lambda plant, boot_id: RangefinderBoard(plant, boot_id=boot_id)),
+    "dimetix": Emulator(lambda plant, _: Paced(DimetixEmulator(plant), LineFormat(19_200, 7, "E", 1))),
 }
 OWN = "board"
 

@@ -1,0 +1,89 @@
+"""A Dimetix distance sensor: one command, one reading or one numbered error."""
+
+import asyncio
+from collections.abc import Callable
+from typing import ClassVar, NoReturn
+
+from robotd.core.clock import now_ns
+from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
+from robotd.core.reading import ReadingStatus
+from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.rangefinder import Shot
+from robotd.hardware.devices.settings import RangefinderSettings
+from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.link.dialogue import Dialogue, Heard
+from robotd.hardware.wire.dimetix import DimetixWire, Distance, ErrorCode, Failed, Message, Ready, Value, command
+
+_TENTH_MM_PER_M = 10_000
+_ANSWER_S = 1.0
+_TRIES = 3
+_IDLE_POLL_S = 2.0
+_MEASURES_S = 5.0
+"""A dark target may take so long; then the measurement is cleared."""
+_STATUS: dict[int, ReadingStatus] = {
+    ErrorCode.BAD_SIGNAL: ReadingStatus.WEAK,
+    ErrorCode.TOO_WEAK: ReadingStatus.WEAK,
+    ErrorCode.TOO_STRONG: ReadingStatus.SATURATED,
+    ErrorCode.AMBIENT_LIGHT: ReadingStatus.AMBIENT,
+}
+
+
+class DimetixRangefinder(BoughtDevice[Message]):
+    """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`."""
+
+    NAME: ClassVar[str] = "rangefinder"
+
+    def __init__(self, settings: RangefinderSettings, wiring: Wiring) -> None:
+        """Make the device; its bias is applied to every range."""
+        super().__init__(DimetixWire(), wiring)
+        self.STOP = command(settings.device_id, "c")  # clears a measurement under way and switches the light off
+        self._device = settings.device_id
+        self._bias_m = settings.range_bias_m
+        self._shooting = asyncio.Lock()
+
+    async def switch_laser(self, *, on: bool) -> None:
+        """Switch the light; same errors as :meth:`arm`."""
+        await self._order("o" if on else "c")
+
+    async def shoot(self, *, timeout_s: float) -> Shot:
+        """Take one reading; TransportError if the device is absent, any other failure is a result."""
+        dialogue = self._talk()
+        patience_s = min(timeout_s, _MEASURES_S)
+        async with self._shooting:
+            try:
+                heard = await dialogue.ask(command(self._device, "g"), self._is(Distance), timeout_s=patience_s)
+            except LinkTimeout:
+                dialogue.post(self.STOP)
+                return Shot(now_ns(), ReadingStatus.TIMEOUT, None, None)
+            except DeviceError:
+                return Shot(now_ns(), ReadingStatus.DEVICE_ERROR, None, None)
+        message = heard.message
+        if isinstance(message, Distance):
+            range_m = message.tenth_mm / _TENTH_MM_PER_M + self._bias_m
+            return Shot(heard.time_ns, ReadingStatus.OK, range_m, None)
+        code = message.code if isinstance(message, Failed) else 0
+        return Shot(heard.time_ns, _STATUS.get(code, ReadingStatus.DEVICE_ERROR), None, None)
+
+    async def _greet(self, dialogue: Dialogue[Message]) -> None:
+        clear = await dialogue.ask(self.STOP, self._is(Ready), timeout_s=_ANSWER_S, tries=_TRIES)
+        if isinstance(clear.message, Failed):
+            raise RemoteProtocolError(f"{self.name}: refused to clear: error {clear.message.code}")
+
+    async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
+        """It speaks only when asked, so that it is still there must be asked: for its temperature."""
+        while True:
+            await asyncio.sleep(_IDLE_POLL_S)
+            await dialogue.ask(command(self._device, "t"), self._is(Value), timeout_s=_MEASURES_S)
+
+    def _report(self, heard: Heard[Message]) -> None:
+        """Let go by what comes late: the answer to a measurement that was given up."""
+
+    async def _order(self, letter: str) -> None:
+        data = command(self._device, letter)
+        answer = (await self._talk().ask(data, self._is(Ready), timeout_s=_ANSWER_S, tries=_TRIES)).message
+        if isinstance(answer, Failed):
+            raise DeviceError(self.name, f"error_{answer.code}", f"refused {data!r}")
+
+    def _is(self, kind: type) -> Callable[[Message], bool]:
+        """Return a test for answers of this device: the one expected, or an error."""
+        return lambda message: message.device == self._device and isinstance(message, (kind, Failed))

@@ -1,0 +1,82 @@
+"""An emulated Dimetix distance sensor: its ASCII commands on top of a laser's physics."""
+
+import re
+
+from firmware_proto.rangefinder import ShotStatus
+from robotd.sim.plant import LaserPlant, ShotAnswer
+
+_COMMAND = re.compile(rb"s(\d)([a-z]+)")
+_TEMPERATURE_TENTH_C = 253
+_ERRORS = {
+    ShotStatus.OVER_RANGE: 255,
+    ShotStatus.TOO_NEAR: 254,
+    ShotStatus.WEAK: 255,
+    ShotStatus.SATURATED: 256,
+    ShotStatus.AMBIENT: 257,
+}
+
+
+class DimetixEmulator:
+    """Answers as device ``device``; a new command cancels a measurement under way."""
+
+    def __init__(self, plant: LaserPlant, device: int = 0) -> None:
+        self._plant = plant
+        self._device = device
+        self._typed = bytearray()
+        self._said = bytearray(f"g{device}?\r\n".encode())
+        self._pending: tuple[int, ShotAnswer] | None = None
+        self._points = False
+
+    def receive(self, data: bytes, now_us: int) -> None:
+        """Take bytes from the host."""
+        self.advance(now_us)
+        self._typed += data
+        while (end := self._typed.find(b"\n")) >= 0:
+            typed = bytes(self._typed[:end]).strip()
+            del self._typed[: end + 1]
+            self._obey(typed, now_us)
+
+    def advance(self, now_us: int) -> None:
+        """Let time pass."""
+        if self._pending is not None and self._pending[0] <= now_us:
+            answer, self._pending = self._pending[1], None
+            self._plant.switch(on=self._points)
+            if answer.status is ShotStatus.OK:
+                self._say(f"g{round(answer.range_m * 10_000):+09d}")
+            else:
+                self._say(f"@E{_ERRORS.get(answer.status, 203)}")
+
+    @property
+    def next_event_us(self) -> int | None:
+        """When a measurement is done."""
+        return None if self._pending is None else self._pending[0]
+
+    def take_output(self) -> bytes:
+        """Return, once, what it has for the host."""
+        said = bytes(self._said)
+        self._said.clear()
+        return said
+
+    def _obey(self, typed: bytes, now_us: int) -> None:
+        found = _COMMAND.fullmatch(typed)
+        if found is None or int(found[1]) != self._device:
+            if typed and found is None:
+                self._say("@E203")
+            return
+        self._pending = None
+        letters = found[2].decode()
+        if letters == "g":
+            self._plant.switch(on=True)
+            answer = self._plant.shoot(now_us)
+            self._pending = (now_us + answer.takes_us, answer)
+        elif letters in {"o", "c"}:
+            self._points = letters == "o"
+            self._plant.switch(on=self._points)
+            self._say("?")
+        elif letters == "t":
+            self._say(f"t{_TEMPERATURE_TENTH_C:+09d}")
+        else:
+            self._say("@E203")
+
+    def _say(self, text: str) -> None:
+        self._said += f"g{self._device}{text}\r\n".encode()

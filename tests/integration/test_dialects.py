@@ -1,0 +1,41 @@
+"""The daemon maps a room and localizes in it whatever its devices speak."""
+
+import dataclasses
+
+import pytest
+
+from robotd.cli.emulated import config_text
+from robotd.config import Config, loads
+from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.requests import LocalizeMission, MapMission
+from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
+from robotd.sim.robot import DEVICES, SimulatedRobot
+from robotd.sim.world import load_world
+from tests.integration.conftest import Live
+
+COMBINATIONS = [
+    *(Dialects(drive=dialect) for dialect in DRIVES if dialect != OWN),
+    *(Dialects(pantilt=dialect) for dialect in PANTILTS if dialect != OWN),
+    *(Dialects(rangefinder=dialect) for dialect in RANGEFINDERS if dialect != OWN),
+]
+
+
+def config_for(dialects: Dialects) -> Config:
+    """Return what ``robotctl sim`` would write for these devices."""
+    return loads(config_text({device: f"/dev/emulated/{device}" for device in DEVICES}, dialects.settings()))
+
+
+def name_of(dialects: Dialects) -> str:
+    return "-".join(value for value in dataclasses.astuple(dialects) if value != OWN)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("dialects", COMBINATIONS, ids=name_of)
+async def test_a_room_is_mapped_and_the_robot_finds_itself_in_it(live: Live, dialects: Dialects) -> None:
+    world = load_world("office")
+    robot = SimulatedRobot(world, seed=2, dialects=dialects)
+    async with live(robot, config_for(dialects)) as it:
+        await it.done(MapMission("office", world.stops_m[:1], world.start_pose))
+        said = await it.done(LocalizeMission())
+        estimate = [event for event in said if isinstance(event, PoseEstimate) and event.final][-1]
+        assert estimate.state is PoseState.LOCALIZED, estimate
