@@ -1,0 +1,68 @@
+"""One of the paper's tests, small and whole: the page that is kept says what the code says."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robotd.grid.binary import BinaryMap
+from robotd.localization.feasible import feasible_poses
+from robotd.localization.obstacles import Obstacles
+from robotd.localization.probe import probe_of
+from tests.paper.figures import FIGURES, draw_figures
+from tests.paper.page import table
+from tests.paper.page import test_row as row_of
+from tests.paper.pictures import draw_test
+from tests.paper.robot import Tour, probes_at, tour_of
+from tests.paper.rooms import OFFICE, TESTS
+from tests.paper.run import ROOT, SEEDS
+from tests.paper.trials import ERROR_M, OURS, PAPERS, Manner, outcome_of
+
+PAGE = ROOT / "docs" / "paper" / "README.md"
+FIRST = TESTS[0]
+
+
+@pytest.fixture(scope="module")
+def tour() -> Tour:
+    return tour_of(OFFICE.world, OFFICE.stops_m, SEEDS[0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("manner", [PAPERS, OURS], ids=["paper", "ours"])
+def test_the_page_has_the_row_that_this_code_measures(tour: Tour, manner: Manner) -> None:
+    pose = FIRST.pose_on(tour.map_by(PAPERS.grid, OFFICE.spec))
+    readings = probes_at(OFFICE.world, pose, FIRST.probes, SEEDS[0])
+    outcome = outcome_of(manner, tour.map_by(manner.grid, OFFICE.spec), readings, pose)
+    assert outcome.nearest_off_m < 0.2
+    assert table((), [row_of(FIRST, outcome)]).splitlines()[-1] in PAGE.read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_what_is_drawn_is_the_sum_of_the_feasible_poses_as_the_paper_defines_them(tour: Tour, tmp_path: Path) -> None:
+    grid = tour.map_by(PAPERS.grid, OFFICE.spec)
+    pose = FIRST.pose_on(grid)
+    readings = probes_at(OFFICE.world, pose, FIRST.probes, 7)
+    outcome = outcome_of(PAPERS, grid, readings, pose)
+    resolution_m = grid.spec.resolution_m
+    obstacles = Obstacles.of(BinaryMap.from_grid(grid).occupied, ERROR_M / resolution_m)
+    rank = np.zeros(grid.spec.shape, np.int64)
+    for reading in PAPERS.counted(readings):
+        probe = probe_of(
+            reading,
+            pose.heading_rad,
+            resolution_m=resolution_m,
+            error_radius_cells=ERROR_M / resolution_m,
+            reach_cells=512,
+        )
+        rank += feasible_poses(obstacles, probe)
+    assert np.array_equal(outcome.rank, rank)
+    draw_test(tmp_path / "test.png", FIRST, pose, grid, outcome)
+    assert (tmp_path / "test.png").stat().st_size > 10_000
+
+
+def test_every_test_and_figure_has_its_picture_on_the_page(tmp_path: Path) -> None:
+    draw_figures(tmp_path)
+    drawn = {path.name for path in tmp_path.glob("*.png")} | {f"test-{test.number}.png" for test in TESTS}
+    assert {path.stem for path in tmp_path.glob("*.png")} == set(FIGURES)
+    assert drawn == {path.name for path in PAGE.parent.glob("*.png")}
+    assert sum(path.stat().st_size for path in PAGE.parent.glob("*")) < 1_500_000
