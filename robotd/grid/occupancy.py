@@ -2,7 +2,6 @@
 
 import enum
 import hashlib
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -12,7 +11,6 @@ from numpy.typing import NDArray
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid import kernels
-from robotd.grid.kernels.layout import Rays
 from robotd.grid.readings import numbers_of
 from robotd.grid.spec import GridSpec
 from robotd.grid.tables import NO_INFORMATION, lower_table, raise_table
@@ -117,9 +115,9 @@ class OccupancyGrid:
         Returns:
             Flat indices ``row * cols + col`` of the cells whose value changed, ascending. O(readings x cells a beam).
         """
-        rays = _rays(self._usable(sweep), map_from_robot, self.spec)
+        readings, tables = numbers_of(self._usable(sweep)), (self._lower, self._raise)
         at_once = self.settings.policy is UpdatePolicy.PER_SWEEP
-        return kernels.insert_rays(self.cells, rays, self._lower, self._raise, at_once=at_once)
+        return kernels.insert_sweep(self.cells, readings, map_from_robot, self.spec, tables, at_once=at_once)
 
     def digest(self) -> str:
         """Return the SHA-256 of placement and cells, in hexadecimal: equal exactly if the maps are."""
@@ -131,16 +129,3 @@ class OccupancyGrid:
         if self.settings.over_range is OverRange.CLEAR:
             return sweep.measured
         return tuple(reading for reading in sweep.measured if reading.status is ReadingStatus.OK)
-
-
-def _rays(readings: tuple[RangeReading, ...], map_from_robot: Pose2, spec: GridSpec) -> Rays:
-    """Draw the beams of one sweep on the grid."""
-    bearing_rad, range_m, x_m, y_m, is_miss = np.ascontiguousarray(numbers_of(readings).T)
-    cos, sin = math.cos(map_from_robot.heading_rad), math.sin(map_from_robot.heading_rad)
-    origins_m = np.stack(
-        (map_from_robot.x_m + cos * x_m - sin * y_m, map_from_robot.y_m + sin * x_m + cos * y_m), axis=1
-    )
-    bearings_rad = map_from_robot.heading_rad + bearing_rad
-    ends_m = origins_m + range_m[:, None] * np.stack((np.cos(bearings_rad), np.sin(bearings_rad)), axis=1)
-    hits = np.where(is_miss > 0.0, -1, spec.flat_at(ends_m))
-    return Rays(spec.positions_at(origins_m), bearings_rad, range_m / spec.resolution_m, hits)

@@ -29,7 +29,7 @@ try:
 except ImportError as error:
     IN_USE = KernelsInUse(compiled=False, instructions="numpy", reason=f"no C kernels were installed ({error})")
     draw_beams, count_feasible = twins.draw_beams, twins.count_feasible
-    greatest, at_least, insert_rays = twins.greatest, twins.at_least, twins.insert_rays
+    greatest, at_least, insert_sweep = twins.greatest, twins.at_least, twins.insert_sweep
     squared_distances, grow_disk, pack_cells = twins.squared_distances, twins.grow_disk, twins.pack_cells
     wall_codes, skip_codes = twins.wall_codes, twins.skip_codes
     make_planes, renew_planes, search_poses = twins.make_planes, twins.renew_planes, twins.search_poses
@@ -39,7 +39,7 @@ else:
         compiled=True, instructions=native.instruction_set(), reason="compiled when robotd was installed"
     )
     draw_beams, count_feasible = native.draw_beams, native.count_feasible
-    greatest, at_least, insert_rays = native.greatest, native.at_least, native.insert_rays
+    greatest, at_least, insert_sweep = native.greatest, native.at_least, native.insert_sweep
     squared_distances, grow_disk, pack_cells = native.squared_distances, native.grow_disk, native.pack_cells
     wall_codes, skip_codes = native.wall_codes, native.skip_codes
     make_planes, renew_planes, search_poses = native.make_planes, native.renew_planes, native.search_poses
@@ -55,7 +55,7 @@ __all__ = [
     "fit_poses",
     "greatest",
     "grow_disk",
-    "insert_rays",
+    "insert_sweep",
     "make_planes",
     "pack_cells",
     "renew_planes",

@@ -176,15 +176,3 @@ SLOTS = 2048
 
 NOWHERE = int(np.iinfo(np.int32).max)
 """The squared distance to a source that is farther than anybody looked."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Rays:
-    """Beams of one sweep into an occupancy grid; positions and lengths in cells, as in :mod:`robotd.grid.ray`."""
-
-    starts: NDArray[np.float64]
-    """``float64[n, 2]``, ``(row, col)``, inside the grid or not."""
-    bearings_rad: NDArray[np.float64]
-    lengths_cells: NDArray[np.float64]
-    hits: NDArray[np.intp]
-    """``intp[n]``: flat index of the cell in which each ended, -1 if it met nothing or ended outside the grid."""

@@ -5,7 +5,8 @@ from functools import partial
 
 from robotd.grid import kernels
 from robotd.grid.kernels import twins
-from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy, _rays
+from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy
+from robotd.grid.readings import numbers_of
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
 
@@ -15,11 +16,11 @@ def timings() -> Iterator[Timing]:
     sweep = workload.sweep_of(workload.room())
     for policy in UpdatePolicy:
         grid = OccupancyGrid(workload.SPEC, settings=GridSettings(policy=policy))
-        rays = _rays(sweep.measured, workload.TRUTH, workload.SPEC)
-        tables = (grid._lower, grid._raise)
+        readings, tables = numbers_of(sweep.measured), (grid._lower, grid._raise)
         at_once = policy is UpdatePolicy.PER_SWEEP
         title = f"S, one sweep into the map, {policy}"
         for name, module in (("in use", kernels), ("NumPy twin", twins)):
-            run = partial(module.insert_rays, grid.cells, rays, *tables, at_once=at_once)
+            place = (workload.TRUTH, workload.SPEC, tables)
+            run = partial(module.insert_sweep, grid.cells, readings, *place, at_once=at_once)
             yield timed(f"{title}: cells, {name}", run, 50)
         yield timed(f"{title}: insert()", partial(grid.insert, sweep, workload.TRUTH), 200, goal_ms=0.1)

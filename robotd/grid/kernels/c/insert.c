@@ -1,7 +1,7 @@
 /* A sweep into the occupancy grid: each cell is a 256-state machine, and two tables say what a beam does to it.
  *
  * The rule of ray.py: a beam is sampled once per cell of its dominant axis, at start + k * step. Products and sums are
- * rounded one by one (the build forbids contraction), so the cells are those of NumPy.
+ * rounded one by one (the build forbids contraction), and in the order of inserting.py; so the cells are those of NumPy.
  */
 #include <math.h>
 #include <stddef.h>
@@ -46,9 +46,33 @@ static inline int64_t cell_at(const beam *b, int64_t k, int32_t rows, int32_t co
     return (int64_t)(int32_t)row * cols + (int32_t)col;
 }
 
+static inline double in_cells(double at_m, double origin_m, double resolution_m)
+{
+    return (at_m - origin_m) / resolution_m;
+}
+
+static void draw(const insert_job *job, int32_t i)
+{
+    const double *r = job->readings + 5 * (size_t)i, sine = job->ahead[i], cosine = job->ahead[job->count + i];
+    const double x_m = job->robot_x_m + job->robot_cos * r[2] - job->robot_sin * r[3];
+    const double y_m = job->robot_y_m + job->robot_sin * r[2] + job->robot_cos * r[3];
+    const double end_row = in_cells(y_m + r[1] * sine, job->origin_y_m, job->resolution_m);
+    const double end_col = in_cells(x_m + r[1] * cosine, job->origin_x_m, job->resolution_m);
+    const double dominant = fmax(fabs(sine), fabs(cosine));
+    beam *b = (beam *)job->beams + i;
+    b->row = in_cells(y_m, job->origin_y_m, job->resolution_m);
+    b->col = in_cells(x_m, job->origin_x_m, job->resolution_m);
+    b->row_step = sine / dominant;
+    b->col_step = cosine / dominant;
+    b->samples = ceil(fmax(r[1] / job->resolution_m, 0.0) * dominant);
+    const int ends_inside =
+        end_row >= 0.0 && end_row < (double)job->rows && end_col >= 0.0 && end_col < (double)job->cols;
+    job->hits[i] = ends_inside && !(r[4] > 0.0) ? (int64_t)end_row * job->cols + (int64_t)end_col : -1;
+}
+
 /* Every beam after the other: the last one through a cell has the last word. */
 static void one_by_one(uint8_t *cells, int32_t rows, int32_t cols, const beam *beams, const int64_t *hits, int32_t count,
-                       const uint8_t *lower, const uint8_t *raise)
+                       const uint8_t *lower, const uint8_t *higher)
 {
     for (int32_t i = 0; i < count; i++) {
         const span s = samples_of(&beams[i], rows, cols);
@@ -58,13 +82,13 @@ static void one_by_one(uint8_t *cells, int32_t rows, int32_t cols, const beam *b
                 cells[cell] = lower[cells[cell]];
         }
         if (hits[i] >= 0)
-            cells[hits[i]] = raise[cells[hits[i]]];
+            cells[hits[i]] = higher[cells[hits[i]]];
     }
 }
 
 /* Each cell once, from the value it had before; a hit beats all misses. */
 static void at_once(uint8_t *cells, int32_t rows, int32_t cols, const beam *beams, const int64_t *hits, int32_t count,
-                    const uint8_t *lower, const uint8_t *raise, const uint8_t *before)
+                    const uint8_t *lower, const uint8_t *higher, const uint8_t *before)
 {
     for (int32_t i = 0; i < count; i++) {
         const span s = samples_of(&beams[i], rows, cols);
@@ -76,7 +100,7 @@ static void at_once(uint8_t *cells, int32_t rows, int32_t cols, const beam *beam
     }
     for (int32_t i = 0; i < count; i++)
         if (hits[i] >= 0)
-            cells[hits[i]] = raise[before[hits[i]]];
+            cells[hits[i]] = higher[before[hits[i]]];
 }
 
 /* The rows that any beam can touch. */
@@ -116,18 +140,19 @@ static int64_t differences(const uint8_t *cells, const uint8_t *before, int64_t 
     return found;
 }
 
-int64_t insert_beams(uint8_t *cells, int32_t rows, int32_t cols, const double *beams, const int64_t *hits, int32_t count,
-                     const uint8_t *lower, const uint8_t *raise, int32_t all_at_once, uint8_t *before, int64_t *changed)
+int64_t insert_sweep(const insert_job *job)
 {
-    const beam *drawn = (const beam *)beams;
-    const span touched = rows_touched(rows, cols, drawn, hits, count);
+    for (int32_t i = 0; i < job->count; i++)
+        draw(job, i);
+    const beam *drawn = (const beam *)job->beams;
+    const span touched = rows_touched(job->rows, job->cols, drawn, job->hits, job->count);
     if (touched.first >= touched.last)
         return 0;
-    const int64_t first = touched.first * cols, last = touched.last * cols;
-    memcpy(before + first, cells + first, (size_t)(last - first));
-    if (all_at_once)
-        at_once(cells, rows, cols, drawn, hits, count, lower, raise, before);
+    const int64_t first = touched.first * job->cols, last = touched.last * job->cols;
+    memcpy(job->before + first, job->cells + first, (size_t)(last - first));
+    if (job->all_at_once)
+        at_once(job->cells, job->rows, job->cols, drawn, job->hits, job->count, job->lower, job->higher, job->before);
     else
-        one_by_one(cells, rows, cols, drawn, hits, count, lower, raise);
-    return differences(cells, before, first, last, changed);
+        one_by_one(job->cells, job->rows, job->cols, drawn, job->hits, job->count, job->lower, job->higher);
+    return differences(job->cells, job->before, first, last, job->changed);
 }

@@ -1,6 +1,28 @@
 /* A sweep into the occupancy grid: what Python calls. */
 
+typedef struct {
+    uint8_t *cells;            /* [rows][cols], changed */
+    int32_t rows;
+    int32_t cols;
+    double resolution_m;
+    double origin_x_m;         /* the corner of cell (0, 0) */
+    double origin_y_m;
+    double robot_x_m;          /* where the robot stood */
+    double robot_y_m;
+    double robot_sin;          /* of its heading */
+    double robot_cos;
+    const double *readings;    /* [count][5]: bearing, range [m], (x, y) of the beam's start [m], is a miss */
+    const double *ahead;       /* [2][count]: sine and cosine of each beam's bearing in the map */
+    int32_t count;
+    const uint8_t *lower;      /* [256] */
+    const uint8_t *higher;     /* [256] */
+    int32_t all_at_once;       /* each cell once, a hit beats all misses; else one beam after the other */
+    double *beams;             /* [count][5], for the kernel's own use */
+    int64_t *hits;             /* [count], the same */
+    uint8_t *before;           /* [rows][cols], the same */
+    int64_t *changed;          /* [min(rows * cols, count * (max(rows, cols) + 3))] */
+} insert_job;
+
 /* Lower the cells that beams run through and raise those they end in (occupancy.py), and put the cells whose value
- * changed into `changed`, ascending. Returns how many. `before` is scratch, as large as `cells`. */
-int64_t insert_beams(uint8_t *cells, int32_t rows, int32_t cols, const double *beams, const int64_t *hits, int32_t count,
-                     const uint8_t *lower, const uint8_t *raise, int32_t all_at_once, uint8_t *before, int64_t *changed);
+ * changed into `changed`, ascending. Returns how many. */
+int64_t insert_sweep(const insert_job *job);

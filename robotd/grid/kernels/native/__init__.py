@@ -16,7 +16,7 @@ from robotd.grid.kernels.native.distances import squared_distances
 from robotd.grid.kernels.native.drawing import draw_beams
 from robotd.grid.kernels.native.fitting import fit_poses, scan_poses
 from robotd.grid.kernels.native.growing import grow_disk
-from robotd.grid.kernels.native.inserting import insert_rays
+from robotd.grid.kernels.native.inserting import insert_sweep
 from robotd.grid.kernels.native.packing import pack_cells
 from robotd.grid.kernels.native.searching import make_planes, renew_planes, search_poses
 
@@ -29,7 +29,7 @@ __all__ = [
     "fit_poses",
     "greatest",
     "grow_disk",
-    "insert_rays",
+    "insert_sweep",
     "instruction_set",
     "make_planes",
     "pack_cells",

@@ -6,7 +6,7 @@ from robotd.grid.kernels.twins.distances import squared_distances
 from robotd.grid.kernels.twins.drawing import draw_beams
 from robotd.grid.kernels.twins.fitting import fit_poses, scan_poses
 from robotd.grid.kernels.twins.growing import grow_disk
-from robotd.grid.kernels.twins.inserting import insert_rays
+from robotd.grid.kernels.twins.inserting import insert_sweep
 from robotd.grid.kernels.twins.packing import pack_cells
 from robotd.grid.kernels.twins.searching import make_planes, renew_planes, search_poses
 
@@ -18,7 +18,7 @@ __all__ = [
     "fit_poses",
     "greatest",
     "grow_disk",
-    "insert_rays",
+    "insert_sweep",
     "make_planes",
     "pack_cells",
     "renew_planes",

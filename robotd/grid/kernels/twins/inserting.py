@@ -1,32 +1,42 @@
 """A sweep into the occupancy grid, in NumPy: the twin of the kernel in C."""
 
+import math
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels.layout import Rays
+from robotd.core.pose import Pose2
 from robotd.grid.ray import ray_cells
+from robotd.grid.spec import GridSpec
 from robotd.grid.tables import UpdateTable
 
 
-def insert_rays(
-    cells: NDArray[np.uint8], rays: Rays, lower: UpdateTable, higher: UpdateTable, *, at_once: bool
+def insert_sweep(
+    cells: NDArray[np.uint8],
+    readings: NDArray[np.float64],
+    map_from_robot: Pose2,
+    spec: GridSpec,
+    tables: tuple[UpdateTable, UpdateTable],
+    *,
+    at_once: bool,
 ) -> NDArray[np.intp]:
     """Change cells by two tables: those that beams run through, and those they end in.
 
     Args:
         cells: ``uint8[rows, cols]``, changed in place.
-        rays: the beams; the cell that one ends in is not one that it runs through.
-        lower: for cells that a beam runs through.
-        higher: for cells that a beam ends in.
+        readings: ``float64[n, 5]``: bearing [rad], range [m], x and y of the beam's start [m], all in the robot frame,
+            and 1 for a miss or 0.
+        map_from_robot: where the robot stood.
+        spec: where the cells are.
+        tables: for cells that a beam runs through, and for the one that it ends in, which is not one of them.
         at_once: change each cell at most once, a hit beats all misses; else one beam after the other.
 
     Returns:
         Flat indices of the cells whose value changed, ascending. O(beams x cells a beam).
     """
-    before = cells.copy()
-    passed_rays, passed = ray_cells(
-        rays.starts, rays.bearings_rad, rays.lengths_cells, (cells.shape[0], cells.shape[1])
-    )
+    rays, (lower, higher), before = _Rays.of(readings, map_from_robot, spec), tables, cells.copy()
+    passed_rays, passed = ray_cells(rays.starts, rays.bearings_rad, rays.lengths_cells, spec.shape)
     flat = cells.reshape(-1)
     if at_once:
         hit = np.unique(rays.hits[rays.hits >= 0])
@@ -42,3 +52,27 @@ def insert_rays(
             if hit >= 0:
                 flat[hit] = higher[flat[hit]]
     return np.flatnonzero(cells != before)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rays:
+    """Beams on the grid; positions and lengths in cells, as in :mod:`robotd.grid.ray`."""
+
+    starts: NDArray[np.float64]
+    """``float64[n, 2]``, ``(row, col)``, inside the grid or not."""
+    bearings_rad: NDArray[np.float64]
+    lengths_cells: NDArray[np.float64]
+    hits: NDArray[np.intp]
+    """``intp[n]``: flat index of the cell in which each ended, -1 if it met nothing or ended outside the grid."""
+
+    @classmethod
+    def of(cls, readings: NDArray[np.float64], map_from_robot: Pose2, spec: GridSpec) -> "_Rays":
+        bearing_rad, range_m, x_m, y_m, is_miss = np.ascontiguousarray(readings.T)
+        cos, sin = math.cos(map_from_robot.heading_rad), math.sin(map_from_robot.heading_rad)
+        origins_m = np.stack(
+            (map_from_robot.x_m + cos * x_m - sin * y_m, map_from_robot.y_m + sin * x_m + cos * y_m), axis=1
+        )
+        bearings_rad = map_from_robot.heading_rad + bearing_rad
+        ends_m = origins_m + range_m[:, None] * np.stack((np.cos(bearings_rad), np.sin(bearings_rad)), axis=1)
+        hits = np.where(is_miss > 0.0, -1, spec.flat_at(ends_m))
+        return cls(spec.positions_at(origins_m), bearings_rad, range_m / spec.resolution_m, hits)
