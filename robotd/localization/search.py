@@ -17,8 +17,6 @@ from robotd.grid.kernels.planes import Ground, Planes, Question, Window
 from robotd.grid.spec import GridSpec
 from robotd.localization.obstacles import Obstacles
 
-_SMALL_CELLS = 512 * 512
-"""Maps up to this size are divided into blocks of 8 x 8 cells, larger ones into blocks of 16 x 16."""
 _FEW_CELLS = 48 * 48
 """An area so small is looked at cell by cell."""
 POSES_MAX = 1 << 18
@@ -80,8 +78,7 @@ class SearchMap:
     @classmethod
     def of(cls, obstacles: Obstacles, spec: GridSpec, error_radius_cells: float) -> "SearchMap":
         """Prepare a map whose obstacles were grown by so much; O(cells)."""
-        pool = 8 if obstacles.free.size <= _SMALL_CELLS else 16
-        return cls(spec, kernels.make_planes(_ground(obstacles, error_radius_cells), pool))
+        return cls(spec, kernels.make_planes(_ground(obstacles, error_radius_cells)))
 
     def updated(self, obstacles: Obstacles, window: Window) -> "SearchMap":
         """Return the map after cells changed, all of them in a window of rows and columns; O(cells near the window).

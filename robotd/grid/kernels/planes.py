@@ -12,8 +12,10 @@ Window = tuple[slice, slice]
 """Rows and columns, from a first to before a last."""
 
 RING = 16
-"""Bodies that end this near to their head are told apart by where they end."""
-_SECTORS = 16
+"""Offsets of a body's end from its head are tabulated so far."""
+_REACH = 8
+"""Bodies that end so near to their head are told apart by where they end: the side of the smallest block."""
+_SECTORS = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +37,6 @@ class Planes:
     """See ``c/planes.h``; in bytes for every cell: 0.4 for ``cells``, 1 for ``near``, and for ``pooled`` 4 to 9."""
 
     ground: Ground
-    pool: int
     key_of: NDArray[np.int8]
     """``int8[33, 33]``: a number from 1 for where a body ends, seen from its head; 0 where none does."""
     cells: NDArray[np.uint16]
@@ -87,7 +88,7 @@ class Found:
 
 
 @functools.lru_cache(maxsize=8)
-def endings(error_radius_cells: float, cells: int, reach_cells: int) -> NDArray[np.int8]:
+def endings(error_radius_cells: float, cells: int) -> NDArray[np.int8]:
     """Return the sector of every offset at which bodies end from their heads, ``int8[33, 33]``, 0 where none does.
 
     Found by drawing beams: an ending that was overlooked costs time and changes nothing.
@@ -95,7 +96,6 @@ def endings(error_radius_cells: float, cells: int, reach_cells: int) -> NDArray[
     Args:
         error_radius_cells: by how much bodies are shorter.
         cells: how many of the last cells of a body are meant.
-        reach_cells: endings farther away have no sector.
     """
     bearings_rad = np.repeat(np.arange(720) * (np.pi / 360), 40)
     lengths = (error_radius_cells + 8.0 + np.tile(np.arange(40) / 20, 720))[:, None]
@@ -105,7 +105,7 @@ def endings(error_radius_cells: float, cells: int, reach_cells: int) -> NDArray[
     sectors = np.zeros((2 * RING + 1, 2 * RING + 1), np.int8)
     for back in range(1, cells + 1):
         offsets = (np.floor(0.5 + (counts - back) * steps) - np.floor(0.5 + lengths * ahead)).astype(np.intp)
-        row, col = offsets[(np.abs(offsets) <= min(reach_cells, RING)).all(axis=1)].T
+        row, col = offsets[(np.abs(offsets) <= _REACH).all(axis=1)].T
         turns = np.arctan2(row, col) / (2 * np.pi)
         sectors[row + RING, col + RING] = 1 + np.floor(turns % 1.0 * _SECTORS) % _SECTORS
     return sectors

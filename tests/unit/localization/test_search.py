@@ -132,7 +132,6 @@ def test_the_answer_is_that_of_counting_everything(
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(search, "kernels", module)
         patch.setattr(search, "_FEW_CELLS", 0 if in_blocks else 1 << 30)
-        patch.setattr(search, "_SMALL_CELLS", 500)
         ready = SearchMap.of(obstacles, spec, radius)
         found = best_poses(
             ready, numbers_of(sweep), np.array(headings_rad), slack=slack, least_rank=least_rank, prior=prior

@@ -19,7 +19,7 @@ int64_t search_cells_size(const search_map *map)
 
 int64_t search_pooled_size(const search_map *map)
 {
-    return ((int64_t)map->keys * map->pool * map->pool * (block_words(map) + 2) + 2) * pooled_stride(map);
+    return (int64_t)(pooled_size(map, pools[0]) + pooled_size(map, pools[1]));
 }
 
 static int32_t row_words(const search_map *map)
@@ -29,7 +29,7 @@ static int32_t row_words(const search_map *map)
 
 static int64_t bitmap_size(const search_map *map)
 {
-    return (int64_t)(block_rows(map) * map->pool + 2 * MARGIN) * row_words(map);
+    return (int64_t)(block_rows(map, WINDOW) * WINDOW + 2 * MARGIN) * row_words(map);
 }
 
 int64_t search_scratch_size(const search_map *map)
@@ -122,23 +122,22 @@ static void look_back(const bitmaps *maps, int32_t key, int32_t row)
         seen[w] = grown[w] & ~seen[w];
 }
 
-/* Every cell becomes the OR of the pool x pool cells from it on; rows downwards, so that each can be done in place. */
-static void pool_rows(const bitmaps *maps, int32_t first, int32_t last, uint64_t outside)
+/* Every cell becomes the OR of the 2 step x 2 step cells from it on, where it was that of step x step. */
+static void widen(const bitmaps *maps, int32_t first, int32_t last, int32_t step, uint64_t outside)
 {
-    const int32_t words = maps->words, pool = maps->map->pool;
-    for (int32_t row = first; row < last + pool; row++) {
+    const int32_t words = maps->words;
+    for (int32_t row = first; row < last; row++) {
         uint64_t *seen = bitmap_row(maps, maps->seen, row);
-        for (int32_t step = 1; step < pool; step *= 2)
-            for (int32_t w = 0; w < words; w++)
-                seen[w] |= seen[w] >> step | (w + 1 < words ? seen[w + 1] : outside) << (64 - step);
+        for (int32_t w = 0; w + 1 < words; w++)
+            seen[w] |= seen[w] >> step | seen[w + 1] << (64 - step);
+        seen[words - 1] |= seen[words - 1] >> step | outside << (64 - step);
     }
-    for (int32_t step = 1; step < pool; step *= 2)
-        for (int32_t row = first; row < last + pool - step; row++) {
-            uint64_t *seen = bitmap_row(maps, maps->seen, row);
-            const uint64_t *below = bitmap_row(maps, maps->seen, row + step);
-            for (int32_t w = 0; w < words; w++)
-                seen[w] |= below[w];
-        }
+    for (int32_t row = first; row + step < last; row++) {
+        uint64_t *seen = bitmap_row(maps, maps->seen, row);
+        const uint64_t *below = bitmap_row(maps, maps->seen, row + step);
+        for (int32_t w = 0; w < words; w++)
+            seen[w] |= below[w];
+    }
 }
 
 /* Bits 0, pool, 2 pool, ... of a word, side by side. */
@@ -149,40 +148,51 @@ static inline uint64_t gathered(uint64_t word, int32_t pool)
 }
 
 /* One row of cells goes to one row of blocks in all its column phases. */
-static void deal_row(const bitmaps *maps, int32_t key, int32_t row)
+static void deal_row(const bitmaps *maps, int32_t pool, int32_t key, int32_t row)
 {
     const search_map *map = maps->map;
-    const int32_t pool = map->pool, block = floor_div(row, pool), each = 64 / pool;
+    const int32_t block = floor_div(row, pool), each = 64 / pool, stride = pooled_stride(map, pool);
+    const size_t size = phase_size(map, pool);
     const uint64_t *seen = bitmap_row(maps, maps->seen, row), ones = pool == 16 ? 15 : 255;
-    uint64_t *phase = map->pooled + (size_t)(key * pool + (row - block * pool)) * (size_t)pool * phase_size(map) +
-                      2 * (size_t)pooled_stride(map) + (size_t)(block + 8);
+    uint64_t *phase = pooled_phase(map, pool, key, row - block * pool, 0) + 2 * (ptrdiff_t)stride + (block + 8);
     for (int32_t w = 0; w < maps->words; w++) {
         const int32_t first = (w - 1) * each; /* the first block of this word */
-        const int32_t word = floor_div(first, 64);
         if (first > up(map->cols, pool))
             break;
-        uint64_t *to = phase + (ptrdiff_t)word * pooled_stride(map);
-        for (int32_t c = 0; c < pool; c++, to += phase_size(map))
+        uint64_t *to = phase + (ptrdiff_t)floor_div(first, 64) * stride;
+        for (int32_t c = 0; c < pool; c++, to += size)
             *to = (*to & ~(ones << (first & 63))) | gathered(seen[w] >> c, pool) << (first & 63);
     }
+}
+
+/* Rows from a first to before a last, as far as the pooled planes go. */
+static void deal(const bitmaps *maps, int32_t pool, int32_t key, int32_t first, int32_t last)
+{
+    const int32_t low = -2 * pool, high = (up(maps->map->rows, pool) + 1) * pool;
+    for (int32_t row = clamp(first, low, high); row < clamp(last, low, high); row++)
+        deal_row(maps, pool, key, row);
 }
 
 static void fill_pooled(const bitmaps *maps, int32_t first, int32_t last)
 {
     const search_map *map = maps->map;
-    const int32_t low = -2 * map->pool, high = (up(map->rows, map->pool) + 1) * map->pool;
-    first = clamp(first - RING - map->pool, low, high);
+    const int32_t low = -2 * WINDOW, high = (up(map->rows, WINDOW) + 1) * WINDOW;
+    first = clamp(first - RING - WINDOW, low, high);
     last = clamp(last + RING, low, high);
-    for (int32_t row = first - RING; row < last + map->pool + RING; row++) {
+    const int32_t deepest = last + WINDOW;
+    for (int32_t row = first - RING; row < deepest + RING; row++) {
         pack_row(map, map->blocking, row, map->outside_blocks, bitmap_row(maps, maps->blocking, row));
         pack_row(map, map->grown, row, map->outside_ends, bitmap_row(maps, maps->grown, row));
     }
     for (int32_t key = 0; key < map->keys; key++) {
-        for (int32_t row = first; row < last + map->pool; row++)
+        const uint64_t outside = far_heads(map, key) ? ~(uint64_t)0 : 0;
+        for (int32_t row = first; row < deepest; row++)
             look_back(maps, key, row);
-        pool_rows(maps, first, last, far_heads(map, key) ? ~(uint64_t)0 : 0);
-        for (int32_t row = first; row < last; row++)
-            deal_row(maps, key, row);
+        for (int32_t step = 1; step < 8; step *= 2)
+            widen(maps, first, deepest, step, outside);
+        deal(maps, 8, key, first, last);
+        widen(maps, first, deepest, 8, outside);
+        deal(maps, 16, key, first, last);
     }
 }
 
@@ -239,10 +249,12 @@ static void fill_outside(const search_map *map)
     const size_t size = (size_t)(strips(map) + 4) * (size_t)strip_size(map);
     for (int32_t which = 0; which < 3; which++)
         memset(cell_plane(map, which), outside[which] ? 0xff : 0, size * sizeof *map->cells);
-    const size_t key_size = (size_t)(map->pool * map->pool) * phase_size(map);
-    for (int32_t key = 0; key < map->keys; key++)
-        memset(map->pooled + (size_t)key * key_size, far_heads(map, key) ? 0xff : 0,
-               (key_size + 2 * (size_t)pooled_stride(map)) * sizeof *map->pooled);
+    for (int i = 0; i < POOLS; i++)
+        for (int32_t key = 0; key < map->keys; key++) {
+            uint64_t *first = pooled_phase(map, pools[i], key, 0, 0), *end = pooled_phase(map, pools[i], key + 1, 0, 0);
+            memset(first, far_heads(map, key) ? 0xff : 0,
+                   (size_t)(end - first + 2 * pooled_stride(map, pools[i])) * sizeof *first);
+        }
 }
 
 void search_prepare(const search_map *map, int32_t row_first, int32_t row_last, int32_t col_first, int32_t col_last,

@@ -9,7 +9,6 @@
 
 typedef struct {
     int32_t rows, cols;         /* of the map */
-    int32_t pool;               /* side of a block, 8 or 16 cells */
     int32_t keys;               /* how many directions of approach are told apart, and one that stands for all */
     int32_t outside_blocks, outside_ends, blocked_by;
     const uint8_t *free, *blocking, *grown; /* [rows][cols] */

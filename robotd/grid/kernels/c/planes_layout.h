@@ -42,24 +42,38 @@ static inline uint16_t *cell_plane(const search_map *map, int32_t which)
 }
 
 /* Pooled: words of 64 blocks, eight rows of blocks before the map, at least nine after it. */
-static inline int32_t block_rows(const search_map *map)
+#define POOLS 2
+static const int32_t pools[POOLS] = {16, 8};
+
+static inline int32_t block_rows(const search_map *map, int32_t pool)
 {
-    return up(up(map->rows, map->pool), 8) * 8;
+    return up(up(map->rows, pool), 8) * 8;
 }
 
-static inline int32_t block_words(const search_map *map)
+static inline int32_t block_words(const search_map *map, int32_t pool)
 {
-    return up(up(map->cols, map->pool), 64);
+    return up(up(map->cols, pool), 64);
 }
 
-static inline int32_t pooled_stride(const search_map *map)
+static inline int32_t pooled_stride(const search_map *map, int32_t pool)
 {
-    return block_rows(map) + 24;
+    return block_rows(map, pool) + 24;
 }
 
-static inline size_t phase_size(const search_map *map)
+static inline size_t phase_size(const search_map *map, int32_t pool)
 {
-    return (size_t)(block_words(map) + 2) * (size_t)pooled_stride(map);
+    return (size_t)(block_words(map, pool) + 2) * (size_t)pooled_stride(map, pool);
+}
+
+static inline size_t pooled_size(const search_map *map, int32_t pool)
+{
+    return (size_t)(map->keys * pool * pool) * phase_size(map, pool) + 2 * (size_t)pooled_stride(map, pool);
+}
+
+static inline uint64_t *pooled_phase(const search_map *map, int32_t pool, int32_t key, int32_t row, int32_t col)
+{
+    uint64_t *first = map->pooled + (pool == pools[0] ? 0 : pooled_size(map, pools[0]));
+    return first + (size_t)((key * pool + row) * pool + col) * phase_size(map, pool);
 }
 
 /* Whether a head far outside can be met: not if it ends nothing, or if the body has been blocked before. */

@@ -14,7 +14,9 @@
 
 #define BITS_MAX 16
 #define THREADS_MAX 16
+#define HOPES 64 /* so many bounds are made finer before the search, and so many windows of them tried */
 #define SEEDS 16
+#define FEW_WINDOWS 3 /* as many windows are looked at sooner than the blocks in them are bounded */
 #define FAR_CELLS 268435456.0
 
 typedef uint16_t window __attribute__((vector_size(32), aligned(2), may_alias)); /* a row of 16 cells in each lane */
@@ -35,6 +37,12 @@ typedef struct {
     uint64_t shift;
 } pooled_beam;
 
+/* A grid of blocks. */
+typedef struct {
+    int32_t pool, words, rows;
+    ptrdiff_t stride;
+} grid;
+
 /* The counters of one window. */
 typedef struct {
     int32_t row, col, bits, start, radius;
@@ -45,7 +53,7 @@ typedef struct {
 
 typedef struct {
     void (*draw_heading)(const search_job *, int32_t, int32_t, beam *);
-    void (*bound_tile)(const search_job *, const pooled_beam *, int32_t, const int32_t *, uint64_t *);
+    void (*bound_tile)(const grid *, const pooled_beam *, int32_t, const int32_t *, int32_t, uint64_t *);
     int (*count_ends)(const search_job *, const beam *, sheet *, int32_t);
     int (*count_bodies)(const search_job *, const beam *, sheet *);
 } kernel;
@@ -143,16 +151,25 @@ static const kernel *kernel_of(int32_t instructions)
     return instructions > best ? NULL : kernels[instructions < 0 ? best : instructions];
 }
 
+/* A unit at a heading that seems good, and the window of it that does. */
+typedef struct {
+    int32_t bound, heading, unit, place[2];
+} hope;
+
 /* All that the threads share. A unit is what is bounded at once: a tile of blocks, or one window. */
 typedef struct {
     search_job *job;
     const kernel *with;
+    grid grids[POOLS];
     int32_t units, stride;          /* stride: readings are taken in an order that jumps round the robot */
     int32_t (*tiles)[2];            /* [units]: column of words and first row of blocks, or row and column of a window */
     uint64_t *counters;             /* [headings][units][bits][8], if by blocks */
     int32_t *bounds;                /* [headings][units] */
-    int32_t *order;                 /* [headings]: the best bound first */
+    int32_t *order;                 /* [ordered]: the headings that can hold an answer, the best bound first */
+    int32_t ordered;
+    hope *hopes;                    /* [headings] */
     int32_t next, bounding;
+    int32_t misses;                 /* how many readings met nothing */
     int32_t least;                  /* what a pose must explain to be returned, as far as is known */
     pthread_mutex_t lock;
 } search;
@@ -160,26 +177,29 @@ typedef struct {
 typedef struct {
     search *shared;
     beam *beams;                    /* [readings] */
-    pooled_beam *pooled;            /* [readings] */
+    pooled_beam *pooled[POOLS];     /* [readings], of the heads of hits */
+    int32_t hits;
+    int32_t finely_drawn;           /* whether those of the finer grid are those of this heading */
     sheet at;
 } worker;
 
 static int32_t units_of(const search_job *job)
 {
     if (job->by_blocks)
-        return block_words(job->map) * (block_rows(job->map) / 8);
+        return block_words(job->map, WINDOW) * (block_rows(job->map, WINDOW) / 8);
     return up(job->area[1] - job->area[0], WINDOW) * up(job->area[3] - job->area[2], WINDOW);
 }
 
 static size_t worker_words(const search_job *job)
 {
-    return (size_t)job->reading_count * ((sizeof(beam) + sizeof(pooled_beam) + sizeof(window)) / 8 + 1) + 8;
+    return (size_t)job->reading_count * ((sizeof(beam) + POOLS * sizeof(pooled_beam) + sizeof(window)) / 8 + 1) + 8;
 }
 
 int64_t search_size(const search_job *job)
 {
     const int64_t units = units_of(job), headings = job->heading_count;
     return (job->by_blocks ? headings * units * job->bits * 8 : 0) + units + (headings * units + headings) / 2 + 2 +
+           headings * (int64_t)(sizeof(hope) / 4 + 1) +
            THREADS_MAX * (int64_t)worker_words(job);
 }
 
@@ -195,7 +215,7 @@ static void place_units(search *s)
             }
         return;
     }
-    const int32_t high = 8 * job->map->pool, wide = 64 * job->map->pool;
+    const int32_t high = 8 * WINDOW, wide = 64 * WINDOW;
     for (int32_t row = job->area[0] / high; row * high < job->area[1]; row++)
         for (int32_t word = job->area[2] / wide; word * wide < job->area[3]; word++) {
             s->tiles[s->units][0] = word;
@@ -223,6 +243,16 @@ static int open_window(const search_job *job, int32_t row, int32_t col, sheet *a
     }
     memcpy(&at->alive, cells, sizeof cells);
     return any != 0;
+}
+
+/* Which of 32 windows of a row are in the map and in the area; the first is that of a block of 8 x 8 cells. */
+static uint64_t standing(const search_job *job, const int32_t *tile, int32_t i)
+{
+    const int32_t row = (tile[1] / 2 + i) * WINDOW, first = 32 * tile[0];
+    if (row + WINDOW <= job->area[0] || row >= job->area[1])
+        return 0;
+    const int32_t low = clamp(job->area[2] / WINDOW - first, 0, 32), high = clamp(up(job->area[3], WINDOW) - first, low, 32);
+    return (UINT64_C(1) << high) - (UINT64_C(1) << low);
 }
 
 /* What the cells of a sheet missed. */
@@ -303,9 +333,14 @@ static void report(search *s, int32_t heading, const sheet *at)
     pthread_mutex_unlock(&s->lock);
 }
 
+static int32_t least_of(const search *s)
+{
+    return __atomic_load_n(&s->least, __ATOMIC_RELAXED);
+}
+
 static int32_t allowed_misses(const search *s)
 {
-    return s->job->reading_count - __atomic_load_n(&s->least, __ATOMIC_RELAXED);
+    return s->job->reading_count - least_of(s);
 }
 
 /* Look at a window cell by cell. */
@@ -320,20 +355,21 @@ static void search_window(worker *self, int32_t heading, int32_t row, int32_t co
         report(s, heading, &self->at);
 }
 
-static void greatest_of(const uint64_t *counter, int32_t bits, int32_t *value, uint64_t *where)
+static int32_t greatest_of(const uint64_t *counter, int32_t bits, uint64_t *where)
 {
+    int32_t value = 0;
     memset(where, 0xff, 8 * sizeof *where);
-    *value = 0;
     for (int32_t bit = bits - 1; bit >= 0; bit--) {
         uint64_t any = 0;
         for (int i = 0; i < 8; i++)
             any |= where[i] & counter[8 * bit + i];
         if (any == 0)
             continue;
-        *value |= 1 << bit;
+        value |= 1 << bit;
         for (int i = 0; i < 8; i++)
             where[i] &= counter[8 * bit + i];
     }
+    return value;
 }
 
 /* The blocks of a tile that reach a count. */
@@ -353,31 +389,47 @@ static void reach(const uint64_t *counter, int32_t bits, int32_t least, uint64_t
         mask[i] |= equal[i];
 }
 
-static int32_t pool_beams(worker *self)
+static int8_t key_of(const search_map *map, const beam *b)
+{
+    const int32_t ring = 2 * RING + 1;
+    int8_t keys[2];
+    if (b->cells < map->blocked_by)
+        return 0;
+    for (int which = 0; which < 2; which++) {
+        const int32_t *end = which == 0 || map->blocked_by == 1 ? b->last : b->before;
+        const int32_t row = end[0] - b->head[0] + RING, col = end[1] - b->head[1] + RING;
+        keys[which] = row >= 0 && row < ring && col >= 0 && col < ring ? map->key_of[row * ring + col] : 0;
+    }
+    return keys[0] == keys[1] ? keys[0] : 0;
+}
+
+/* Put the heads of the hits on a grid of blocks. */
+static void pool_beams(worker *self, int which)
 {
     const search_job *job = self->shared->job;
-    const search_map *map = job->map;
-    const size_t size = phase_size(map);
-    const int32_t pool = map->pool, ring = 2 * RING + 1;
-    int32_t count = 0;
+    const int32_t pool = pools[which];
+    self->hits = 0;
     for (int32_t i = 0; i < job->reading_count; i++) {
         const beam *b = self->beams + i;
         if (b->is_miss)
             continue;
-        int32_t keys[2];
-        for (int which = 0; which < 2; which++) {
-            const int32_t *end = which == 0 || map->blocked_by == 1 ? b->last : b->before;
-            const int32_t row = end[0] - b->head[0] + RING, col = end[1] - b->head[1] + RING;
-            const int inside = row >= 0 && row < ring && col >= 0 && col < ring;
-            keys[which] = inside && b->cells >= map->blocked_by ? map->key_of[row * ring + col] : 0;
-        }
-        const int32_t key = keys[0] == keys[1] ? keys[0] : 0;
         const int32_t row = floor_div(b->head[0], pool), col = floor_div(b->head[1], pool);
-        const int32_t phase = (key * pool + b->head[0] - row * pool) * pool + b->head[1] - col * pool;
-        self->pooled[count++] =
-            (pooled_beam){map->pooled + (size_t)phase * size, floor_div(col, 64), row, (uint64_t)(col & 63)};
+        self->pooled[which][self->hits++] = (pooled_beam){
+            pooled_phase(job->map, pool, key_of(job->map, b), b->head[0] - row * pool, b->head[1] - col * pool),
+            floor_div(col, 64), row, (uint64_t)(col & 63)};
     }
-    return count;
+}
+
+static void draw(worker *self, int32_t heading)
+{
+    const search *s = self->shared;
+    s->with->draw_heading(s->job, heading, s->stride, self->beams);
+    self->finely_drawn = 0;
+}
+
+static uint64_t *counter_of(const search *s, int32_t heading, int32_t unit)
+{
+    return s->counters + ((size_t)heading * (size_t)s->units + (size_t)unit) * (size_t)(s->job->bits * 8);
 }
 
 /* Bound the ranks of all units at one heading. */
@@ -386,73 +438,101 @@ static void bound_heading(worker *self, int32_t heading)
     search *s = self->shared;
     const search_job *job = s->job;
     int32_t *bounds = s->bounds + (size_t)heading * (size_t)s->units;
-    s->with->draw_heading(job, heading, s->stride, self->beams);
-    const int32_t count = job->by_blocks ? pool_beams(self) : 0;
+    draw(self, heading);
+    if (job->by_blocks)
+        pool_beams(self, 0);
     for (int32_t unit = 0; unit < s->units; unit++) {
         const int32_t *tile = s->tiles[unit];
         if (!job->by_blocks) {
-            const int some = open_window(job, tile[0], tile[1], &self->at) && allowed_misses(s) >= 0 &&
+            const int some = allowed_misses(s) >= 0 && open_window(job, tile[0], tile[1], &self->at) &&
                              s->with->count_ends(job, self->beams, &self->at, allowed_misses(s));
             bounds[unit] = some ? job->reading_count - keep_best(&self->at) : -1;
             continue;
         }
-        uint64_t where[8], *counter = s->counters + ((size_t)heading * (size_t)s->units + (size_t)unit) * (size_t)(job->bits * 8);
-        s->with->bound_tile(job, self->pooled, count, tile, counter);
-        greatest_of(counter, job->bits, &bounds[unit], where);
-        bounds[unit] += job->reading_count - count;
+        uint64_t where[8], *counter = counter_of(s, heading, unit);
+        s->with->bound_tile(&s->grids[0], self->pooled[0], self->hits, tile, job->bits, counter);
+        bounds[unit] = greatest_of(counter, job->bits, where) + job->reading_count - self->hits;
     }
 }
 
-static int32_t misses_of_heading(const search *s)
+/* Bound the ranks of the blocks of 8 x 8 cells that lie in some blocks of 16 x 16: four rows of 32 of these. */
+static void bound_finely(worker *self, const int32_t *tile, uint64_t *counter)
 {
-    int32_t misses = 0;
-    for (int32_t i = 0; i < s->job->reading_count; i++)
-        misses += s->job->readings[5 * (size_t)i + 4] > 0.0;
-    return misses;
+    const search *s = self->shared;
+    if (!self->finely_drawn)
+        pool_beams(self, 1);
+    self->finely_drawn = 1;
+    s->with->bound_tile(&s->grids[1], self->pooled[1], self->hits, tile, s->job->bits, counter);
+}
+
+/* Look at the windows of four rows of 32 blocks that can hold an answer. */
+static void search_quarter(worker *self, int32_t heading, const int32_t *tile, const uint64_t *hopeful)
+{
+    const search *s = self->shared;
+    const search_job *job = s->job;
+    uint64_t counter[8 * BITS_MAX], fine[8];
+    int32_t count = 0;
+    for (int i = 0; i < 4; i++)
+        count += __builtin_popcountll(hopeful[i]);
+    if (count > FEW_WINDOWS) {
+        bound_finely(self, tile, counter);
+        reach(counter, job->bits, least_of(s) - (job->reading_count - self->hits), fine);
+    } else
+        memset(fine, 0xff, sizeof fine);
+    for (int32_t i = 0; i < 4; i++)
+        for (uint64_t left = hopeful[i]; left; left &= left - 1) {
+            const int bit = __builtin_ctzll(left);
+            if ((fine[2 * i] | fine[2 * i + 1]) >> (2 * bit) & 3)
+                search_window(self, heading, (tile[1] / 2 + i) * WINDOW, (32 * tile[0] + bit) * WINDOW);
+        }
 }
 
 /* Look at the windows of a unit that can hold an answer. */
 static void search_unit(worker *self, int32_t heading, int32_t unit)
 {
-    search *s = self->shared;
-    const search_job *job = s->job;
-    const int32_t *tile = s->tiles[unit], pool = job->map->pool, each = WINDOW / pool;
-    if (!job->by_blocks) {
+    const search *s = self->shared;
+    const int32_t *tile = s->tiles[unit];
+    if (!s->job->by_blocks) {
         search_window(self, heading, tile[0], tile[1]);
         return;
     }
     uint64_t mask[8];
-    const uint64_t *counter = s->counters + ((size_t)heading * (size_t)s->units + (size_t)unit) * (size_t)(job->bits * 8);
-    reach(counter, job->bits, __atomic_load_n(&s->least, __ATOMIC_RELAXED) - misses_of_heading(s), mask);
-    for (int32_t i = 0; i < 8; i += each) {
-        uint64_t any = each == 2 ? mask[i] | mask[i + 1] : mask[i];
-        any = each == 2 ? (any | any >> 1) & UINT64_C(0x5555555555555555) : any;
-        for (; any; any &= any - 1) {
-            const int32_t row = (tile[1] + i) * pool, col = (64 * tile[0] + __builtin_ctzll(any)) * pool;
-            if (row < job->map->rows && col < job->map->cols)
-                search_window(self, heading, row, col);
-        }
+    reach(counter_of(s, heading, unit), s->job->bits, least_of(s) - s->misses, mask);
+    for (int quarter = 0; quarter < 4; quarter++) {
+        const int right = quarter & 1, low = quarter >> 1;
+        const int32_t part[2] = {2 * tile[0] + right, 2 * tile[1] + 8 * low};
+        uint64_t hopeful[4];
+        for (int i = 0; i < 4; i++)
+            hopeful[i] = mask[4 * low + i] >> (32 * right) & UINT64_C(0xffffffff) & standing(s->job, part, i);
+        search_quarter(self, heading, part, hopeful);
     }
 }
 
-/* The rank of the most promising cell of a unit: some rank that is reached, so that answers must come near it. */
-static void try_unit(worker *self, int32_t heading, int32_t unit)
+/* Go from a unit to the block of 8 x 8 cells in it that seems best; returns its bound, and the window that holds it. */
+static int32_t descend(worker *self, int32_t heading, int32_t unit, int32_t *place)
+{
+    const search *s = self->shared;
+    const int32_t *tile = s->tiles[unit], bits = s->job->bits;
+    uint64_t where[8], counter[8 * BITS_MAX];
+    int i = 0;
+    greatest_of(counter_of(s, heading, unit), bits, where);
+    while (where[i] == 0)
+        i++;
+    const int32_t part[2] = {(64 * tile[0] + __builtin_ctzll(where[i])) / 32, (tile[1] + i) / 4 * 8};
+    bound_finely(self, part, counter);
+    const int32_t bound = greatest_of(counter, bits, where);
+    for (i = 0; where[i] == 0;)
+        i++;
+    place[0] = (part[1] + i) / 2 * WINDOW;
+    place[1] = (64 * part[0] + __builtin_ctzll(where[i])) / 2 * WINDOW;
+    return bound + s->job->reading_count - self->hits;
+}
+
+/* The rank of the most promising cell of a window: some rank that is reached, so that answers must come near it. */
+static void try_window(worker *self, const int32_t *place)
 {
     search *s = self->shared;
     const search_job *job = s->job;
-    int32_t place[2] = {s->tiles[unit][0], s->tiles[unit][1]}, value;
-    s->with->draw_heading(job, heading, s->stride, self->beams);
-    if (job->by_blocks) {
-        uint64_t where[8];
-        int i = 0;
-        greatest_of(s->counters + ((size_t)heading * (size_t)s->units + (size_t)unit) * (size_t)(job->bits * 8), job->bits,
-                    &value, where);
-        while (where[i] == 0)
-            i++;
-        const int32_t row = (place[1] + i) * job->map->pool;
-        place[1] = (64 * place[0] + __builtin_ctzll(where[i])) * job->map->pool / WINDOW * WINDOW;
-        place[0] = row / WINDOW * WINDOW;
-    }
     if (place[0] >= job->map->rows || place[1] >= job->map->cols || allowed_misses(s) < 0 ||
         !open_window(job, place[0], place[1], &self->at) ||
         !s->with->count_ends(job, self->beams, &self->at, allowed_misses(s)))
@@ -471,7 +551,7 @@ static void *work(void *argument)
     search *s = self->shared;
     for (;;) {
         const int32_t next = __atomic_fetch_add(&s->next, 1, __ATOMIC_RELAXED);
-        if (next >= s->job->heading_count)
+        if (next >= (s->bounding ? s->job->heading_count : s->ordered))
             return NULL;
         if (s->bounding) {
             bound_heading(self, next);
@@ -480,10 +560,10 @@ static void *work(void *argument)
         const int32_t heading = s->order[next];
         int drawn = 0;
         for (int32_t unit = 0; unit < s->units; unit++) {
-            if (s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] < __atomic_load_n(&s->least, __ATOMIC_RELAXED))
+            if (s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] < least_of(s))
                 continue;
             if (!drawn)
-                s->with->draw_heading(s->job, heading, s->stride, self->beams);
+                draw(self, heading);
             drawn = 1;
             search_unit(self, heading, unit);
         }
@@ -504,27 +584,54 @@ static void share(search *s, worker *workers, int bounding)
         pthread_join(handles[i], NULL);
 }
 
-/* Look at the best bounds first; sort the headings by theirs. */
+/* Bring the best of some to their beginning, in order; equal ones stay in the order of headings. */
+static void sort_best(hope *hopes, int32_t count, int32_t best)
+{
+    for (int32_t i = 0; i < best && i < count; i++) {
+        int32_t first = i;
+        for (int32_t j = i + 1; j < count; j++)
+            first = hopes[j].bound > hopes[first].bound ? j : first;
+        const hope chosen = hopes[first];
+        memmove(hopes + i + 1, hopes + i, (size_t)(first - i) * sizeof *hopes);
+        hopes[i] = chosen;
+    }
+}
+
+/* The best of all bounds, at most one for each heading. */
+static int32_t hopes_of(const search *s, hope *hopes)
+{
+    int32_t count = 0;
+    for (int32_t heading = 0; heading < s->job->heading_count; heading++) {
+        hope best = {-1, heading, 0, {0, 0}};
+        for (int32_t unit = 0; unit < s->units; unit++) {
+            const int32_t bound = s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit];
+            if (bound > best.bound)
+                best = (hope){bound, heading, unit, {s->tiles[unit][0], s->tiles[unit][1]}};
+        }
+        if (best.bound >= s->least)
+            hopes[count++] = best;
+    }
+    sort_best(hopes, count, HOPES);
+    return count;
+}
+
+/* Look at the best bounds first, then go through the headings in their order. */
 static void seed(search *s, worker *first)
 {
-    const int32_t headings = s->job->heading_count;
-    int32_t tried[SEEDS], count = 0;
-    for (; count < SEEDS; count++) {
-        int32_t best = -1;
-        for (int32_t i = 0; i < headings * s->units; i++) {
-            int again = 0;
-            for (int32_t j = 0; j < count; j++)
-                again |= tried[j] == i;
-            if (!again && (best < 0 || s->bounds[i] > s->bounds[best]))
-                best = i;
-        }
-        if (best < 0 || s->bounds[best] < s->least)
-            break;
-        tried[count] = best;
-        try_unit(first, best / s->units, best % s->units);
+    const int32_t all = hopes_of(s, s->hopes), count = clamp(all, 0, HOPES);
+    for (int32_t i = 0; i < all; i++)
+        s->order[i] = s->hopes[i].heading;
+    s->ordered = all;
+    for (int32_t i = 0; i < count && s->job->by_blocks; i++) {
+        hope *h = s->hopes + i;
+        draw(first, h->heading);
+        h->bound = descend(first, h->heading, h->unit, h->place);
     }
-    for (int32_t heading = 0; heading < headings; heading++)
-        s->order[heading] = heading;
+    sort_best(s->hopes, count, SEEDS);
+    for (int32_t i = 0; i < clamp(count, 0, SEEDS) && s->hopes[i].bound >= s->least; i++) {
+        draw(first, s->hopes[i].heading);
+        try_window(first, s->hopes[i].place);
+    }
 }
 
 /* About 0.618 of the readings, and nothing in common with their number. */
@@ -551,17 +658,26 @@ int32_t search_poses(search_job *job)
     search s = {.job = job, .with = with, .stride = stride_of(job->reading_count)};
     worker workers[THREADS_MAX];
     uint64_t *scratch = job->scratch;
+    for (int i = 0; i < POOLS; i++)
+        s.grids[i] = (grid){pools[i], block_words(job->map, pools[i]), block_rows(job->map, pools[i]),
+                            pooled_stride(job->map, pools[i])};
+    for (int32_t i = 0; i < job->reading_count; i++)
+        s.misses += job->readings[5 * (size_t)i + 4] > 0.0;
     s.tiles = (int32_t(*)[2])scratch;
     scratch += units_of(job);
     place_units(&s);
     s.bounds = (int32_t *)scratch;
     s.order = s.bounds + (size_t)job->heading_count * (size_t)s.units;
     scratch += ((size_t)job->heading_count * (size_t)s.units + (size_t)job->heading_count) / 2 + 1;
+    s.hopes = (hope *)scratch;
+    scratch += (size_t)job->heading_count * (sizeof(hope) / 4 + 1);
     for (int32_t i = 0; i < THREADS_MAX; i++) {
         workers[i].shared = &s;
         workers[i].beams = (beam *)scratch;
-        workers[i].pooled = (pooled_beam *)(workers[i].beams + job->reading_count);
-        workers[i].at.maybe = (window *)(workers[i].pooled + job->reading_count);
+        for (int which = 0; which < POOLS; which++)
+            workers[i].pooled[which] =
+                (pooled_beam *)(workers[i].beams + job->reading_count) + (size_t)which * (size_t)job->reading_count;
+        workers[i].at.maybe = (window *)(workers[i].pooled[POOLS - 1] + job->reading_count);
         scratch += worker_words(job);
     }
     s.counters = scratch;

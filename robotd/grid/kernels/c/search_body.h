@@ -11,33 +11,36 @@ typedef uint64_t NAME(vec) __attribute__((vector_size(VECTOR), aligned(8), may_a
 #define LANES ((int)(VECTOR / sizeof(uint64_t)))
 #define VECTORS (8 / LANES)
 
-/* Bound the ranks of all blocks of a tile from above: how many heads may lie on what ends beams. */
-static TARGET void NAME(bound_tile)(const search_job *job, const pooled_beam *beams, int32_t count, const int32_t *tile,
-                                    uint64_t *counter)
+/* Where to find what the blocks of a tile may meet at a head. */
+static inline TARGET const uint64_t *NAME(place)(const grid *of, const pooled_beam *b, const int32_t *tile, uint64_t *shift)
 {
-    const search_map *map = job->map;
-    const int32_t words = block_words(map), rows = block_rows(map), bits = job->bits;
-    const size_t stride = (size_t)pooled_stride(map);
+    const int32_t word = tile[0] + b->word, row = tile[1] + b->row;
+    *shift = b->shift;
+    if (word >= -1 && word <= of->words && row >= -8 && row <= of->rows + 1)
+        return b->phase + (ptrdiff_t)(word + 2) * of->stride + (row + 8);
+    const int outside = word < -2 || word > of->words || (word == -2 && b->shift < 2);
+    *shift = outside ? 1 : b->shift;
+    return b->phase + (ptrdiff_t)((outside ? of->words : word) + 2) * of->stride +
+           (row < -8 || row > of->rows + 1 ? of->rows + 9 : row + 8);
+}
+
+/* Bound the ranks of all blocks of a tile from above: how many heads may lie on what ends beams. */
+static TARGET void NAME(bound_tile)(const grid *of, const pooled_beam *beams, int32_t count, const int32_t *tile,
+                                    int32_t bits, uint64_t *counter)
+{
     VEC n[BITS_MAX * VECTORS];
     memset(n, 0, (size_t)(bits * 8) * sizeof(uint64_t));
-    for (int32_t first = 0; first < count; first += 7) {
+    int32_t first = 0;
+    for (; first + 7 <= count; first += 7) {
         const uint64_t *from[7];
         uint64_t shift[7];
-        for (int32_t i = 0; i < 7; i++) {
-            const pooled_beam *b = beams + (first + i < count ? first + i : first);
-            int32_t word = tile[0] + b->word, row = tile[1] + b->row;
-            const int outside = word < -2 || word > words || (word == -2 && b->shift < 2);
-            word = outside ? words : word;
-            row = row < -8 || row > rows + 1 ? rows + 1 : row;
-            shift[i] = outside ? 1 : b->shift;
-            from[i] = b->phase + (ptrdiff_t)(word + 2) * (ptrdiff_t)stride + (row + 8);
-        }
+        for (int32_t i = 0; i < 7; i++)
+            from[i] = NAME(place)(of, beams + first + i, tile, &shift[i]);
         for (int v = 0; v < VECTORS; v++) {
             VEC plane[7];
             for (int32_t i = 0; i < 7; i++) {
                 const uint64_t *at = from[i] + v * LANES;
-                const uint64_t counted = first + i < count ? ~(uint64_t)0 : 0;
-                plane[i] = FUNNEL(*(const VEC *)at, *(const VEC *)(at + stride), shift[i]) & counted;
+                plane[i] = FUNNEL(*(const VEC *)at, *(const VEC *)(at + of->stride), shift[i]);
             }
             const VEC sum = XOR3(plane[0], plane[1], plane[2]), more = XOR3(plane[3], plane[4], plane[5]);
             const VEC carry1 = MAJORITY(plane[0], plane[1], plane[2]), carry2 = MAJORITY(plane[3], plane[4], plane[5]);
@@ -52,6 +55,19 @@ static TARGET void NAME(bound_tile)(const search_job *job, const pooled_beam *be
             n[2 * VECTORS + v] = XOR3(n2, fours, carry);
             carry = MAJORITY(n2, fours, carry);
             for (int32_t bit = 3; bit < bits; bit++) {
+                const VEC old = n[bit * VECTORS + v];
+                n[bit * VECTORS + v] = old ^ carry;
+                carry &= old;
+            }
+        }
+    }
+    for (; first < count; first++) {
+        uint64_t shift;
+        const uint64_t *from = NAME(place)(of, beams + first, tile, &shift);
+        for (int v = 0; v < VECTORS; v++) {
+            const uint64_t *at = from + v * LANES;
+            VEC carry = FUNNEL(*(const VEC *)at, *(const VEC *)(at + of->stride), shift);
+            for (int32_t bit = 0; bit < bits; bit++) {
                 const VEC old = n[bit * VECTORS + v];
                 n[bit * VECTORS + v] = old ^ carry;
                 carry &= old;

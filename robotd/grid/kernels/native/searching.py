@@ -10,20 +10,20 @@ from robotd.grid.kernels.native.counting import INSTRUCTION_SETS
 from robotd.grid.kernels.planes import Found, Ground, Planes, Question, Window, endings
 
 
-def make_planes(ground: Ground, pool: int) -> Planes:
+def make_planes(ground: Ground) -> Planes:
     """See the twin."""
-    key_of = endings(ground.error_radius_cells, ground.blocked_by, pool)
-    nothing = Planes(ground, pool, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8))
+    key_of = endings(ground.error_radius_cells, ground.blocked_by)
+    nothing = Planes(ground, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8))
     c_map = _map_of(nothing)
     cells = np.empty(lib.search_cells_size(c_map), np.uint16)
     pooled = np.empty(lib.search_pooled_size(c_map), np.uint64)
-    planes = Planes(ground, pool, key_of, cells, pooled, np.empty(ground.free.shape, np.uint8))
+    planes = Planes(ground, key_of, cells, pooled, np.empty(ground.free.shape, np.uint8))
     return renew_planes(planes, ground, (slice(0, ground.free.shape[0]), slice(0, ground.free.shape[1])))
 
 
 def renew_planes(planes: Planes, ground: Ground, window: Window) -> Planes:
     """See the twin."""
-    renewed = Planes(ground, planes.pool, planes.key_of, planes.cells, planes.pooled, planes.near)
+    renewed = Planes(ground, planes.key_of, planes.cells, planes.pooled, planes.near)
     c_map = _map_of(renewed)
     scratch = np.empty(lib.search_scratch_size(c_map), np.uint64)
     rows, cols = window
@@ -68,7 +68,7 @@ def _map_of(planes: Planes) -> Any:
     """Return ``search_map *``; it does not keep the arrays alive."""
     ground, c_map = planes.ground, ffi.new("search_map *")
     c_map.rows, c_map.cols = ground.free.shape
-    c_map.pool, c_map.keys = planes.pool, planes.keys
+    c_map.keys = planes.keys
     c_map.outside_blocks, c_map.outside_ends = ground.outside_blocks, ground.outside_ends
     c_map.blocked_by = ground.blocked_by
     c_map.free, c_map.blocking = (

@@ -9,20 +9,15 @@ from robotd.grid.ray import ray_steps
 _FAR_CELLS = float(1 << 28)
 
 
-def make_planes(ground: Ground, pool: int) -> Planes:
-    """Return what the search keeps of a map; the twin reads the map itself and keeps nothing more.
-
-    Args:
-        ground: the map.
-        pool: side of the blocks that are bounded as one, 8 or 16 cells.
-    """
-    key_of = endings(ground.error_radius_cells, ground.blocked_by, pool)
-    return Planes(ground, pool, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8))
+def make_planes(ground: Ground) -> Planes:
+    """Return what the search keeps of a map; the twin reads the map itself and keeps nothing more."""
+    key_of = endings(ground.error_radius_cells, ground.blocked_by)
+    return Planes(ground, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8))
 
 
 def renew_planes(planes: Planes, ground: Ground, window: Window) -> Planes:  # noqa: ARG001  # nothing to renew
     """Return the planes after cells changed, all of them in a window; the old ones are used up."""
-    return make_planes(ground, planes.pool)
+    return make_planes(ground)
 
 
 def search_poses(planes: Planes, question: Question, *, threads: int = 1) -> Found:  # noqa: ARG001  # one is enough

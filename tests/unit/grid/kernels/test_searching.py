@@ -63,13 +63,12 @@ def assert_same(one: Found, other: Found) -> None:
 @settings(max_examples=60, deadline=None)
 @given(
     st.tuples(st.integers(1, 300), st.integers(1, 300)),
-    st.sampled_from([8, 16]),
     st.booleans(),
     st.integers(0, 2**32),
     st.data(),
 )
 def test_planes_renewed_in_a_window_are_planes_made_anew(
-    shape: tuple[int, int], pool: int, outside: bool, seed: int, data: st.DataObject
+    shape: tuple[int, int], outside: bool, seed: int, data: st.DataObject
 ) -> None:
     before = building(seed, shape)
     rows, cols = (sorted((data.draw(st.integers(0, size)), data.draw(st.integers(0, size)))) for size in shape)
@@ -81,8 +80,8 @@ def test_planes_renewed_in_a_window_are_planes_made_anew(
     if len(changed):
         (row_first, col_first), (row_last, col_last) = changed.min(axis=0).tolist(), changed.max(axis=0).tolist()
         window = slice(row_first, row_last + 1), slice(col_first, col_last + 1)
-    planes = NATIVE.renew_planes(NATIVE.make_planes(old, pool), new, window)
-    anew: Planes = NATIVE.make_planes(new, pool)
+    planes = NATIVE.renew_planes(NATIVE.make_planes(old), new, window)
+    anew: Planes = NATIVE.make_planes(new)
     assert np.array_equal(planes.near, anew.near)
     assert np.array_equal(planes.cells, anew.cells)
     assert np.array_equal(planes.pooled, anew.pooled)
@@ -92,7 +91,7 @@ def test_planes_renewed_in_a_window_are_planes_made_anew(
 def test_near_is_the_chebyshev_distance_to_what_blocks() -> None:
     solid = building(3, (150, 170))
     for outside in (False, True):
-        near: NDArray[np.uint8] = NATIVE.make_planes(ground_of(solid, outside), 16).near
+        near: NDArray[np.uint8] = NATIVE.make_planes(ground_of(solid, outside)).near
         for distance in (1, 2, 5, 17, 40, 63):
             reached = dilate(solid, np.ones((2 * distance - 1, 2 * distance - 1), np.bool_), outside=outside)
             assert np.array_equal(near < distance, reached)
@@ -106,19 +105,18 @@ def case(seed: int) -> tuple[Ground, Question]:
 @functools.cache
 def found_by_numpy(seed: int) -> Found:
     ground, question = case(seed)
-    return twins.search_poses(twins.make_planes(ground, 8), question)
+    return twins.search_poses(twins.make_planes(ground), question)
 
 
 @needs_native
 @pytest.mark.parametrize("threads", [1, 2, 5])
 @pytest.mark.parametrize("instructions", ["portable", "avx2", "avx512"])
-@pytest.mark.parametrize("pool", [8, 16])
-def test_every_way_to_search_finds_what_numpy_finds(threads: int, instructions: str, pool: int) -> None:
+def test_every_way_to_search_finds_what_numpy_finds(threads: int, instructions: str) -> None:
     for seed in range(3):
         ground, question = case(seed)
         try:
             found = NATIVE.search_poses(
-                NATIVE.make_planes(ground, pool), question, threads=threads, instructions=instructions
+                NATIVE.make_planes(ground), question, threads=threads, instructions=instructions
             )
         except ValueError:
             pytest.skip(f"this processor has no {instructions}")
@@ -130,7 +128,7 @@ def test_every_way_to_search_finds_what_numpy_finds(threads: int, instructions: 
 @pytest.mark.parametrize("limit", [0, 1, 50, 300])
 def test_more_poses_than_the_limit_are_cut_at_a_rank(kernels: ModuleType, limit: int) -> None:
     shape = (40, 100)
-    planes = kernels.make_planes(ground_of(building(5, shape)), 8)
+    planes = kernels.make_planes(ground_of(building(5, shape)))
     everything = kernels.search_poses(planes, question_of(shape, 5, slack=20))
     ranks = everything.poses[:, 3]
     assert len(ranks) > 300
