@@ -14,7 +14,7 @@ Window = tuple[slice, slice]
 RING = 16
 """Offsets of a body's end from its head are tabulated so far."""
 _REACH = 8
-"""Bodies that end so near to their head are told apart by where they end: the side of the smallest block."""
+"""Bodies that end so near to their head are told apart by where they end. As in planes_layout.h."""
 _SECTORS = 8
 
 

@@ -19,7 +19,10 @@ int64_t search_cells_size(const search_map *map)
 
 int64_t search_pooled_size(const search_map *map)
 {
-    return (int64_t)(pooled_size(map, pools[0]) + pooled_size(map, pools[1]));
+    int64_t size = 0;
+    for (int i = 0; i < POOLS; i++)
+        size += (int64_t)pooled_size(map, pools[i]);
+    return size;
 }
 
 static int32_t row_words(const search_map *map)
@@ -143,8 +146,15 @@ static void widen(const bitmaps *maps, int32_t first, int32_t last, int32_t step
 /* Bits 0, pool, 2 pool, ... of a word, side by side. */
 static inline uint64_t gathered(uint64_t word, int32_t pool)
 {
-    return pool == 16 ? (word & UINT64_C(0x0001000100010001)) * UINT64_C(0x1000200040008000) >> 60
-                      : (word & UINT64_C(0x0101010101010101)) * UINT64_C(0x0102040810204080) >> 56;
+    if (pool == 16)
+        return (word & UINT64_C(0x0001000100010001)) * UINT64_C(0x1000200040008000) >> 60;
+    if (pool == 8)
+        return (word & UINT64_C(0x0101010101010101)) * UINT64_C(0x0102040810204080) >> 56;
+    word &= UINT64_C(0x1111111111111111);
+    word = (word | word >> 3) & UINT64_C(0x0303030303030303);
+    word = (word | word >> 6) & UINT64_C(0x000f000f000f000f);
+    word = (word | word >> 12) & UINT64_C(0x000000ff000000ff);
+    return (word | word >> 24) & UINT64_C(0xffff);
 }
 
 /* One row of cells goes to one row of blocks in all its column phases. */
@@ -153,11 +163,11 @@ static void deal_row(const bitmaps *maps, int32_t pool, int32_t key, int32_t row
     const search_map *map = maps->map;
     const int32_t block = floor_div(row, pool), each = 64 / pool, stride = pooled_stride(map, pool);
     const size_t size = phase_size(map, pool);
-    const uint64_t *seen = bitmap_row(maps, maps->seen, row), ones = pool == 16 ? 15 : 255;
+    const uint64_t *seen = bitmap_row(maps, maps->seen, row), ones = (UINT64_C(1) << each) - 1;
     uint64_t *phase = pooled_phase(map, pool, key, row - block * pool, 0) + 2 * (ptrdiff_t)stride + (block + 8);
     for (int32_t w = 0; w < maps->words; w++) {
         const int32_t first = (w - 1) * each; /* the first block of this word */
-        if (first > up(map->cols, pool))
+        if (first >= up(map->cols, pool) + up(BEYOND, pool))
             break;
         uint64_t *to = phase + (ptrdiff_t)floor_div(first, 64) * stride;
         for (int32_t c = 0; c < pool; c++, to += size)
@@ -168,7 +178,8 @@ static void deal_row(const bitmaps *maps, int32_t pool, int32_t key, int32_t row
 /* Rows from a first to before a last, as far as the pooled planes go. */
 static void deal(const bitmaps *maps, int32_t pool, int32_t key, int32_t first, int32_t last)
 {
-    const int32_t low = -2 * pool, high = (up(maps->map->rows, pool) + 1) * pool;
+    const int32_t low = -up(pool + BEYOND, pool) * pool;
+    const int32_t high = (up(maps->map->rows, pool) + up(BEYOND, pool)) * pool;
     for (int32_t row = clamp(first, low, high); row < clamp(last, low, high); row++)
         deal_row(maps, pool, key, row);
 }
@@ -188,11 +199,11 @@ static void fill_pooled(const bitmaps *maps, int32_t first, int32_t last)
         const uint64_t outside = far_heads(map, key) ? ~(uint64_t)0 : 0;
         for (int32_t row = first; row < deepest; row++)
             look_back(maps, key, row);
-        for (int32_t step = 1; step < 8; step *= 2)
+        for (int32_t step = 1; step < WINDOW; step *= 2) {
             widen(maps, first, deepest, step, outside);
-        deal(maps, 8, key, first, last);
-        widen(maps, first, deepest, 8, outside);
-        deal(maps, 16, key, first, last);
+            if (2 * step >= pools[POOLS - 1])
+                deal(maps, 2 * step, key, first, last);
+        }
     }
 }
 

@@ -41,9 +41,10 @@ static inline uint16_t *cell_plane(const search_map *map, int32_t which)
     return map->cells + (size_t)which * (size_t)(strips(map) + 4) * (size_t)strip_size(map);
 }
 
-/* Pooled: words of 64 blocks, eight rows of blocks before the map, at least nine after it. */
-#define POOLS 2
-static const int32_t pools[POOLS] = {16, 8};
+/* Pooled: words of 64 blocks, eight rows of blocks before the map, at least ten after it. */
+#define POOLS 3
+static const int32_t pools[POOLS] = {16, 8, 4};
+#define BEYOND 8 /* outside the map, no farther away, planes may differ from what they are far away: the reach of keys */
 
 static inline int32_t block_rows(const search_map *map, int32_t pool)
 {
@@ -72,7 +73,9 @@ static inline size_t pooled_size(const search_map *map, int32_t pool)
 
 static inline uint64_t *pooled_phase(const search_map *map, int32_t pool, int32_t key, int32_t row, int32_t col)
 {
-    uint64_t *first = map->pooled + (pool == pools[0] ? 0 : pooled_size(map, pools[0]));
+    uint64_t *first = map->pooled;
+    for (int i = 0; pools[i] != pool; i++)
+        first += pooled_size(map, pools[i]);
     return first + (size_t)((key * pool + row) * pool + col) * phase_size(map, pool);
 }
 

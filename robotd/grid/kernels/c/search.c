@@ -179,7 +179,7 @@ typedef struct {
     beam *beams;                    /* [readings] */
     pooled_beam *pooled[POOLS];     /* [readings], of the heads of hits */
     int32_t hits;
-    int32_t finely_drawn;           /* whether those of the finer grid are those of this heading */
+    int32_t drawn;                  /* on how many grids they lie for this heading */
     sheet at;
 } worker;
 
@@ -245,14 +245,14 @@ static int open_window(const search_job *job, int32_t row, int32_t col, sheet *a
     return any != 0;
 }
 
-/* Which of 32 windows of a row are in the map and in the area; the first is that of a block of 8 x 8 cells. */
-static uint64_t standing(const search_job *job, const int32_t *tile, int32_t i)
+/* Which blocks of a row of a tile are in the area. */
+static uint64_t within(const search_job *job, const int32_t *tile, int32_t i)
 {
-    const int32_t row = (tile[1] / 2 + i) * WINDOW, first = 32 * tile[0];
+    const int32_t row = (tile[1] + i) * WINDOW, first = 64 * tile[0];
     if (row + WINDOW <= job->area[0] || row >= job->area[1])
         return 0;
-    const int32_t low = clamp(job->area[2] / WINDOW - first, 0, 32), high = clamp(up(job->area[3], WINDOW) - first, low, 32);
-    return (UINT64_C(1) << high) - (UINT64_C(1) << low);
+    const int32_t low = clamp(job->area[2] / WINDOW - first, 0, 63), high = clamp(up(job->area[3], WINDOW) - first, 0, 64);
+    return high <= low ? 0 : ~UINT64_C(0) >> (64 - high) & ~UINT64_C(0) << low;
 }
 
 /* What the cells of a sheet missed. */
@@ -348,7 +348,7 @@ static void search_window(worker *self, int32_t heading, int32_t row, int32_t co
 {
     search *s = self->shared;
     const int32_t allowed = allowed_misses(s);
-    if (allowed < 0 || !open_window(s->job, row, col, &self->at))
+    if (allowed < 0 || row >= s->job->map->rows || col >= s->job->map->cols || !open_window(s->job, row, col, &self->at))
         return;
     if (s->with->count_ends(s->job, self->beams, &self->at, allowed) &&
         s->with->count_bodies(s->job, self->beams, &self->at))
@@ -403,11 +403,14 @@ static int8_t key_of(const search_map *map, const beam *b)
     return keys[0] == keys[1] ? keys[0] : 0;
 }
 
-/* Put the heads of the hits on a grid of blocks. */
+/* Put the heads of the hits on a grid of blocks, unless they are there; coarser grids come first. */
 static void pool_beams(worker *self, int which)
 {
     const search_job *job = self->shared->job;
     const int32_t pool = pools[which];
+    if (which < self->drawn)
+        return;
+    self->drawn = which + 1;
     self->hits = 0;
     for (int32_t i = 0; i < job->reading_count; i++) {
         const beam *b = self->beams + i;
@@ -424,12 +427,20 @@ static void draw(worker *self, int32_t heading)
 {
     const search *s = self->shared;
     s->with->draw_heading(s->job, heading, s->stride, self->beams);
-    self->finely_drawn = 0;
+    self->drawn = 0;
 }
 
 static uint64_t *counter_of(const search *s, int32_t heading, int32_t unit)
 {
     return s->counters + ((size_t)heading * (size_t)s->units + (size_t)unit) * (size_t)(s->job->bits * 8);
+}
+
+/* Bound the ranks of the blocks of a tile. */
+static void bound_tile(worker *self, int which, const int32_t *tile, uint64_t *counter)
+{
+    const search *s = self->shared;
+    pool_beams(self, which);
+    s->with->bound_tile(&s->grids[which], self->pooled[which], self->hits, tile, s->job->bits, counter);
 }
 
 /* Bound the ranks of all units at one heading. */
@@ -439,8 +450,6 @@ static void bound_heading(worker *self, int32_t heading)
     const search_job *job = s->job;
     int32_t *bounds = s->bounds + (size_t)heading * (size_t)s->units;
     draw(self, heading);
-    if (job->by_blocks)
-        pool_beams(self, 0);
     for (int32_t unit = 0; unit < s->units; unit++) {
         const int32_t *tile = s->tiles[unit];
         if (!job->by_blocks) {
@@ -450,41 +459,73 @@ static void bound_heading(worker *self, int32_t heading)
             continue;
         }
         uint64_t where[8], *counter = counter_of(s, heading, unit);
-        s->with->bound_tile(&s->grids[0], self->pooled[0], self->hits, tile, job->bits, counter);
-        bounds[unit] = greatest_of(counter, job->bits, where) + job->reading_count - self->hits;
+        bound_tile(self, 0, tile, counter);
+        bounds[unit] = greatest_of(counter, job->bits, where) + s->misses;
     }
 }
 
-/* Bound the ranks of the blocks of 8 x 8 cells that lie in some blocks of 16 x 16: four rows of 32 of these. */
-static void bound_finely(worker *self, const int32_t *tile, uint64_t *counter)
+/* Which columns of a row of blocks have one in them that is set, for blocks so many times as large. */
+static uint64_t joined(uint64_t row, int32_t times)
 {
-    const search *s = self->shared;
-    if (!self->finely_drawn)
-        pool_beams(self, 1);
-    self->finely_drawn = 1;
-    s->with->bound_tile(&s->grids[1], self->pooled[1], self->hits, tile, s->job->bits, counter);
+    if (times >= 2)
+        row |= row >> 1;
+    if (times == 4)
+        row |= row >> 2;
+    return row & (times == 4 ? UINT64_C(0x1111111111111111) : times == 2 ? UINT64_C(0x5555555555555555) : ~UINT64_C(0));
 }
 
-/* Look at the windows of four rows of 32 blocks that can hold an answer. */
-static void search_quarter(worker *self, int32_t heading, const int32_t *tile, const uint64_t *hopeful)
+/* Half a row of blocks, each of them twice, for a grid that is twice as fine. */
+static uint64_t doubled(uint64_t row, int right)
+{
+    uint64_t word = row >> (32 * right) & UINT64_C(0xffffffff);
+    word = (word | word << 16) & UINT64_C(0x0000ffff0000ffff);
+    word = (word | word << 8) & UINT64_C(0x00ff00ff00ff00ff);
+    word = (word | word << 4) & UINT64_C(0x0f0f0f0f0f0f0f0f);
+    word = (word | word << 2) & UINT64_C(0x3333333333333333);
+    word = (word | word << 1) & UINT64_C(0x5555555555555555);
+    return word | word << 1;
+}
+
+/* The windows of a tile in which a block is hopeful, row by row; returns how many. */
+static int32_t windows_of(const uint64_t *hopeful, int32_t times, uint64_t *windows)
+{
+    int32_t count = 0;
+    for (int32_t i = 0; i < 8; i += times) {
+        windows[i] = hopeful[i];
+        for (int32_t j = 1; j < times; j++)
+            windows[i] |= hopeful[i + j];
+        windows[i] = joined(windows[i], times);
+        count += __builtin_popcountll(windows[i]);
+    }
+    return count;
+}
+
+/* Look at the windows of a tile that can hold an answer, after bounding the finer blocks in those that are hopeful. */
+static void search_tile(worker *self, int32_t heading, int which, const int32_t *tile, const uint64_t *hopeful)
 {
     const search *s = self->shared;
-    const search_job *job = s->job;
-    uint64_t counter[8 * BITS_MAX], fine[8];
-    int32_t count = 0;
-    for (int i = 0; i < 4; i++)
-        count += __builtin_popcountll(hopeful[i]);
-    if (count > FEW_WINDOWS) {
-        bound_finely(self, tile, counter);
-        reach(counter, job->bits, least_of(s) - (job->reading_count - self->hits), fine);
-    } else
-        memset(fine, 0xff, sizeof fine);
-    for (int32_t i = 0; i < 4; i++)
-        for (uint64_t left = hopeful[i]; left; left &= left - 1) {
-            const int bit = __builtin_ctzll(left);
-            if ((fine[2 * i] | fine[2 * i + 1]) >> (2 * bit) & 3)
-                search_window(self, heading, (tile[1] / 2 + i) * WINDOW, (32 * tile[0] + bit) * WINDOW);
+    const int32_t pool = pools[which], times = WINDOW / pool, bits = s->job->bits;
+    uint64_t windows[8], finer[8], counter[8 * BITS_MAX];
+    if (windows_of(hopeful, times, windows) > FEW_WINDOWS && which + 1 < POOLS) {
+        for (int quarter = 0; quarter < 4; quarter++) {
+            const int right = quarter & 1, low = quarter >> 1;
+            const int32_t part[2] = {2 * tile[0] + right, 2 * tile[1] + 8 * low};
+            uint64_t any = 0;
+            for (int i = 0; i < 4; i++)
+                any |= hopeful[4 * low + i] >> (32 * right) & UINT64_C(0xffffffff);
+            if (any == 0)
+                continue;
+            bound_tile(self, which + 1, part, counter);
+            reach(counter, bits, least_of(s) - s->misses, finer);
+            for (int i = 0; i < 8; i++)
+                finer[i] &= doubled(hopeful[4 * low + i / 2], right);
+            search_tile(self, heading, which + 1, part, finer);
         }
+        return;
+    }
+    for (int32_t i = 0; i < 8; i += times)
+        for (; windows[i]; windows[i] &= windows[i] - 1)
+            search_window(self, heading, (tile[1] + i) * pool, (64 * tile[0] + __builtin_ctzll(windows[i])) * pool);
 }
 
 /* Look at the windows of a unit that can hold an answer. */
@@ -492,40 +533,37 @@ static void search_unit(worker *self, int32_t heading, int32_t unit)
 {
     const search *s = self->shared;
     const int32_t *tile = s->tiles[unit];
+    uint64_t hopeful[8];
     if (!s->job->by_blocks) {
         search_window(self, heading, tile[0], tile[1]);
         return;
     }
-    uint64_t mask[8];
-    reach(counter_of(s, heading, unit), s->job->bits, least_of(s) - s->misses, mask);
-    for (int quarter = 0; quarter < 4; quarter++) {
-        const int right = quarter & 1, low = quarter >> 1;
-        const int32_t part[2] = {2 * tile[0] + right, 2 * tile[1] + 8 * low};
-        uint64_t hopeful[4];
-        for (int i = 0; i < 4; i++)
-            hopeful[i] = mask[4 * low + i] >> (32 * right) & UINT64_C(0xffffffff) & standing(s->job, part, i);
-        search_quarter(self, heading, part, hopeful);
-    }
+    reach(counter_of(s, heading, unit), s->job->bits, least_of(s) - s->misses, hopeful);
+    for (int i = 0; i < 8; i++)
+        hopeful[i] &= within(s->job, tile, i);
+    search_tile(self, heading, 0, tile, hopeful);
 }
 
-/* Go from a unit to the block of 8 x 8 cells in it that seems best; returns its bound, and the window that holds it. */
+/* Go from a unit to the smallest block in it that seems best; returns its bound, and the window that holds it. */
 static int32_t descend(worker *self, int32_t heading, int32_t unit, int32_t *place)
 {
     const search *s = self->shared;
-    const int32_t *tile = s->tiles[unit], bits = s->job->bits;
+    int32_t part[2] = {s->tiles[unit][0], s->tiles[unit][1]}, bound = 0;
     uint64_t where[8], counter[8 * BITS_MAX];
-    int i = 0;
-    greatest_of(counter_of(s, heading, unit), bits, where);
-    while (where[i] == 0)
-        i++;
-    const int32_t part[2] = {(64 * tile[0] + __builtin_ctzll(where[i])) / 32, (tile[1] + i) / 4 * 8};
-    bound_finely(self, part, counter);
-    const int32_t bound = greatest_of(counter, bits, where);
-    for (i = 0; where[i] == 0;)
-        i++;
-    place[0] = (part[1] + i) / 2 * WINDOW;
-    place[1] = (64 * part[0] + __builtin_ctzll(where[i])) / 2 * WINDOW;
-    return bound + s->job->reading_count - self->hits;
+    memcpy(counter, counter_of(s, heading, unit), (size_t)(8 * s->job->bits) * sizeof *counter);
+    for (int which = 0; which < POOLS; which++) {
+        int32_t row = 0;
+        if (which > 0)
+            bound_tile(self, which, part, counter);
+        bound = greatest_of(counter, s->job->bits, where);
+        while (where[row] == 0)
+            row++;
+        place[0] = (part[1] + row) * pools[which] / WINDOW * WINDOW;
+        place[1] = (64 * part[0] + __builtin_ctzll(where[row])) * pools[which] / WINDOW * WINDOW;
+        part[0] = (64 * part[0] + __builtin_ctzll(where[row])) / 32;
+        part[1] = (part[1] + row) / 4 * 8;
+    }
+    return bound + s->misses;
 }
 
 /* The rank of the most promising cell of a window: some rank that is reached, so that answers must come near it. */
