@@ -16,6 +16,7 @@
 #define THREADS_MAX 16
 #define HOPES 64 /* so many bounds are made finer before the search, and so many windows of them tried */
 #define SEEDS 16
+#define STEPS 12
 #define FEW_WINDOWS 3 /* as many windows are looked at sooner than the blocks in them are bounded */
 #define FAR_CELLS 268435456.0
 
@@ -168,7 +169,8 @@ typedef struct {
     int32_t *order;                 /* [ordered]: the headings that can hold an answer, the best bound first */
     int32_t ordered;
     hope *hopes;                    /* [headings] */
-    int32_t next, bounding;
+    int32_t next;
+    enum { BOUNDING, RANKING, COLLECTING } phase; /* ranking: only the best rank is sought */
     int32_t misses;                 /* how many readings met nothing */
     int32_t least;                  /* what a pose must explain to be returned, as far as is known */
     pthread_mutex_t lock;
@@ -291,7 +293,9 @@ static void found_rank(search *s, int32_t rank)
     if (rank <= s->job->best_rank)
         return;
     s->job->best_rank = rank;
-    if (rank >= s->job->least_rank)
+    if (s->phase == RANKING)
+        raise_least(s, rank + 1);
+    else if (rank >= s->job->least_rank)
         raise_least(s, rank - s->job->slack);
 }
 
@@ -323,7 +327,7 @@ static void report(search *s, int32_t heading, const sheet *at)
         for (uint32_t left = at->alive[row]; left; left &= left - 1) {
             const int32_t col = __builtin_ctz(left), rank = job->reading_count - misses_at(at, row, col);
             found_rank(s, rank);
-            if (rank < s->least)
+            if (rank < s->least || s->phase == RANKING)
                 continue;
             const int32_t pose[4] = {heading, at->row + row, at->col + col, rank};
             memcpy(job->poses + 4 * (size_t)job->pose_count++, pose, sizeof pose);
@@ -589,9 +593,9 @@ static void *work(void *argument)
     search *s = self->shared;
     for (;;) {
         const int32_t next = __atomic_fetch_add(&s->next, 1, __ATOMIC_RELAXED);
-        if (next >= (s->bounding ? s->job->heading_count : s->ordered))
+        if (next >= (s->phase == BOUNDING ? s->job->heading_count : s->ordered))
             return NULL;
-        if (s->bounding) {
+        if (s->phase == BOUNDING) {
             bound_heading(self, next);
             continue;
         }
@@ -608,12 +612,11 @@ static void *work(void *argument)
     }
 }
 
-static void share(search *s, worker *workers, int bounding)
+static void share(search *s, worker *workers)
 {
     pthread_t handles[THREADS_MAX];
     int32_t started = 1;
     s->next = 0;
-    s->bounding = bounding;
     while (started < s->job->threads && started < THREADS_MAX &&
            pthread_create(&handles[started], NULL, work, &workers[started]) == 0)
         started++;
@@ -653,10 +656,11 @@ static int32_t hopes_of(const search *s, hope *hopes)
     return count;
 }
 
-/* Look at the best bounds first, then go through the headings in their order. */
-static void seed(search *s, worker *first)
+/* Look at the best bounds first: some rank is reached there. Returns the best bound of all. */
+static int32_t seed(search *s, worker *first)
 {
     const int32_t all = hopes_of(s, s->hopes), count = clamp(all, 0, HOPES);
+    const int32_t best = all ? s->hopes[0].bound : 0, seeds = clamp(all, 0, s->job->by_blocks ? SEEDS : 2);
     for (int32_t i = 0; i < all; i++)
         s->order[i] = s->hopes[i].heading;
     s->ordered = all;
@@ -666,9 +670,28 @@ static void seed(search *s, worker *first)
         h->bound = descend(first, h->heading, h->unit, h->place);
     }
     sort_best(s->hopes, count, SEEDS);
-    for (int32_t i = 0; i < clamp(count, 0, SEEDS) && s->hopes[i].bound >= s->least; i++) {
+    for (int32_t i = 0; i < seeds && s->hopes[i].bound >= s->least; i++) {
         draw(first, s->hopes[i].heading);
         try_window(first, s->hopes[i].place);
+    }
+    return best;
+}
+
+/* Find the best rank, if it may be far from what was seen: ask for high ranks first, then for lower ones, since that is
+ * so much faster than asking for all that lie above a low one. */
+static void rank(search *s, worker *workers, int32_t bound)
+{
+    search_job *job = s->job;
+    const int32_t step = larger(1, job->reading_count / STEPS);
+    const int32_t low = larger(job->least_rank, larger(1, job->best_rank + 1));
+    s->phase = RANKING;
+    for (int32_t least = larger(bound - step, low);; least = larger(least - step, low)) {
+        if (job->best_rank >= job->least_rank && least <= job->best_rank + step / 2)
+            return;
+        s->least = least;
+        share(s, workers);
+        if (job->best_rank >= least || least == low)
+            return;
     }
 }
 
@@ -722,14 +745,16 @@ int32_t search_poses(search_job *job)
     pthread_mutex_init(&s.lock, NULL);
     job->best_rank = job->pose_count = 0;
     s.least = larger(1, job->least_rank - job->slack);
-    share(&s, workers, 1);
-    seed(&s, workers);
-    share(&s, workers, 0);
-    compact(&s);
-    if (job->best_rank < job->least_rank) {
-        job->best_rank = job->pose_count = 0;
-        s.least = larger(1, job->least_rank - job->slack);
-    }
+    s.phase = BOUNDING;
+    share(&s, workers);
+    rank(&s, workers, seed(&s, workers));
+    s.phase = COLLECTING;
+    s.least = larger(1, larger(job->least_rank, job->best_rank) - job->slack);
+    if (job->best_rank >= job->least_rank) {
+        share(&s, workers);
+        compact(&s);
+    } else
+        job->best_rank = 0;
     job->least = s.least;
     pthread_mutex_destroy(&s.lock);
     return 1;
