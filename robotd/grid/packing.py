@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid import kernels
-from robotd.grid.kernels.layout import PackedMap, Words, any_of_a_tile, tiles_of
+from robotd.grid.kernels.layout import PackedMap, planes_of, tiles_of
 from robotd.grid.window import CellWindow
 
 
@@ -28,19 +28,7 @@ def repacked(
         grown: the same.
         changed: holds all cells in which any of them differs.
     """
-
-    def anew(words: Words, mask: NDArray[np.bool_]) -> Words:
-        copied = words.copy()
-        kernels.pack_cells(copied, mask, packed.origin, changed)
-        return copied
-
-    cells, stops, ends = anew(packed.free, free), anew(packed.blocking, blocking), anew(packed.grown, grown)
-    return replace(
-        packed,
-        free=cells,
-        blocking=stops,
-        grown=ends,
-        stopping=any_of_a_tile(stops),
-        ending=any_of_a_tile(ends),
-        tiles=tiles_of(cells),
-    )
+    planes = packed.planes[:3].copy()
+    for words, mask in zip(planes, (free, blocking, grown), strict=True):
+        kernels.pack_cells(words, mask, packed.origin, changed)
+    return replace(packed, planes=planes_of(*planes), tiles=tiles_of(planes[0]))

@@ -49,16 +49,8 @@ def unpack(words: Words, cols: int) -> NDArray[np.bool_]:
 class PackedMap:
     """What a map means to a reading (:mod:`robotd.localization.obstacles`), packed, and the tiles with free cells."""
 
-    free: Words
-    """Where the robot may stand; nowhere outside."""
-    blocking: Words
-    """What stops a beam."""
-    grown: Words
-    """What can end a beam, grown by the error radius."""
-    stopping: Words
-    """OR of 32 rows of the blocking ones, from each row on: the columns of a tile in which a beam can stop there."""
-    ending: Words
-    """The same of the grown ones: the columns in which a beam can end."""
+    planes: Words
+    """``uint64[5, words + 4, rows + 64]``, as named below."""
     tiles: NDArray[np.int32]
     """``int32[tiles, 2]``: column of words, and first row, of every tile with a free cell."""
     shape: tuple[int, int]
@@ -82,30 +74,53 @@ class PackedMap:
         """Pack the three masks ``bool[rows, cols]`` of a map, and what lies outside."""
         first_row, first_col = int(free.any(axis=1).argmax()), int(free.any(axis=0).argmax())
         origin = -first_row % TILE_ROWS, -first_col % WORD_CELLS
-        stops, ends = pack(blocking, origin, outside=outside_blocks), pack(grown, origin, outside=outside_ends)
-        packed = pack(free, origin, outside=False)
         rows, cols = free.shape
-        return cls(
-            packed,
-            stops,
-            ends,
-            any_of_a_tile(stops),
-            any_of_a_tile(ends),
-            tiles_of(packed),
-            (rows, cols),
-            origin,
-            blocked_by,
+        planes = planes_of(
+            pack(free, origin, outside=False),
+            pack(blocking, origin, outside=outside_blocks),
+            pack(grown, origin, outside=outside_ends),
         )
+        return cls(planes, tiles_of(planes[0]), (rows, cols), origin, blocked_by)
+
+    @property
+    def free(self) -> Words:
+        """Where the robot may stand; nowhere outside."""
+        plane: Words = self.planes[0]
+        return plane
+
+    @property
+    def blocking(self) -> Words:
+        """What stops a beam."""
+        plane: Words = self.planes[1]
+        return plane
+
+    @property
+    def grown(self) -> Words:
+        """What can end a beam, grown by the error radius."""
+        plane: Words = self.planes[2]
+        return plane
+
+    @property
+    def stopping(self) -> Words:
+        """OR of 32 rows of the blocking ones, from each row on: the columns of a tile in which a beam can stop."""
+        plane: Words = self.planes[3]
+        return plane
+
+    @property
+    def ending(self) -> Words:
+        """The same of the grown ones: the columns in which a beam can end."""
+        plane: Words = self.planes[4]
+        return plane
 
     @property
     def words(self) -> int:
         """Columns of words, without the padding."""
-        return int(self.free.shape[0]) - 2 * PAD_WORDS
+        return int(self.planes.shape[1]) - 2 * PAD_WORDS
 
     @property
     def rows(self) -> int:
         """Rows, a multiple of the tile's."""
-        return int(self.free.shape[1]) - 2 * TILE_ROWS
+        return int(self.planes.shape[2]) - 2 * TILE_ROWS
 
     def counter_bytes(self, headings: int, bits: int) -> int:
         """Return how much memory counters take: 256 bytes for every tile, heading and bit."""
@@ -116,12 +131,12 @@ class PackedMap:
         return np.zeros((len(self.tiles), headings, max(bits, BITS_MIN), TILE_ROWS), np.uint64)
 
 
-def any_of_a_tile(plane: Words) -> Words:
-    """Return the OR of each word and the 31 below it of a plane ``uint64[..., rows]``; 0 beyond the last row."""
-    windows = plane.copy()
+def planes_of(free: Words, blocking: Words, grown: Words) -> Words:
+    """Return the five planes of a packed map from its three masks, packed."""
+    planes = np.stack((free, blocking, grown, blocking, grown))
     for step in (1, 2, 4, 8, 16):
-        windows[:, :-step] |= windows[:, step:]
-    return windows
+        planes[3:, :, :-step] |= planes[3:, :, step:]
+    return planes
 
 
 def tiles_of(free: Words) -> NDArray[np.int32]:

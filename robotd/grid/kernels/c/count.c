@@ -131,8 +131,8 @@ static void count_tile(const worker *self, int32_t tile)
     const count_job *job = self->job;
     static const int32_t here[2] = {0, 0};
     const size_t slots = (size_t)job->slots, number = (size_t)self->number;
-    const bodies kept = {job->planes + number * (slots + 3) * TILE, job->columns + number * slots,
-                         job->plane_of + number * slots};
+    uint64_t *planes = job->spare + number * ((slots + 3) * TILE + 2 * slots), *columns = planes + (slots + 3) * TILE;
+    const bodies kept = {planes, columns, (int32_t *)(columns + slots)};
     uint64_t *last = kept.planes + slots * TILE;
     memcpy(last, job->free + seen_from(job, job->tiles + 2 * tile, here), TILE * sizeof *last);
     memset(last + TILE, 0, TILE * sizeof *last);
@@ -181,8 +181,14 @@ static void run(const count_job *job, int32_t subtract, int32_t threads, level w
         pthread_join(handles[i], NULL);
 }
 
-int32_t count_feasible(const count_job *job, int32_t subtract, int32_t threads, int32_t instructions)
+int32_t count_feasible(count_job *job, int32_t subtract, int32_t threads, int32_t instructions)
 {
+    const size_t size = ((size_t)job->words + 4) * ((size_t)job->rows + 2 * TILE);
+    job->free = job->planes;
+    job->blocking = job->free + size;
+    job->grown = job->blocking + size;
+    job->stopping = job->grown + size;
+    job->ending = job->stopping + size;
     const level best = best_level();
     if (instructions > (int32_t)best)
         return 0;

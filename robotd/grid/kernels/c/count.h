@@ -10,10 +10,11 @@
  */
 
 typedef struct {
-    const uint64_t *free;      /* [words + 4][rows + 64]: where the robot may stand */
-    const uint64_t *blocking;  /* the same: what stops a beam */
-    const uint64_t *grown;     /* the same: what ends a beam, grown by the error radius */
-    const uint64_t *stopping;  /* the same: OR of 32 rows of blocking from each on: columns in which a beam can stop */
+    const uint64_t *planes;    /* [5][words + 4][rows + 64], one after the other: */
+    const uint64_t *free;      /* where the robot may stand */
+    const uint64_t *blocking;  /* what stops a beam */
+    const uint64_t *grown;     /* what ends a beam, grown by the error radius */
+    const uint64_t *stopping;  /* OR of 32 rows of blocking from each on: columns in which a beam can stop */
     const uint64_t *ending;    /* the same of grown: columns in which a beam can end */
     int32_t blocked_by;        /* how many blocking cells block a body, 1 or 2 */
     int32_t words;             /* columns of words in the map */
@@ -30,15 +31,13 @@ typedef struct {
     int32_t headings;
     int32_t bits;              /* planes of a counter, at least 3 */
     uint64_t *counters;        /* [tile_count][headings][bits][32] */
-    uint64_t *planes;          /* [threads][slots + 3][32], for the kernel's own use */
-    uint64_t *columns;         /* [threads][slots], the same */
-    int32_t *plane_of;         /* [threads][slots], the same */
+    uint64_t *spare;           /* [threads][(slots + 3) * 32 + 2 * slots], for the kernel's own use */
 } count_job;
 
 /* Count every beam at every cell from which it is feasible, or take it back.
  * `instructions` is -1 for the best set of this processor, else 0 portable, 1 AVX2, 2 AVX-512. Returns 0, having done
  * nothing, if the processor does not have it. */
-int32_t count_feasible(const count_job *job, int32_t subtract, int32_t threads, int32_t instructions);
+int32_t count_feasible(count_job *job, int32_t subtract, int32_t threads, int32_t instructions);
 
 /* Which instructions the counting uses on this processor. */
 const char *instruction_set(void);

@@ -32,10 +32,11 @@ static inline double nearest(double cells)
 
 static inline beam draw(const draw_job *job, int32_t reading, int32_t heading)
 {
-    const double *r = job->readings + 5 * (size_t)reading, *h = job->headings + 3 * (size_t)heading;
-    const double *ahead = job->ahead + 2 * ((size_t)reading * (size_t)job->heading_count + (size_t)heading);
-    const double row = (h[1] * r[2] + h[2] * r[3]) / job->resolution_m;
-    const double col = (h[2] * r[2] - h[1] * r[3]) / job->resolution_m;
+    const size_t headings = (size_t)job->heading_count, number = (size_t)reading * headings + (size_t)heading;
+    const double *r = job->readings + 5 * (size_t)reading, *h = job->headings + heading;
+    const double ahead[2] = {job->ahead[number], job->ahead[(size_t)job->reading_count * headings + number]};
+    const double row = (h[headings] * r[2] + h[2 * headings] * r[3]) / job->resolution_m;
+    const double col = (h[2 * headings] * r[2] - h[headings] * r[3]) / job->resolution_m;
     const double range_cells = r[1] / job->resolution_m;
     const double dominant = fmax(fabs(ahead[0]), fabs(ahead[1]));
     const double free_cells = fmax(fmin(range_cells - job->error_radius_cells, job->reach_cells), 0.0);
@@ -102,9 +103,20 @@ static int is_one_chain(const draw_job *job, int32_t group)
     return 1;
 }
 
-int32_t draw_groups(const draw_job *job)
+static void share_out(draw_job *job)
+{
+    const size_t beams = (size_t)job->reading_count * (size_t)job->heading_count;
+    job->keys = job->spare;
+    job->steps = (double *)(job->spare + 10 * beams);
+    job->sizes = (int32_t *)(job->spare + 18 * beams);
+    job->drawn = job->sizes + 2 * beams;
+    job->table = job->drawn + 4 * beams;
+}
+
+void draw_groups(draw_job *job)
 {
     int32_t count = 0;
+    share_out(job);
     memset(job->table, 0xff, (size_t)job->table_size * sizeof *job->table);
     int32_t *drawn = job->drawn;
     for (int32_t reading = 0; reading < job->reading_count; reading++)
@@ -135,7 +147,12 @@ int32_t draw_groups(const draw_job *job)
             drawn[0] = group_of(job, key, &count);
             join(job, drawn[0], &b);
         }
-    return count;
+    job->group_count = count;
+    job->cell_count = job->longest = 0;
+    for (int32_t group = 0; group < count; group++) {
+        job->cell_count += job->sizes[group];
+        job->longest = job->sizes[group] > job->longest ? job->sizes[group] : job->longest;
+    }
 }
 
 static void chain(const draw_job *job, int32_t group, int32_t *cells)
@@ -150,10 +167,10 @@ static void chain(const draw_job *job, int32_t group, int32_t *cells)
     }
 }
 
-int32_t draw_chains(const draw_job *job, int32_t group_count, int32_t slots, int32_t *chains, int32_t *groups,
-                    int32_t *batches, int32_t *batch_of, int32_t *lists, int32_t *beams)
+int32_t draw_chains(const draw_job *job, int32_t slots, int32_t *chains, int32_t *groups, int32_t *batches,
+                    int32_t *batch_of, int32_t *lists, int32_t *beams)
 {
-    const int32_t beam_count = job->reading_count * job->heading_count;
+    const int32_t beam_count = job->reading_count * job->heading_count, group_count = job->group_count;
     groups[0] = 0;
     for (int32_t group = 0; group < group_count; group++) {
         groups[group + 1] = groups[group] + job->sizes[group];

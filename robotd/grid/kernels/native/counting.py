@@ -33,20 +33,16 @@ def count_feasible(
     """
     tiles, headings, bits, _ = counters.shape
     workers = min(threads, _THREADS_MAX)
-    planes = np.empty((workers, beams.slots + 3, TILE_ROWS), np.uint64)
-    columns, plane_of = np.empty((workers, beams.slots), np.uint64), np.empty((workers, beams.slots), np.int32)
+    spare = np.empty((workers, (beams.slots + 3) * TILE_ROWS + 2 * beams.slots), np.uint64)
     job = ffi.new("count_job *")
-    job.free, job.blocking, job.grown = words(the_map.free), words(the_map.blocking), words(the_map.grown)
-    job.stopping, job.ending = words(the_map.stopping), words(the_map.ending)
-    job.blocked_by = the_map.blocked_by
+    job.planes, job.blocked_by = words(the_map.planes), the_map.blocked_by
     job.words, job.rows = the_map.words, the_map.rows
     job.tiles, job.tile_count = ints(the_map.tiles), tiles
     job.chains, job.groups = ints(beams.chains), ints(beams.groups)
     job.batches, job.batch_count = ints(beams.batches), len(beams.batches) - 1
     job.lists, job.beams, job.slots = ints(beams.lists), ints(beams.beams), beams.slots
     job.headings, job.bits = headings, bits
-    job.counters = words(counters)
-    job.planes, job.columns, job.plane_of = words(planes), words(columns), ints(plane_of)
+    job.counters, job.spare = words(counters), words(spare)
     level = -1 if instructions is None else INSTRUCTION_SETS.index(instructions)
     if not lib.count_feasible(job, subtract, workers, level):
         raise ValueError(f"this processor has no {instructions}")
