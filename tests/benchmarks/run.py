@@ -16,7 +16,7 @@ import numpy as np
 
 from robotd.grid import kernels
 from tests.benchmarks import workload
-from tests.benchmarks.sections import counting, inserting
+from tests.benchmarks.sections import counting, inserting, refining
 from tests.benchmarks.timing import Timing, copying, yardstick
 
 ROOT = Path(__file__).parents[2]
@@ -25,6 +25,7 @@ SECTIONS: dict[str, Callable[[], Iterable[Timing]]] = {
     "machine": lambda: [copying()],
     "counting": counting.timings,
     "inserting": inserting.timings,
+    "refining": refining.timings,
 }
 """In the order of the report, by the name that ``--only`` takes."""
 

@@ -59,7 +59,7 @@ class Lattice:
     step_rad: float
 
     @property
-    def places(self) -> int:
-        """How many poses share a heading."""
+    def shape(self) -> tuple[int, int]:
+        """How many places there are along y and along x."""
         x_first, x_last, y_first, y_last = self.steps[:4].tolist()
-        return int((x_last - x_first + 1) * (y_last - y_first + 1))
+        return y_last - y_first + 1, x_last - x_first + 1

@@ -14,7 +14,7 @@
 #define UNKNOWN_RAD 3.141592653589793
 #define ROUNDS_MAX 32
 #define NARROWING 0.7
-#define CLOSE 1e-5
+#define CLOSE 1e-4
 #define PRIOR 0.1
 
 /* Where the heads lie at one pose. */
@@ -257,10 +257,9 @@ static inline void add_head(const scan_job *job, double x, double y)
         }
 }
 
-int32_t scan_poses(const scan_job *job)
+void scan_poses(const scan_job *job)
 {
-    const int32_t *steps = job->steps, wide = steps[1] - steps[0] + 1, count = wide * (steps[3] - steps[2] + 1);
-    int32_t least = INT32_MAX;
+    const int32_t *steps = job->steps, count = (steps[1] - steps[0] + 1) * (steps[3] - steps[2] + 1);
     for (int32_t turn = steps[4]; turn <= steps[5]; turn++) {
         const double heading = job->start[2] + turn * job->step_rad, turned_cos = cos(heading), turned_sin = sin(heading);
         memset(job->totals, 0, (size_t)count * sizeof *job->totals);
@@ -270,12 +269,9 @@ int32_t scan_poses(const scan_job *job)
                      job->start[1] + (turned_sin * head[0] + turned_cos * head[1]));
         }
         for (int32_t i = 0; i < count; i++)
-            if (job->totals[i] < least) {
-                least = job->totals[i];
-                job->best[0] = steps[0] + i % wide;
-                job->best[1] = steps[2] + i / wide;
-                job->best[2] = turn;
+            if (turn == steps[4] || job->totals[i] < job->least[i]) {
+                job->least[i] = job->totals[i];
+                job->turns[i] = turn;
             }
     }
-    return least;
 }

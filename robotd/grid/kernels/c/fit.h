@@ -31,9 +31,10 @@ typedef struct {
     const int32_t *steps;      /* [6]: first and last number of steps along x, y and heading */
     int32_t step_cells;
     double step_rad;
-    int32_t *totals;           /* one for each step along x and y, for the kernel's own use */
-    int32_t *best;             /* [3]: number of steps along x, y and heading */
+    int32_t *totals;           /* [places], for the kernel's own use: one for each step along x and y */
+    int32_t *least;            /* [places]: the least cost of all headings, x running fastest */
+    int32_t *turns;            /* [places]: the first number of steps of the heading that costs that */
 } scan_job;
 
-/* Find the pose of a lattice whose heads cost least; returns that cost. The first of several, x running fastest. */
-int32_t scan_poses(const scan_job *job);
+/* Find the best heading for each place of a lattice: the one at which the heads cost least. */
+void scan_poses(const scan_job *job);

@@ -34,10 +34,10 @@ def fit_poses(
 
 def scan_poses(
     codes: NDArray[np.int8], costs: NDArray[np.int32], heads: NDArray[np.float64], lattice: Lattice
-) -> tuple[NDArray[np.int32], int]:
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """See the twin."""
-    best = np.zeros(3, np.int32)
-    totals = np.empty(lattice.places, np.int32)
+    least, turns = np.empty(lattice.shape, np.int32), np.empty(lattice.shape, np.int32)
+    totals = np.empty(lattice.shape, np.int32)
     job = ffi.new("scan_job *")
     job.codes, job.costs = ffi.from_buffer("int8_t[]", codes), ints(costs)
     job.rows, job.cols = codes.shape
@@ -45,5 +45,6 @@ def scan_poses(
     job.heads, job.head_count = floats(heads), len(heads)
     job.start, job.steps = floats(lattice.start), ints(lattice.steps)
     job.step_cells, job.step_rad = lattice.step_cells, lattice.step_rad
-    job.totals, job.best = ints(totals), ints(best)
-    return best, int(lib.scan_poses(job))
+    job.totals, job.least, job.turns = ints(totals), ints(least), ints(turns)
+    lib.scan_poses(job)
+    return least, turns

@@ -20,7 +20,7 @@ from robotd.grid.kernels.fitting import (
 
 _ROUNDS_MAX = 32
 _NARROWING = 0.7
-_CLOSE = 1e-5
+_CLOSE = 1e-4
 _PRIOR = 0.1
 
 
@@ -220,8 +220,8 @@ def _sum(values: NDArray[np.float64]) -> float:
 
 def scan_poses(
     codes: NDArray[np.int8], costs: NDArray[np.int32], heads: NDArray[np.float64], lattice: Lattice
-) -> tuple[NDArray[np.int32], int]:
-    """Return the pose of a lattice at which the heads cost least, and how much.
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Return, for each place of a lattice, what the heads cost at its best heading, and which that is.
 
     Args:
         codes: ``int8[rows, cols]``, squared distances.
@@ -230,16 +230,15 @@ def scan_poses(
         lattice: the poses.
 
     Returns:
-        ``int32[3]``, the number of steps along x, y and heading, of several equal ones the first, x running fastest;
-        and the cost.
+        Both ``int32[places along y, places along x]``; the heading as its number of steps, the first of equal ones.
 
     O(poses m).
     """
     x_first, x_last, y_first, y_last, first, last = lattice.steps.tolist()
     cols = lattice.step_cells * np.arange(x_first, x_last + 1)
     rows = lattice.step_cells * np.arange(y_first, y_last + 1)[:, None]
-    best, least = (0, 0, 0), int(np.iinfo(np.int32).max)
     start_x, start_y, start_rad = lattice.start.tolist()
+    totals = np.empty((last - first + 1, *lattice.shape), np.int32)
     for turn in range(first, last + 1):
         heading_rad = start_rad + turn * lattice.step_rad
         cos, sin = math.cos(heading_rad), math.sin(heading_rad)
@@ -247,9 +246,5 @@ def scan_poses(
         y = np.floor(start_y + (sin * heads[:, 0] + cos * heads[:, 1]))[:, None, None] + rows
         inside = (x >= 0) & (y >= 0) & (x < codes.shape[1]) & (y < codes.shape[0])
         met = codes[np.where(inside, y, 0).astype(np.intp), np.where(inside, x, 0).astype(np.intp)]
-        totals = costs[np.where(inside, met, FAR_CODE).astype(np.intp) + 128].sum(axis=0, dtype=np.int64).ravel()
-        place = int(totals.argmin())
-        if totals[place] < least:
-            least = int(totals[place])
-            best = x_first + place % len(cols), y_first + place // len(cols), turn
-    return np.array(best, np.int32), least
+        totals[turn - first] = costs[np.where(inside, met, FAR_CODE).astype(np.intp) + 128].sum(axis=0)
+    return totals.min(axis=0), (totals.argmin(axis=0) + first).astype(np.int32)
