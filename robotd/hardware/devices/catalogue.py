@@ -13,6 +13,7 @@ from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
+from robotd.hardware.devices.rwi_drive import RwiDrive
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.line_format import LineFormat
@@ -34,7 +35,10 @@ class Dialect(Generic[S_contra, D_co]):
 
 _OURS = LineFormat(115_200)
 
-DRIVES: Mapping[str, Dialect[DriveSettings, Drive]] = {"board": Dialect(BoardDrive, _OURS)}
+DRIVES: Mapping[str, Dialect[DriveSettings, Drive]] = {
+    "board": Dialect(BoardDrive, _OURS),
+    "rwi-ascii": Dialect(RwiDrive, LineFormat(9_600)),
+}
 PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {
     "board": Dialect(BoardPanTilt, _OURS),
     "ptu": Dialect(PtuPanTilt, LineFormat(9_600)),

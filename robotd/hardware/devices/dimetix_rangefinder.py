@@ -73,7 +73,9 @@ class DimetixRangefinder(BoughtDevice[Message]):
         """It speaks only when asked, so that it is still there must be asked: for its temperature."""
         while True:
             await asyncio.sleep(_IDLE_POLL_S)
-            await dialogue.ask(command(self._device, "t"), self._is(Value), timeout_s=_MEASURES_S)
+            await dialogue.ask(
+                command(self._device, "t"), self._is(Value), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
+            )
 
     def _report(self, heard: Heard[Message]) -> None:
         """Let go by what comes late: the answer to a measurement that was given up."""

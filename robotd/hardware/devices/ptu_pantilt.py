@@ -112,7 +112,9 @@ class PtuPanTilt(BoughtDevice[Message]):
         while True:
             await asyncio.sleep(_IDLE_POLL_S)
             if not self._is_resetting:
-                await dialogue.ask(command("PP"), is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES)
+                await dialogue.ask(
+                    command("PP"), is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
+                )
 
     async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
         """Reset, if steps were lost: both axes turn to their stops."""

@@ -57,6 +57,7 @@ class DialogueCounters:
 @dataclass(slots=True)
 class _Request(Generic[M]):
     settles: Callable[[M], bool]
+    despite_stops: bool
     answer: "asyncio.Future[Heard[M]]" = field(default_factory=lambda: asyncio.get_running_loop().create_future())
 
 
@@ -117,7 +118,15 @@ class Dialogue(Generic[M]):
         """When the last byte came."""
         return self._heard_ns
 
-    async def ask(self, data: bytes, settles: Callable[[M], bool], *, timeout_s: float, tries: int = 1) -> Heard[M]:
+    async def ask(
+        self,
+        data: bytes,
+        settles: Callable[[M], bool],
+        *,
+        timeout_s: float,
+        tries: int = 1,
+        despite_stops: bool = False,
+    ) -> Heard[M]:
         """Send a request and return the message that settles it.
 
         Args:
@@ -125,6 +134,7 @@ class Dialogue(Generic[M]):
             settles: whether a message is its answer, a refusal included.
             timeout_s: how long a try may stay without it.
             tries: how often the request may be sent; 1 for whatever must not happen twice.
+            despite_stops: a stop does not concern it: it asks, and moves nothing.
 
         Raises:
             LinkTimeout: no answer to any try.
@@ -135,9 +145,9 @@ class Dialogue(Generic[M]):
         async with self._one_at_a_time:
             for attempt in range(tries):
                 await self._settle_down()
-                self._check(stops)
+                self._check(self._stops if despite_stops else stops)
                 self._counters.retries += attempt > 0
-                request = self._request = _Request(settles)
+                request = self._request = _Request(settles, despite_stops)
                 try:
                     self._line.write(data)
                     async with asyncio.timeout(timeout_s):
@@ -158,14 +168,15 @@ class Dialogue(Generic[M]):
         self._line.write(data)
 
     def stop_now(self, data: bytes) -> None:
-        """Put the stop on the wire in place of everything not yet written, and give up the request under way.
+        """Put the stop on the wire in place of everything not yet written, and give up the order under way.
 
         Never raises.
         """
         self._stops += 1
         self._is_unsettled = True
-        if self._request is not None and not self._request.answer.done():
-            self._request.answer.set_exception(self._stopped())
+        request = self._request
+        if request is not None and not request.despite_stops and not request.answer.done():
+            request.answer.set_exception(self._stopped())
         try:
             self._line.write_urgent(data)
         except TransportError:

@@ -9,9 +9,11 @@ from robotd.hardware.transport.line_format import LineFormat
 from robotd.sim.boards.drive import DriveBoard
 from robotd.sim.boards.pantilt import PanTiltBoard
 from robotd.sim.boards.rangefinder import RangefinderBoard
+from robotd.sim.emulators import rwi
 from robotd.sim.emulators.dimetix import DimetixEmulator
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.ptu import PtuEmulator
+from robotd.sim.emulators.rwi import RwiEmulator
 from robotd.sim.host import HostedBoard
 from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant
 
@@ -30,6 +32,10 @@ class Emulator(Generic[Plant]):
 
 DRIVES: Mapping[str, Emulator[DrivePlant]] = {
     "board": Emulator(lambda plant, boot_id: DriveBoard(plant, boot_id=boot_id)),
+    "rwi-ascii": Emulator(
+        lambda plant, _: Paced(RwiEmulator(plant), LineFormat(9_600)),
+        {"counts_per_m": rwi.COUNTS_PER_M, "counts_per_rad": rwi.COUNTS_PER_RAD},
+    ),
 }
 PANTILTS: Mapping[str, Emulator[HeadPlant]] = {
     "board": Emulator(lambda plant, boot_id: PanTiltBoard(plant, boot_id=boot_id)),

@@ -1,0 +1,191 @@
+"""An RWI base (B12, B14, B21) on its two-letter ASCII line.
+
+Speeds are magnitudes and directions are commands, so a reversal stops first and goes on with the next set-point. Every
+set-point re-arms the base's own watchdog for its time to live: when the host falls silent, the base stops by itself.
+"""
+
+import math
+from typing import ClassVar, NoReturn
+
+from robotd.core.angles import wrap_rad
+from robotd.core.broadcast import Broadcast
+from robotd.core.clock import NS_PER_S
+from robotd.core.pose import Odometry, Twist2
+from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.drive import DriveReadout
+from robotd.hardware.devices.odometer import Odometer
+from robotd.hardware.devices.settings import DriveSettings
+from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.link.dialogue import Dialogue, Heard
+from robotd.hardware.wire.rwi_ascii import (
+    BUMPERS_NONE,
+    STOP_BYTES,
+    TICKS_PER_S,
+    Answer,
+    Event,
+    Message,
+    Report,
+    RwiWire,
+    command,
+)
+
+_ANSWER_S = 0.3
+_TRIES = 3
+_WATCHDOG_MAX_TICKS = 0xFE
+"""Some bases take eight bits; never 0, which may mean off."""
+_ACCELERATION_MPS2 = 0.5
+_TURN_ACCELERATION_RADPS2 = 1.5
+_SPEED_MAX_COUNTS = 0xFFFF
+_PANELS = 8
+_BATTERY_EVERY_POLLS = 100
+_TENTHS_PER_V = 10
+_FAULTS = {"BLO": "battery", "TERR": "servo", "RERR": "servo", "TC": "current", "RC": "current"}
+
+
+class RwiDrive(BoughtDevice[Message]):
+    """Implements :class:`robotd.hardware.devices.drive.Drive`."""
+
+    NAME: ClassVar[str] = "drive"
+    STOP = STOP_BYTES
+
+    def __init__(self, settings: DriveSettings, wiring: Wiring) -> None:
+        """Make the device; its ``odom`` frame begins where the base is first seen."""
+        super().__init__(RwiWire(), wiring)
+        self._scales = settings.calibration
+        self._odometer = Odometer(settings.calibration)
+        self._odometry: Broadcast[Odometry] = Broadcast()
+        self._readouts: Broadcast[DriveReadout] = Broadcast()
+        self._directions = {"T": 0, "R": 0}
+        """Which way each axis was last told to run."""
+        self._bumpers_rad: tuple[float, ...] = ()
+
+    @property
+    def odometry(self) -> Broadcast[Odometry]:
+        """Wheel-derived pose, as quickly as the line allows."""
+        return self._odometry
+
+    @property
+    def readouts(self) -> Broadcast[DriveReadout]:
+        """Battery and bumpers, periodic and on change."""
+        return self._readouts
+
+    def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
+        """Send a set-point that the base may follow for ``ttl_s``; TransportError if it is absent.
+
+        Raises:
+            DeviceError: it is not armed.
+        """
+        dialogue = self._talk_armed()
+        ticks = min(max(1, round(ttl_s * TICKS_PER_S)), _WATCHDOG_MAX_TICKS)
+        orders = [command("WD", ticks)]
+        orders += self._axis("T", twist.speed_mps * self._scales.counts_per_m)
+        orders += self._axis("R", twist.turn_radps * self._scales.counts_per_rad)
+        dialogue.post(b"".join(orders))
+
+    def stop_now(self) -> None:
+        """Put the preformatted stop on the wire; see :meth:`BoughtDevice.stop_now`."""
+        self._directions = {"T": 0, "R": 0}
+        super().stop_now()
+
+    def _axis(self, axis: str, counts_per_s: float) -> list[bytes]:
+        """Return the orders that give an axis a signed speed."""
+        speed = min(round(abs(counts_per_s)), _SPEED_MAX_COUNTS)
+        wanted = 0 if speed == 0 else (1 if counts_per_s > 0.0 else -1)
+        before = self._directions[axis]
+        if wanted == 0 or before == -wanted:
+            self._directions[axis] = 0
+            return [command(f"{axis}H")] if before else []
+        self._directions[axis] = wanted
+        run = [] if before == wanted else [command(f"{axis}{'+' if wanted > 0 else '-'}")]
+        return [command(f"{axis}V", speed), *run]
+
+    async def _greet(self, dialogue: Dialogue[Message]) -> None:
+        dialogue.post(STOP_BYTES + command("HD"))
+        self._directions = {"T": 0, "R": 0}
+        await self._ask(dialogue, "TW")
+        translate = round(_ACCELERATION_MPS2 * abs(self._scales.counts_per_m))
+        rotate = round(_TURN_ACCELERATION_RADPS2 * abs(self._scales.counts_per_rad))
+        for mnemonic, argument in (
+            ("JD", 1),  # no joystick
+            ("SP", 0),  # no reports: positions are asked for
+            ("ED", 0x80),  # half a second from error to shutdown
+            ("TT", 0x64),
+            ("TA", translate),
+            ("RA", rotate),
+            ("BE", 0),  # stop on bump
+            ("EA", 0),
+        ):
+            dialogue.post(command(mnemonic, argument))
+
+    async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
+        """Ask where the wheels are, again and again: what comes paces the set-points."""
+        before: Heard[Answer] | None = None
+        counts_before = (0, 0)
+        polls = 0
+        while True:
+            translate = await self._ask(dialogue, "TW")
+            rotate = await self._ask(dialogue, "RW")
+            counts = (_signed(translate.message.value), _signed(rotate.message.value))
+            in_odom = self._odometer.update(self.sessions, *counts)
+            if before is not None:
+                seconds = max(rotate.time_ns - before.time_ns, 1) / NS_PER_S
+                twist = Twist2(
+                    _signed(counts[0] - counts_before[0]) / self._scales.counts_per_m / seconds,
+                    _signed(counts[1] - counts_before[1]) / self._scales.counts_per_rad / seconds,
+                )
+                self._odometry.publish(Odometry(rotate.time_ns, in_odom, twist))
+                self._say_stop_again(twist)
+            before, counts_before = rotate, counts
+            if polls % _BATTERY_EVERY_POLLS == 0:
+                self._read_out(await self._ask(dialogue, "BV"))
+            polls += 1
+
+    def _say_stop_again(self, twist: Twist2) -> None:
+        """A stop can be lost like any command: a base that moves though nobody may let it is told again."""
+        if not self._may_move and not twist.is_zero:
+            self.stop_now()
+
+    def _report(self, heard: Heard[Message]) -> None:
+        message = heard.message
+        if isinstance(message, (Answer, Report)) or self._dialogue is None:
+            return
+        self._hear(message, heard.time_ns)
+
+    def _hear(self, event: Event, time_ns: int) -> None:
+        if event.name == "BS" and event.value is not None:
+            self._bumped(event.value, time_ns)
+        elif event.name == "WDT" and any(self._directions.values()):
+            self._latch("deadman", "the base's watchdog ran out: no set-point came in time")
+        for name, fault in _FAULTS.items():
+            if event.name.startswith(name) and not event.name.endswith("CLR"):
+                self._latch(fault, f"the base says %{event.name}")
+
+    def _bumped(self, switches: int, time_ns: int) -> None:
+        panels = sorted({bit // 2 for bit in range(2 * _PANELS) if not switches & 1 << bit})
+        # Panel 0 begins straight ahead. Which way round they follow is not documented: taken to be the base's, clockwise.
+        self._bumpers_rad = tuple(wrap_rad(-(panel + 0.5) * math.tau / _PANELS) for panel in panels)
+        latest = self._readouts.latest
+        self._readouts.publish(DriveReadout(time_ns, latest.battery_v if latest else 0.0, self._bumpers_rad))
+        if switches != BUMPERS_NONE:
+            self._latch("bumper", "the base was bumped")
+
+    def _read_out(self, battery: Heard[Answer]) -> None:
+        volts = battery.message.value / _TENTHS_PER_V
+        self._readouts.publish(DriveReadout(battery.time_ns, volts, self._bumpers_rad))
+
+    async def _ask(self, dialogue: Dialogue[Message], mnemonic: str) -> Heard[Answer]:
+        def settles(message: Message) -> bool:
+            return isinstance(message, Answer) and message.mnemonic == mnemonic
+
+        heard = await dialogue.ask(command(mnemonic), settles, timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True)
+        assert isinstance(heard.message, Answer)
+        return Heard(heard.message, heard.time_ns)
+
+
+def _signed(value: int) -> int:
+    """Return the signed number of a 32-bit counter, or the shorter way from one count to another.
+
+    >>> _signed(0xFFFFFFFF)
+    -1
+    """
+    return (value + 0x80000000) % 0x100000000 - 0x80000000
