@@ -162,7 +162,7 @@ class RwiDrive(BoughtDevice[Message]):
 
     def _bumped(self, switches: int, time_ns: int) -> None:
         panels = sorted({bit // 2 for bit in range(2 * _PANELS) if not switches & 1 << bit})
-        # Panel 0 begins straight ahead. Which way round they follow is not documented: taken to be the base's, clockwise.
+        # Panel 0 begins straight ahead. Which way round they follow is not documented; the base counts clockwise.
         self._bumpers_rad = tuple(wrap_rad(-(panel + 0.5) * math.tau / _PANELS) for panel in panels)
         latest = self._readouts.latest
         self._readouts.publish(DriveReadout(time_ns, latest.battery_v if latest else 0.0, self._bumpers_rad))

@@ -175,7 +175,7 @@ async def test_bump_switches_are_a_fault_and_say_where() -> None:
         assert b.device.status.faults == ("bumper",)
         readout = b.device.readouts.latest
         assert readout is not None
-        assert readout.bumpers_rad == pytest.approx((1.178,), abs=0.001)
+        assert readout.bumpers_rad == pytest.approx((-1.178,), abs=0.001)
 
 
 @pytest.mark.parametrize(("event", "fault"), [("%BLO", "battery"), ("%TERR 1", "servo"), ("%RC 2", "current")])
