@@ -10,8 +10,9 @@ from robotd.cli.terminal import out, print_json
 from robotd.cli.verb import OK, Verb
 from robotd.cli.wording import as_json, estimate_in_words, in_words, region_in_words
 from robotd.core.errors import RequestTimeout
+from robotd.localization.area import Area
 from robotd.localization.estimate import PoseEstimate
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, PriorHeading
 from robotd.server.feed import Gap
 from robotd.server.topics import Topic
 
@@ -21,16 +22,40 @@ _PATIENCE_S = 3.0
 
 def _localize(arguments: argparse.Namespace) -> int:
     heading_rad = None if arguments.heading_deg is None else heading_of_deg(arguments.heading_deg)
-    return carry_out(arguments, LocalizeMission(heading_rad))
+    heading = PriorHeading.UNKNOWN if arguments.heading_unknown else PriorHeading.ODOMETRY
+    return carry_out(arguments, LocalizeMission(heading_rad, heading=heading, within=arguments.within))
 
 
-def _heading(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
+def _known(parser: argparse.ArgumentParser) -> None:
+    headings = parser.add_mutually_exclusive_group()
+    headings.add_argument(
         "--heading-deg",
         type=number,
         metavar="DEG",
         help="the robot's heading on the map, if you know it better than its odometry",
     )
+    headings.add_argument("--heading-unknown", action="store_true", help="try all headings: nobody knows it")
+    parser.add_argument(
+        "--within",
+        action=_AreaAction,
+        nargs=3,
+        type=number,
+        metavar=("X", "Y", "RADIUS"),
+        help="the disk of the map that the robot is in [m], if you know (default: anywhere)",
+    )
+
+
+class _AreaAction(argparse.Action):
+    """Turns ``X Y RADIUS`` into a disk of the map."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: object, _: object = None
+    ) -> None:
+        assert isinstance(values, list)
+        try:
+            setattr(namespace, self.dest, Area(*values))
+        except ValueError as error:
+            parser.error(f"argument --within: {error}")
 
 
 def _drive_to(arguments: argparse.Namespace) -> int:
@@ -97,9 +122,9 @@ VERBS = (
     Verb(
         "localize",
         "sweep where it stands and say where that is on the map in use",
-        "robotctl localize --heading-deg 90",
+        "robotctl localize --heading-unknown --within 2 3 1.5",
         _localize,
-        _heading,
+        _known,
         asks_daemon=True,
     ),
     Verb("pose", "print the newest pose estimate", "robotctl pose --json", _pose, asks_daemon=True),

@@ -49,6 +49,21 @@ class CellWindow:
             min(shape[1], self.end_col + by_cells),
         )
 
+    def joined(self, other: "CellWindow") -> "CellWindow":
+        """Return the smallest window that holds this one and another.
+
+        >>> CellWindow(2, 4, 0, 9).joined(CellWindow(3, 7, 5, 6))
+        CellWindow(first_row=2, end_row=7, first_col=0, end_col=9)
+        """
+        if self.is_empty or other.is_empty:
+            return other if self.is_empty else self
+        return CellWindow(
+            min(self.first_row, other.first_row),
+            max(self.end_row, other.end_row),
+            min(self.first_col, other.first_col),
+            max(self.end_col, other.end_col),
+        )
+
     @property
     def is_empty(self) -> bool:
         """Whether there is no cell in it."""

@@ -9,9 +9,10 @@ from collections.abc import Sequence
 
 from robotd.core.reading import RangeReading
 from robotd.grid.readings import numbers_of
+from robotd.localization.area import Area
+from robotd.localization.counting import NOTHING, Count, Found
 from robotd.localization.described import Situation, described
 from robotd.localization.estimate import PoseEstimate, PoseState, Region
-from robotd.localization.rank import RankGrid
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.refinement import RefinementSettings
 from robotd.localization.regions import pieces_of
@@ -38,19 +39,14 @@ class Localizer:
         self._map_id = map_id
         self.begin((0.0,))
 
-    @property
-    def ranks(self) -> RankGrid:
-        """The count so far: for pictures, and for whoever wants more than the estimate."""
-        return self._ranks
-
-    def begin(self, headings_rad: Sequence[float]) -> None:
+    def begin(self, headings_rad: Sequence[float], within: Area | None = None) -> None:
         """Forget the readings of the last stop.
 
         Args:
             headings_rad: the robot's possible headings in the map frame, ascending; one if odometry knows it.
+            within: where on the map it is, if that is known; then no other place is an answer.
         """
-        self._ranks = RankGrid(self._map.prepared, headings_rad, threads=self._threads)
-        self._readings: list[RangeReading] = []
+        self._count = Count(self._map, headings_rad, within, threads=self._threads)
 
     def add(self, *readings: RangeReading) -> None:
         """Count measured readings, hits or misses; many at once cost less than one after the other.
@@ -58,8 +54,7 @@ class Localizer:
         Raises:
             ValueError: a reading measured nothing; then none is counted.
         """
-        self._ranks.add(*readings)
-        self._readings.extend(readings)
+        self._count.add(*readings)
 
     def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
         """Return what the readings so far say.
@@ -68,37 +63,41 @@ class Localizer:
             time_ns: when the robot was there.
             final: whether the sweep is whole.
         """
-        regions, left_out = self._regions()
-        state = self._judge(regions, left_out)
+        found = self._find()
+        regions, left_out = self._regions(found)
+        state = self._judge(regions, left_out, is_all=found.is_all)
         return PoseEstimate(
             time_ns=time_ns,
             state=state,
             best=regions[0].pose if state is PoseState.LOCALIZED else None,
             regions=regions,
-            best_rank=self._ranks.best_rank,
-            readings=len(self._readings),
+            best_rank=found.best_rank,
+            readings=len(self._count.readings),
             final=final,
             map_id=self._map_id,
             regions_left_out=left_out,
-            bearings_rad=tuple(reading.bearing_rad for reading in self._readings),
+            bearings_rad=tuple(reading.bearing_rad for reading in self._count.readings),
         )
 
-    def _regions(self) -> tuple[tuple[Region, ...], int]:
+    def _find(self) -> Found:
+        settings, readings = self._settings, len(self._count.readings)
+        if readings < settings.readings_min:
+            return NOTHING
+        slack, least_rank = settings.rival_share * readings, settings.localized_share * readings
+        return self._count.best(math.ceil(slack), math.ceil(least_rank))
+
+    def _regions(self, found: Found) -> tuple[tuple[Region, ...], int]:
         """Return the regions that explain enough of the readings, and how many more there are."""
-        settings, best_rank, readings = self._settings, self._ranks.best_rank, len(self._readings)
-        if readings < settings.readings_min or best_rank < settings.localized_share * readings:
-            return (), 0
-        poses = self._ranks.cells_of_rank(max(1, best_rank - math.ceil(settings.rival_share * readings)))
-        headings_rad = self._ranks.headings_rad
-        pieces = pieces_of(poses, self._ranks.rank_at(poses), headings_rad, settings.regions_max)
-        situation = Situation(self._map, headings_rad, numbers_of(self._readings), self._refinement)
+        headings_rad = self._count.headings_rad
+        pieces = pieces_of(found.poses, found.ranks, headings_rad, self._settings.regions_max)
+        situation = Situation(self._map, headings_rad, numbers_of(self._count.readings), self._refinement)
         return described(pieces.best, situation), pieces.left_out
 
-    def _judge(self, regions: tuple[Region, ...], left_out: int) -> PoseState:
+    def _judge(self, regions: tuple[Region, ...], left_out: int, *, is_all: bool) -> PoseState:
         if not regions:
-            return PoseState.LOST
+            return PoseState.LOST if is_all else PoseState.AMBIGUOUS
         spread_m = max(_farthest_m(region, regions[0]) for region in regions)
-        is_one_place = left_out == 0 and spread_m <= self._settings.unique_within_m
+        is_one_place = is_all and left_out == 0 and spread_m <= self._settings.unique_within_m
         return PoseState.LOCALIZED if is_one_place else PoseState.AMBIGUOUS
 
 

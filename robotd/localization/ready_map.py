@@ -1,4 +1,4 @@
-"""A map made ready for all that localization does on it: counting readings, and refining poses."""
+"""A map made ready for all that localization does on it: counting readings, searching, and refining poses."""
 
 from dataclasses import dataclass
 
@@ -8,18 +8,21 @@ from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
 from robotd.localization.obstacles import Obstacles, UnknownCells
 from robotd.localization.prepared import PreparedMap
+from robotd.localization.search import SearchMap
 from robotd.localization.settings import LocalizationSettings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReadyMap:
-    """What is worked out once for a map; it never changes, so it may be shared by threads."""
+    """What is worked out once for a map; it never changes until it is used up, so it may be shared by threads."""
 
     ternary: TernaryMap
     settings: LocalizationSettings
     """How it was read."""
     prepared: PreparedMap
     """For counting."""
+    searched: SearchMap
+    """For the search."""
     walls: WallField
     """For refinement."""
 
@@ -29,19 +32,24 @@ class ReadyMap:
         unknown, error_radius_cells = settings.unknown, settings.range_error_m / ternary.spec.resolution_m
         obstacles = Obstacles.of_map(ternary, unknown, error_radius_cells, blocked_by=settings.blocked_by)
         prepared = PreparedMap.of(obstacles, ternary.spec, error_radius_cells)
-        return cls(ternary, settings, prepared, WallField.of(ternary.spec, ternary.occupied, obstacles.blocking))
+        searched = SearchMap.of(obstacles, ternary.spec, error_radius_cells)
+        walls = WallField.of(ternary.spec, ternary.occupied, obstacles.blocking)
+        return cls(ternary, settings, prepared, searched, walls)
 
     def updated(self, grid: OccupancyGrid, changed: CellWindow) -> "ReadyMap":
         """Return the map of a grid that differs from the one this is of in a window alone.
 
-        The same as made from nothing. O(cells of the window, and of a rim round it), and a copy of what is kept.
+        The same as made from nothing. O(cells of the window, and of a rim round it), and a copy of what is kept. This
+        map is used up: what it keeps for the search becomes the new one's.
         """
         if changed.is_empty:
             return self
         ternary = self.ternary.updated(grid, changed)
         prepared = self._prepared(ternary, self.settings.unknown, changed)
         walls = self.walls.updated(ternary.occupied, prepared.obstacles.blocking, changed)
-        return ReadyMap(ternary, self.settings, prepared, walls)
+        radius_cells = int(self.prepared.error_radius_cells)
+        searched = self.searched.updated(prepared.obstacles, changed.grown(radius_cells, ternary.spec.shape).slices)
+        return ReadyMap(ternary, self.settings, prepared, searched, walls)
 
     def _prepared(self, ternary: TernaryMap, unknown: UnknownCells, changed: CellWindow) -> PreparedMap:
         radius_cells = self.prepared.error_radius_cells

@@ -14,15 +14,18 @@ from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import RangeReading
 from robotd.localization.estimate import PoseEstimate, PoseState, Region
 from robotd.localization.localizer import Localizer
-from robotd.localization.ready_map import ReadyMap
+from robotd.localization.settings import LocalizationSettings
 from robotd.mission.compute import cores
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import MissionPhase
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.motion import settle
-from robotd.mission.requests import LocalizeMission
+from robotd.mission.requests import LocalizeMission, PriorHeading
 
 _BATCH = 20
+"""Readings between two estimates while the heading is known and readings are counted as they come."""
+_ESTIMATES = 4
+"""How often a sweep is searched while the heading is not: at each quarter, whatever its number of readings."""
 
 
 async def run_localizing(
@@ -30,9 +33,9 @@ async def run_localizing(
 ) -> PoseEstimate:
     """Carry out a :class:`LocalizeMission`: sweep, estimate, and tie odometry to the map if the answer is unique."""
     here = await settle(context.robot.drive, context.settings.sweep.settle_s, context.settings.driving)
-    heading_rad = _heading(place, mission, here)
+    headings_rad = _headings(context, place, mission, here)
     report.at(MissionPhase.SWEEPING)
-    narrowing = await Narrowing.begin(context, place, heading_rad)
+    narrowing = await Narrowing.begin(context, place, mission, headings_rad)
     narrowed = asyncio.create_task(narrowing.run(), name="narrowing")
     try:
         sweep = await context.sweep(number, narrowing.offer)
@@ -43,54 +46,71 @@ async def run_localizing(
         narrowed.cancel()
         await asyncio.wait((narrowed,))
     if mission.tie:
-        _learn(place, sweep.in_odom, estimate, context.settings.localization.unique_within_m)
+        _learn(place, sweep.in_odom, estimate, context.settings.localization)
     return estimate
 
 
-def _learn(place: MapInUse, in_odom: Pose2, estimate: PoseEstimate, near_m: float) -> None:
+def _learn(place: MapInUse, in_odom: Pose2, estimate: PoseEstimate, settings: LocalizationSettings) -> None:
     """Tie odometry to the map where the robot was found; doubt the tie if it was found nowhere near that."""
     if estimate.state is PoseState.LOCALIZED and estimate.best is not None:
         place.tie(estimate.best, in_odom)
     elif place.map_from_odom is not None:
         believed = place.map_from_odom @ in_odom
-        place.is_doubted |= not any(_reaches(region, believed, near_m) for region in estimate.regions)
+        near_m, near_rad = settings.unique_within_m, settings.heading_error_rad
+        place.is_doubted |= not any(_reaches(region, believed, near_m, near_rad) for region in estimate.regions)
 
 
-def _reaches(region: Region, pose: Pose2, near_m: float) -> bool:
+def _reaches(region: Region, pose: Pose2, near_m: float, near_rad: float) -> bool:
     extent = region.extent
     beside_m = max(extent.x_min_m - pose.x_m, pose.x_m - extent.x_max_m)
     above_m = max(extent.y_min_m - pose.y_m, pose.y_m - extent.y_max_m)
-    return max(beside_m, above_m) <= near_m
+    middle_rad = (extent.heading_min_rad + extent.heading_max_rad) / 2
+    turned_rad = abs(wrap_rad(pose.heading_rad - middle_rad)) - (extent.heading_max_rad - middle_rad)
+    return max(beside_m, above_m) <= near_m and turned_rad <= near_rad
 
 
-def _heading(place: MapInUse, mission: LocalizeMission, here: Odometry) -> float:
+def _headings(context: MissionContext, place: MapInUse, mission: LocalizeMission, here: Odometry) -> tuple[float, ...]:
+    """Return the headings to try, ascending."""
+    settings = context.settings.localization
+    if mission.heading is PriorHeading.UNKNOWN:
+        return settings.headings_all_round()
     if mission.heading_rad is not None:
-        return wrap_rad(mission.heading_rad)
+        return settings.headings_near(wrap_rad(mission.heading_rad))
     heading_rad = place.heading_of(here)
     if heading_rad is None:
-        raise MissionError("the heading is unknown: odometry is not tied to this map; give heading_rad")
-    return heading_rad
+        raise MissionError(
+            "the heading is unknown: odometry is not tied to this map; give heading_rad, or heading = unknown"
+        )
+    return settings.headings_near(heading_rad)
 
 
 class Narrowing:
-    """The rank grid of a sweep under way: takes readings as they come, publishes estimates as they firm up."""
+    """A sweep under way: takes readings as they come, publishes estimates as they firm up."""
 
-    def __init__(self, context: MissionContext, localizer: Localizer) -> None:
+    def __init__(self, context: MissionContext, localizer: Localizer, readings_between: int) -> None:
         self._context = context
         self._localizer = localizer
+        self._readings_between = readings_between
         self._batches: asyncio.Queue[tuple[RangeReading, ...] | None] = asyncio.Queue()  # bounded by one sweep
         self._batch: list[RangeReading] = []
 
     @classmethod
-    async def begin(cls, context: MissionContext, place: MapInUse, heading_rad: float) -> "Narrowing":
-        """Prepare the map for this heading."""
-        localizer = await context.compute.run("prepare", _prepare, context, place, heading_rad)
-        return cls(context, localizer)
+    async def begin(
+        cls, context: MissionContext, place: MapInUse, mission: LocalizeMission, headings_rad: tuple[float, ...]
+    ) -> "Narrowing":
+        """Make the map ready, and try these headings on it."""
+        job = place.readiness.hand_over(place.grid, context.settings.localization)
+        ready = await context.compute.run("prepare", job)
+        place.readiness.keep(ready)
+        localizer = Localizer(ready, place.map_id, refinement=context.settings.refinement, threads=cores())
+        localizer.begin(headings_rad, mission.within)
+        is_searched = mission.heading is PriorHeading.UNKNOWN
+        return cls(context, localizer, -(-context.settings.sweep.readings // _ESTIMATES) if is_searched else _BATCH)
 
     def offer(self, reading: RangeReading) -> None:
         """Take a reading."""
         self._batch.append(reading)
-        if len(self._batch) == _BATCH:
+        if len(self._batch) == self._readings_between:
             self._flush()
 
     def end(self) -> None:
@@ -116,18 +136,6 @@ class Narrowing:
     def _narrow(self, batch: tuple[RangeReading, ...], time_ns: int, final: bool) -> PoseEstimate:
         self._localizer.add(*(reading for reading in batch if reading.is_measured))
         return self._localizer.estimate(time_ns, final=final)
-
-
-def _prepare(context: MissionContext, place: MapInUse, heading_rad: float) -> Localizer:
-    settings = context.settings.localization
-    localizer = Localizer(
-        ReadyMap.of(place.ternary(), settings),
-        place.map_id,
-        refinement=context.settings.refinement,
-        threads=cores(),
-    )
-    localizer.begin(settings.headings_near(heading_rad))
-    return localizer
 
 
 def pose_text(pose: Pose2) -> str:

@@ -1,6 +1,6 @@
 """The map the robot lives on now, and where odometry lies on it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,8 +9,9 @@ from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import Sweep
 from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.ternary import TernaryMap
+from robotd.grid.window import CellWindow
 from robotd.mission.events import MapChanged
+from robotd.mission.readiness import Readiness
 
 _NO_CELLS: NDArray[np.intp] = np.empty(0, dtype=np.intp)
 
@@ -30,6 +31,8 @@ class MapInUse:
     """Where the odometry frame lies on the map; None while nothing ties them."""
     generation: int = 0
     """Counts its changes since it came into use."""
+    readiness: Readiness = field(default_factory=Readiness)
+    """What localization has made of it."""
     is_doubted: bool = False
     """Whether the tie is no longer believed: a robot that looked and did not find itself, or was out of sight of
     its wheels, does not know where it is, though it may still know which way it looks."""
@@ -59,10 +62,11 @@ class MapInUse:
         changed = grid.insert(sweep, self.map_from_odom @ sweep.in_odom)
         return grid, changed
 
-    def take(self, grid: OccupancyGrid) -> None:
-        """Go on with a changed grid."""
+    def take(self, grid: OccupancyGrid, cells: NDArray[np.intp]) -> None:
+        """Go on with a grid in which these cells changed, flat indices in ascending order."""
         self.grid = grid
         self.generation += 1
+        self.readiness.note(CellWindow.bounding(cells, grid.spec.shape))
 
     def changes(self, time_ns: int, cells: NDArray[np.intp]) -> MapChanged:
         """Return the event for these changed cells."""
@@ -78,7 +82,3 @@ class MapInUse:
     def binary(self) -> BinaryMap:
         """Return the thresholded map."""
         return BinaryMap.from_grid(self.grid)
-
-    def ternary(self) -> TernaryMap:
-        """Return the map with unknown cells apart."""
-        return TernaryMap.from_grid(self.grid)

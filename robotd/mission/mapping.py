@@ -46,6 +46,6 @@ async def run_mapping(
         sweep = await context.sweep(take_number())
         report.at(MissionPhase.COMPUTING)
         grid, cells = await context.compute.run("insert", place.grid_with, sweep)
-        place.take(grid)
+        place.take(grid, cells)
         context.publish(place.changes(now_ns(), cells))
     return MappingResult(1 + len(mission.stops_m) - len(unreachable), tuple(unreachable))

@@ -4,6 +4,7 @@ import enum
 from dataclasses import dataclass
 
 from robotd.core.pose import IDENTITY, Pose2
+from robotd.localization.area import Area
 
 
 class Legs(enum.StrEnum):
@@ -27,6 +28,15 @@ class MapMission:
     legs: Legs = Legs.PLANNED
 
 
+class PriorHeading(enum.StrEnum):
+    """What is known of the robot's heading before it looks round."""
+
+    ODOMETRY = "odometry"
+    """What odometry says, give or take the setting ``heading_error_rad``."""
+    UNKNOWN = "unknown"
+    """Nothing: all headings are tried."""
+
+
 @dataclass(frozen=True, slots=True)
 class LocalizeMission:
     """Sweep at the present stop and say where it is on the map in use."""
@@ -35,6 +45,14 @@ class LocalizeMission:
     """The robot's heading in the map frame, if the client knows better than odometry."""
     tie: bool = True
     """Whether odometry is tied anew to the map where the robot is found; otherwise it is only said."""
+    heading: PriorHeading = PriorHeading.ODOMETRY
+    within: Area | None = None
+    """Where on the map it is, if the client knows; no other place is then an answer."""
+
+    def __post_init__(self) -> None:
+        """Refuse a heading that is known and unknown."""
+        if self.heading is PriorHeading.UNKNOWN and self.heading_rad is not None:
+            raise ValueError("heading_rad cannot be given where the heading is unknown")
 
 
 @dataclass(frozen=True, slots=True)

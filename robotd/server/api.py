@@ -13,9 +13,10 @@ import msgspec
 from msgspec import Meta
 
 from robotd.core.pose import IDENTITY, Pose2
+from robotd.localization.area import Area
 from robotd.maps.store import MapEntry
 from robotd.mission.events import MissionProgress, Status
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
 from robotd.server.map_wire import MapPayload
 
 VERSION = 1
@@ -85,6 +86,24 @@ class PoseArgument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def of(cls, pose: Pose2) -> "PoseArgument":
         """Return a pose as an argument."""
         return cls(pose.x_m, pose.y_m, pose.heading_rad)
+
+
+class AreaArgument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A disk of the map, as an argument."""
+
+    x_m: Coordinate
+    y_m: Coordinate
+    radius_m: Annotated[float, Meta(gt=0.0, le=100_000.0)]
+
+    @property
+    def area(self) -> Area:
+        """The same, as the rest of the house writes it."""
+        return Area(self.x_m, self.y_m, self.radius_m)
+
+    @classmethod
+    def of(cls, area: Area) -> "AreaArgument":
+        """Return a disk as an argument."""
+        return cls(area.x_m, area.y_m, area.radius_m)
 
 
 class Done(msgspec.Struct, frozen=True):
@@ -211,11 +230,17 @@ class Localize(Command[MissionStarted], frozen=True):
     heading_rad: Heading | None = None
     lease_s: LeaseTime | None = None
     tie: bool = True
+    heading: PriorHeading = PriorHeading.ODOMETRY
+    within: AreaArgument | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse a heading that is known and unknown."""
+        self.mission  # noqa: B018  # making it is the check
 
     @property
     def mission(self) -> Mission:
         """What it asks the robot to do."""
-        return LocalizeMission(self.heading_rad, self.tie)
+        return LocalizeMission(self.heading_rad, self.tie, self.heading, self.within.area if self.within else None)
 
 
 class DriveTo(Command[MissionStarted], frozen=True):
@@ -309,7 +334,7 @@ def start_command(mission: Mission, lease_s: float | None) -> StartCommand:
     match mission:
         case MapMission(name, stops_m, start, legs):
             return MapStart(name, stops_m, PoseArgument.of(start), legs, lease_s)
-        case LocalizeMission(heading_rad, tie):
-            return Localize(heading_rad, lease_s, tie)
+        case LocalizeMission(heading_rad, tie, heading, within):
+            return Localize(heading_rad, lease_s, tie, heading, AreaArgument.of(within) if within else None)
         case DriveMission(x_m, y_m, legs):
             return DriveTo(x_m, y_m, legs, lease_s)

@@ -20,9 +20,10 @@ import zmq
 
 from robotd.core.errors import RequestTimeout, RobotdError
 from robotd.core.pose import IDENTITY, Pose2
+from robotd.localization.area import Area
 from robotd.localization.estimate import PoseEstimate
 from robotd.mission.events import MapChanged, Status
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
 from robotd.server import api
 from robotd.server.api import Command, MapEntryInfo
 from robotd.server.endpoints import Endpoints, runtime_dir_of_user
@@ -173,9 +174,17 @@ class Client:
         """Make a new map and return what happened; ``MissionError`` if it was not done."""
         return list(self.run_mission(MapMission(name, stops_m, start, legs)))
 
-    def localize(self, heading_rad: float | None = None, *, tie: bool = True) -> PoseEstimate:
+    def localize(
+        self,
+        heading_rad: float | None = None,
+        *,
+        tie: bool = True,
+        heading: PriorHeading = PriorHeading.ODOMETRY,
+        within: Area | None = None,
+    ) -> PoseEstimate:
         """Sweep here and return where it is; ``MissionError`` if it was not done. Without ``tie`` it only looks."""
-        return final_estimate(list(self.run_mission(LocalizeMission(heading_rad, tie))))
+        mission = LocalizeMission(heading_rad, tie, heading, within)
+        return final_estimate(list(self.run_mission(mission)))
 
     def drive_to(self, x_m: float, y_m: float, legs: Legs = Legs.PLANNED) -> list[MissionEvent]:
         """Drive to a place on the map and return what happened; ``MissionError`` if it was not reached."""

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from robotd.config import Config
+from robotd.core.angles import wrap_rad
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
@@ -17,7 +18,7 @@ from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import Event, MapChanged, MissionPhase, SweepDone, SweepProgress
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Mode
-from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
+from robotd.mission.requests import DriveMission, LocalizeMission, MapMission, PriorHeading
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.world import load_world
 from tests.integration.conftest import Live
@@ -203,3 +204,32 @@ async def test_a_saved_map_comes_back_exactly_and_the_robot_is_found_in_it(live:
         assert found.state is PoseState.LOCALIZED
         assert found.best is not None
         assert math.hypot(found.best.x_m - again.truth.x_m, found.best.y_m - again.truth.y_m) < 0.1
+
+
+async def test_a_robot_that_nobody_knows_the_heading_of_is_found_and_drives_on(live: Live) -> None:
+    """Put down anywhere on a saved map, turned by any angle, its wheels tell nothing of where it is or looks."""
+    office = load_world("office")
+    async with live(SimulatedRobot(office, seed=1)) as it:
+        await it.done(MapMission("office", office.stops_m, office.start_pose))
+        await it.daemon.control.save_map(None)
+    turned = replace(office, start=replace(office.start, heading_deg=office.start.heading_deg + 137.0))
+    robot = SimulatedRobot(turned, seed=5)
+    async with live(robot) as it:
+        await it.daemon.control.load_map("office", None, None)
+        said = await it.done(LocalizeMission(heading=PriorHeading.UNKNOWN))
+        estimates = final_estimates(said)
+        found = estimates[-1]
+        assert found.state is PoseState.LOCALIZED
+        assert found.best is not None
+        # The base turns between the parts of a sweep; odometry, tied to the map, has followed it.
+        here = it.daemon.supervisor.robot.drive.odometry.latest
+        assert here is not None
+        believed = place(it).pose_of(here)
+        assert believed is not None
+        assert believed.distance_m(robot.truth) < 0.05
+        assert abs(wrap_rad(believed.heading_rad - robot.truth.heading_rad)) < 0.02
+        partial = [e for e in said if isinstance(e, PoseEstimate) and not e.final]
+        assert [e.readings for e in partial] == sorted(e.readings for e in partial)
+        assert 3 <= len(partial) <= 4, "a search at each quarter of the sweep, and no more"
+        await it.done(DriveMission(*office.stops_m[0]))
+        assert math.dist(office.stops_m[0], (robot.truth.x_m, robot.truth.y_m)) < 0.15

@@ -16,7 +16,6 @@ from robotd.core.reading import Sweep
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
 from robotd.grid.ternary import TernaryMap
-from robotd.localization.localizer import Localizer
 from robotd.localization.rank import RankGrid
 from robotd.localization.ready_map import ReadyMap
 from robotd.mission.events import MapChanged
@@ -112,8 +111,6 @@ def rank_of(the_map: MapChanged, sweep: Sweep, heading_rad: float) -> RankGrid:
     """Return the rank grid of a sweep on a map: what the daemon saw when it decided."""
     settings = Config().localization
     the_ternary = TernaryMap.from_grid(OccupancyGrid(the_map.spec, the_map.values))
-    localizer = Localizer(ReadyMap.of(the_ternary, settings), the_map.map_id)
-    localizer.begin((heading_rad,))
-    for reading in sweep.measured:
-        localizer.add(reading)
-    return localizer.ranks
+    ranks = RankGrid(ReadyMap.of(the_ternary, settings).prepared, (heading_rad,))
+    ranks.add(*sweep.measured)
+    return ranks

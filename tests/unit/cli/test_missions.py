@@ -11,14 +11,16 @@ import pytest
 from robotd.cli.main import main
 from robotd.core.errors import RequestTimeout
 from robotd.core.pose import IDENTITY, Pose2
+from robotd.localization.area import Area
 from robotd.mission.events import MissionPhase, MissionProgress
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, PriorHeading
 
 
 def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
     main(["localize"])
     main(["localize", "--heading-deg", "90"])
     main(["localize", "--heading-deg", "-270"])
+    main(["localize", "--heading-unknown", "--within", "1", "-2", "0.5"])
     main(["drive-to", "1.5", "-2", "--legs", "straight"])
     main(["map", "start", "lab", "--stop", "1", "2", "--stop", "-3", "4", "--start", "1", "0", "180"])
     main(["map", "start", "lab"])
@@ -26,6 +28,7 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
         LocalizeMission(None),
         LocalizeMission(math.radians(90)),
         LocalizeMission(math.radians(90)),
+        LocalizeMission(heading=PriorHeading.UNKNOWN, within=Area(1.0, -2.0, 0.5)),
         DriveMission(1.5, -2.0, Legs.STRAIGHT),
         MapMission("lab", ((1.0, 2.0), (-3.0, 4.0)), Pose2(1.0, 0.0, math.pi), Legs.PLANNED),
         MapMission("lab", (), IDENTITY, Legs.PLANNED),

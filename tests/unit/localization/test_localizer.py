@@ -12,6 +12,7 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.spec import GridSpec
 from robotd.grid.ternary import TernaryMap
+from robotd.localization.area import Area
 from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
@@ -123,6 +124,29 @@ def test_a_robot_that_was_turned_or_carried_elsewhere_is_lost() -> None:
         assert estimate.state is PoseState.LOST
         assert (estimate.best, estimate.regions) == (None, ())
         assert estimate.readings == 60
+
+
+@pytest.mark.parametrize("pose", [Pose2(3.03, 0.41, 2.2), Pose2(6.1, 2.02, -1.0)])
+def test_a_robot_that_was_turned_by_nobody_knows_how_much_is_found(pose: Pose2) -> None:
+    localizer = Localizer(ready(LAB), "a map", refinement=DRAWN)
+    localizer.begin(SETTINGS.headings_all_round())
+    localizer.add(*seen_from(LAB, pose, 120))
+    estimate = localizer.estimate(7, final=True)
+    assert estimate.state is PoseState.LOCALIZED
+    assert estimate.best is not None
+    assert estimate.best.distance_m(pose) < 0.03
+    assert math.remainder(estimate.best.heading_rad - pose.heading_rad, math.tau) == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_robot_in_one_of_two_places_that_look_alike_is_found_where_it_is_known_to_be() -> None:
+    two_bays = room((2.9, -2.0, 3.1, 3.0))
+    localizer = Localizer(ready(two_bays), "a map", refinement=DRAWN)
+    localizer.begin((0.0,), Area(0.0, 0.0, 2.5))
+    localizer.add(*seen_from(two_bays, Pose2(0.9, 0.5, 0.0), 60))
+    estimate = localizer.estimate(0, final=True)
+    assert estimate.state is PoseState.LOCALIZED
+    assert estimate.best is not None
+    assert estimate.best.distance_m(Pose2(0.9, 0.5, 0.0)) < 0.05
 
 
 def test_too_few_readings_say_nothing() -> None:

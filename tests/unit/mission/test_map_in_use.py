@@ -33,7 +33,7 @@ def test_a_sweep_makes_a_new_grid_and_leaves_every_snapshot_alone() -> None:
     grid, cells = here.grid_with(sweep_at(IDENTITY))
     assert here.grid is before
     assert np.all(before.cells == before.cells[0, 0])
-    here.take(grid)
+    here.take(grid, cells)
     assert here.grid is grid
     assert here.generation == 1
     assert np.all(snapshot.values == before.cells)

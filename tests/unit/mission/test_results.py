@@ -47,7 +47,7 @@ def test_a_map_is_noted_whenever_it_changes() -> None:
     )
     before = digest(place.whole(1), place)
     grid, cells = place.grid_with(SWEEP)
-    place.take(grid)
+    place.take(grid, cells)
     assert digest(place.changes(2, cells), place) == place.grid.digest() != before
 
 

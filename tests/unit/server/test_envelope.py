@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from robotd.core.errors import RemoteProtocolError, ServerError
 from robotd.core.pose import Pose2
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.localization.area import Area
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
 from robotd.server import api
 from robotd.server.envelope import (
     BadRequest,
@@ -67,6 +68,7 @@ def test_a_command_survives_the_way(command: api.Command[Any]) -> None:
         MapMission("a", ((1.0, 2.0),), Pose2(1.0, 2.0, 3.0), Legs.STRAIGHT),
         LocalizeMission(0.5),
         LocalizeMission(),
+        LocalizeMission(None, True, PriorHeading.UNKNOWN, Area(1.0, -2.0, 0.5)),
         DriveMission(1.0, 2.0, Legs.STRAIGHT),
     ],
 )

@@ -1,0 +1,42 @@
+"""What localization has made of the map in use: kept, so that a changed map is not made ready from nothing."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.ternary import TernaryMap
+from robotd.grid.window import CellWindow
+from robotd.localization.ready_map import ReadyMap
+from robotd.localization.settings import LocalizationSettings
+
+_NOTHING = CellWindow(0, 0, 0, 0)
+
+
+@dataclass(slots=True)
+class Readiness:
+    """The ready map, if there is one, and where the map changed since."""
+
+    ready: ReadyMap | None = None
+    changed: CellWindow = _NOTHING
+
+    def note(self, changed: CellWindow) -> None:
+        """Take note that cells changed."""
+        self.changed = self.changed.joined(changed)
+
+    def hand_over(self, grid: OccupancyGrid, settings: LocalizationSettings) -> Callable[[], ReadyMap]:
+        """Return the job that makes the map ready; hand its result to :meth:`keep`.
+
+        A job uses up the ready map that it begins with. It is therefore handed over with the job, and if nobody comes
+        back with a result, because the mission was stopped, the next job begins with nothing.
+        """
+        ready, changed = self.ready, self.changed
+        self.ready, self.changed = None, _NOTHING
+        return lambda: _made(grid, settings) if ready is None else ready.updated(grid, changed)
+
+    def keep(self, ready: ReadyMap) -> None:
+        """Take over what a job has made."""
+        self.ready = ready
+
+
+def _made(grid: OccupancyGrid, settings: LocalizationSettings) -> ReadyMap:
+    return ReadyMap.of(TernaryMap.from_grid(grid), settings)

@@ -1,0 +1,90 @@
+"""A map that changed is made ready from what changed, to the same result; a forgotten job spoils nothing."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from robotd.core.pose import IDENTITY, Pose2
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.localization.ready_map import ReadyMap
+from robotd.localization.settings import LocalizationSettings
+from robotd.mission import readiness
+from robotd.mission.map_in_use import MapInUse
+
+SETTINGS = LocalizationSettings()
+
+
+def swept(place: MapInUse, x_m: float) -> Sweep:
+    bearings = np.arange(60) * math.tau / 60
+    taken = tuple(RangeReading(0, bearing, ReadingStatus.OK, 1.0 + 0.3 * math.sin(5 * bearing)) for bearing in bearings)
+    return Sweep(0, Pose2(x_m, 0.2, 0.0), taken)
+
+
+def place() -> MapInUse:
+    return MapInUse(
+        "m", "office", OccupancyGrid(GridSettings(rows=90, cols=120).spec_covering(((0, 0),), 1.0)), IDENTITY
+    )
+
+
+def insert(here: MapInUse, x_m: float) -> None:
+    here.take(*here.grid_with(swept(here, x_m)))
+
+
+def arrays(ready: ReadyMap) -> list[Any]:
+    planes, packed = ready.searched.planes, ready.prepared.packed
+    return [
+        *(planes.cells, planes.pooled, planes.near, planes.ground.free, planes.ground.blocking, planes.ground.grown),
+        *(packed.free, packed.blocking, packed.grown, packed.tiles),
+        *(ready.walls.codes, ready.walls.skips, ready.ternary.occupied, ready.ternary.vacant),
+    ]
+
+
+@pytest.fixture
+def from_nothing(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Notes each time a map is made ready from nothing."""
+    made: list[int] = []
+    whole = readiness._made
+
+    def noting(grid: OccupancyGrid, settings: LocalizationSettings) -> ReadyMap:
+        made.append(1)
+        return whole(grid, settings)
+
+    monkeypatch.setattr(readiness, "_made", noting)
+    return made
+
+
+def test_sweeps_between_two_localizations_are_taken_in_at_once_and_only_where_they_were(
+    from_nothing: list[int],
+) -> None:
+    here = place()
+    insert(here, -0.5)
+    here.readiness.keep(here.readiness.hand_over(here.grid, SETTINGS)())
+    insert(here, 0.4)
+    insert(here, 0.9)
+    updated = here.readiness.hand_over(here.grid, SETTINGS)()
+    assert len(from_nothing) == 1
+    anew = place()
+    anew.grid = here.grid
+    fresh = anew.readiness.hand_over(anew.grid, SETTINGS)()
+    assert len(from_nothing) == 2
+    for one, other in zip(arrays(updated), arrays(fresh), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_a_map_that_did_not_change_stays_ready(from_nothing: list[int]) -> None:
+    here = place()
+    ready = here.readiness.hand_over(here.grid, SETTINGS)()
+    here.readiness.keep(ready)
+    assert here.readiness.hand_over(here.grid, SETTINGS)() is ready
+
+
+def test_a_job_whose_result_nobody_took_is_forgotten_with_what_it_used_up(from_nothing: list[int]) -> None:
+    here = place()
+    here.readiness.keep(here.readiness.hand_over(here.grid, SETTINGS)())
+    insert(here, 0.4)
+    here.readiness.hand_over(here.grid, SETTINGS)  # the mission was stopped while it ran
+    here.readiness.hand_over(here.grid, SETTINGS)()
+    assert len(from_nothing) == 2
