@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test bench paper lint types contracts check clean
+.PHONY: help demo demo-real test bench paper conservative lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
@@ -32,6 +32,9 @@ bench: .venv/.dev  ## Measure the engine: all of it into docs/benchmarks, or a p
 
 paper: .venv/.dev  ## The paper's five tests in simulated rooms, as pictures and tables: writes docs/paper (a minute)
 	@$(BIN)/python -m tests.paper.run
+
+conservative: .venv/.dev  ## Look 10 000 times for a true pose that the conservative mode loses
+	@$(BIN)/python -m tests.conservative.run $(if $(CASES),--cases $(CASES))
 
 lint: .venv/.dev  ## Check format and style
 	@echo "robotd: ruff"

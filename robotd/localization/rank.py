@@ -91,11 +91,21 @@ class RankGrid:
     def _count(self, readings: Sequence[RangeReading], *, subtract: bool) -> None:
         if not readings:
             return
-        beams = kernels.draw_beams(numbers_of(readings), self._headings, self._how)
-        self.readings += -len(readings) if subtract else len(readings)
-        self._counters = _widened(self._counters, bits_of(self.readings))
-        threads = self._threads if len(beams.beams) >= _WORTH_THREADS else 1
+        total = self.readings + (-len(readings) if subtract else len(readings))
+        numbers = numbers_of(readings)
+        self._counters = _widened(self._counters, bits_of(total))
+        self._count_numbers(numbers, subtract=subtract)
+        self.readings = total
+
+    def _count_numbers(self, numbers: NDArray[np.float64], *, subtract: bool) -> None:
+        """Count readings ``float64[n, 5]``, for which the counters have room."""
+        beams = kernels.draw_beams(numbers, self._headings, self._how)
+        threads = self._threads_for(beams.beams)
         kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
+
+    def _threads_for(self, beams: NDArray[np.int32]) -> int:
+        """Return how many threads are worth starting."""
+        return self._threads if len(beams) >= _WORTH_THREADS else 1
 
     def _refuse_if_too_large(self, readings: int) -> None:
         needed = self._map.counter_bytes(len(self.headings_rad), bits_of(readings))

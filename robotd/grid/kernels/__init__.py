@@ -34,6 +34,7 @@ except ImportError as error:
     wall_codes, skip_codes = twins.wall_codes, twins.skip_codes
     make_planes, renew_planes, search_poses = twins.make_planes, twins.renew_planes, twins.search_poses
     fit_poses, scan_poses, cast_beams = twins.fit_poses, twins.scan_poses, twins.cast_beams
+    count_fans = twins.count_fans
 else:
     IN_USE = KernelsInUse(
         compiled=True, instructions=native.instruction_set(), reason="compiled when robotd was installed"
@@ -44,12 +45,14 @@ else:
     wall_codes, skip_codes = native.wall_codes, native.skip_codes
     make_planes, renew_planes, search_poses = native.make_planes, native.renew_planes, native.search_poses
     fit_poses, scan_poses, cast_beams = native.fit_poses, native.scan_poses, native.cast_beams
+    count_fans = native.count_fans
 
 __all__ = [
     "IN_USE",
     "KernelsInUse",
     "at_least",
     "cast_beams",
+    "count_fans",
     "count_feasible",
     "draw_beams",
     "fit_poses",

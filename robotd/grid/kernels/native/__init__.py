@@ -14,6 +14,7 @@ from robotd.grid.kernels.native.counting import (
 )
 from robotd.grid.kernels.native.distances import squared_distances
 from robotd.grid.kernels.native.drawing import draw_beams
+from robotd.grid.kernels.native.fanning import count_fans
 from robotd.grid.kernels.native.fitting import fit_poses, scan_poses
 from robotd.grid.kernels.native.growing import grow_disk
 from robotd.grid.kernels.native.inserting import insert_sweep
@@ -24,6 +25,7 @@ __all__ = [
     "INSTRUCTION_SETS",
     "at_least",
     "cast_beams",
+    "count_fans",
     "count_feasible",
     "draw_beams",
     "fit_poses",

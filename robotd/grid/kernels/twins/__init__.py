@@ -4,6 +4,7 @@ from robotd.grid.kernels.twins.casting import cast_beams, skip_codes, wall_codes
 from robotd.grid.kernels.twins.counting import at_least, count_feasible, greatest
 from robotd.grid.kernels.twins.distances import squared_distances
 from robotd.grid.kernels.twins.drawing import draw_beams
+from robotd.grid.kernels.twins.fanning import count_fans
 from robotd.grid.kernels.twins.fitting import fit_poses, scan_poses
 from robotd.grid.kernels.twins.growing import grow_disk
 from robotd.grid.kernels.twins.inserting import insert_sweep
@@ -13,6 +14,7 @@ from robotd.grid.kernels.twins.searching import make_planes, renew_planes, searc
 __all__ = [
     "at_least",
     "cast_beams",
+    "count_fans",
     "count_feasible",
     "draw_beams",
     "fit_poses",

@@ -33,18 +33,18 @@ def count_feasible(
         bounds = beams.lists[batch * headings : (batch + 1) * headings + 1].tolist()
         for heading, (first, last) in enumerate(itertools.pairwise(bounds)):
             for slot, row, col in beams.beams[first:last].tolist():
-                feasible = kept[slot] if row == NO_HEAD else kept[slot] & _seen_from(the_map.grown, row, col)
-                _ripple(counters[:, heading], _tiles(feasible, the_map), subtract=subtract)
+                feasible = kept[slot] if row == NO_HEAD else kept[slot] & seen_from(the_map.grown, row, col)
+                ripple(counters[:, heading], tiles_of_plane(feasible, the_map), subtract=subtract)
 
 
 def _walk(the_map: PackedMap, beams: Beams, groups: range) -> dict[int, Words]:
     """Return by slot the free cells that the bodies of a batch do not block, ``uint64[words, rows]``."""
     kept = {}
     for group in groups:
-        still_open = _seen_from(the_map.free, 0, 0).copy()
+        still_open = seen_from(the_map.free, 0, 0).copy()
         met = np.full_like(still_open, ~np.uint64(0) if the_map.blocked_by == 1 else 0)
         for row, col, slot in beams.chains[beams.groups[group] : beams.groups[group + 1]].tolist():
-            blocking = _seen_from(the_map.blocking, row, col)
+            blocking = seen_from(the_map.blocking, row, col)
             still_open &= ~(met & blocking)
             met |= blocking
             if slot >= 0:
@@ -86,7 +86,7 @@ def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
     return masks
 
 
-def _seen_from(packed: Words, row: int, col: int) -> Words:
+def seen_from(packed: Words, row: int, col: int) -> Words:
     """Return the map shifted so that each cell holds what lies at an offset from it, ``uint64[words, rows]``."""
     words, rows = packed.shape[0] - 2 * PAD_WORDS, packed.shape[1] - 2 * TILE_ROWS
     word, shift = divmod(col, WORD_CELLS)
@@ -104,14 +104,14 @@ def _seen_from(packed: Words, row: int, col: int) -> Words:
     return seen
 
 
-def _tiles(plane: Words, the_map: PackedMap) -> Words:
+def tiles_of_plane(plane: Words, the_map: PackedMap) -> Words:
     """Return the tiles ``uint64[tiles, 32]`` of a plane ``uint64[words, rows]``."""
     blocks = plane.reshape(the_map.words, -1, TILE_ROWS)
     tiles: Words = blocks[the_map.tiles[:, 0], the_map.tiles[:, 1] // TILE_ROWS]
     return tiles
 
 
-def _ripple(counter: Words, carry: Words, *, subtract: bool) -> None:
+def ripple(counter: Words, carry: Words, *, subtract: bool) -> None:
     """Add one bit to ``uint64[tiles, bits, 32]``, or take it away."""
     for bit in range(counter.shape[1]):
         old = counter[:, bit].copy()
