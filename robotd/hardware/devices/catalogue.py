@@ -15,8 +15,10 @@ from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.rwi_drive import RwiDrive
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
+from robotd.hardware.devices.tfmini_rangefinder import TfminiRangefinder
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.line_format import LineFormat
+from robotd.hardware.wire.tfmini import Model
 
 S_contra = TypeVar("S_contra", bound=PortSettings, contravariant=True)
 D_co = TypeVar("D_co", covariant=True)
@@ -46,6 +48,7 @@ PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {
 RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {
     "board": Dialect(BoardRangefinder, _OURS),
     "dimetix": Dialect(DimetixRangefinder, LineFormat(19_200, 7, "E", 1)),
+    **{model.value: Dialect(TfminiRangefinder, LineFormat(115_200)) for model in Model},
 }
 
 DIALECTS: Mapping[str, Mapping[str, Dialect[PortSettings, object]]] = {

@@ -14,6 +14,7 @@ from robotd.sim.emulators.dimetix import DimetixEmulator
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.ptu import PtuEmulator
 from robotd.sim.emulators.rwi import RwiEmulator
+from robotd.sim.emulators.tfmini import TfminiEmulator
 from robotd.sim.host import HostedBoard
 from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant
 
@@ -43,6 +44,7 @@ PANTILTS: Mapping[str, Emulator[HeadPlant]] = {
 }
 RANGEFINDERS: Mapping[str, Emulator[LaserPlant]] = {
     "board": Emulator(lambda plant, boot_id: RangefinderBoard(plant, boot_id=boot_id)),
+    "tfmini-s": Emulator(lambda plant, _: Paced(TfminiEmulator(plant), LineFormat(115_200))),
     "dimetix": Emulator(lambda plant, _: Paced(DimetixEmulator(plant), LineFormat(19_200, 7, "E", 1))),
 }
 OWN = "board"

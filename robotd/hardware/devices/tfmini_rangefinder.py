@@ -1,0 +1,106 @@
+"""A Benewake TFmini and its kin in trigger mode: one command, one reading.
+
+From power-up they stream a hundred readings a second; the stream is switched off and each reading asked for, so that it
+was taken when the head stood still. Their light cannot be switched off, only their output.
+"""
+
+import asyncio
+from typing import ClassVar, NoReturn
+
+from robotd.core.clock import now_ns
+from robotd.core.errors import DeviceError, LinkTimeout
+from robotd.core.reading import ReadingStatus
+from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.rangefinder import Shot
+from robotd.hardware.devices.settings import RangefinderSettings
+from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.link.dialogue import Dialogue, Heard
+from robotd.hardware.wire.tfmini import (
+    FORMAT_CM,
+    OUTPUT_OFF,
+    OUTPUT_ON,
+    RATE_0,
+    TRIGGER,
+    VERSION,
+    Data,
+    Message,
+    Model,
+    Reply,
+    TfminiWire,
+    Verdict,
+)
+
+_CM_PER_M = 100
+_ANSWER_S = 0.3
+_TRIES = 3
+_MEASURES_S = 0.1
+"""How long a trigger may stay without its reading; then it is sent once more."""
+_TRIGGERS = 2
+_IDLE_POLL_S = 2.0
+_VERSION_NUMBER = 0x01
+_STATUS = {
+    Verdict.WEAK: ReadingStatus.WEAK,
+    Verdict.SATURATED: ReadingStatus.SATURATED,
+    Verdict.AMBIENT: ReadingStatus.AMBIENT,
+    Verdict.OUT_OF_RANGE: ReadingStatus.MISS,
+}
+
+
+class TfminiRangefinder(BoughtDevice[Message]):
+    """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`."""
+
+    NAME: ClassVar[str] = "rangefinder"
+    STOP = RATE_0
+
+    def __init__(self, settings: RangefinderSettings, wiring: Wiring) -> None:
+        """Make the device: its dialect names the model; its bias is applied to every range."""
+        super().__init__(TfminiWire(), wiring)
+        self._model = Model(settings.dialect)
+        self._bias_m = settings.range_bias_m
+        self._shooting = asyncio.Lock()
+
+    async def switch_laser(self, *, on: bool) -> None:
+        """Do nothing but see that the device is there: its light cannot be switched."""
+        self._talk()
+
+    async def shoot(self, *, timeout_s: float) -> Shot:
+        """Take one reading; TransportError if the device is absent, any other failure is a result."""
+        dialogue = self._talk()
+        async with self._shooting:
+            try:
+                heard = await dialogue.ask(
+                    TRIGGER, _is_data, timeout_s=min(_MEASURES_S, timeout_s / _TRIGGERS), tries=_TRIGGERS
+                )
+            except LinkTimeout:
+                return Shot(now_ns(), ReadingStatus.TIMEOUT, None, None)
+            except DeviceError:
+                return Shot(now_ns(), ReadingStatus.DEVICE_ERROR, None, None)
+        data = heard.message
+        assert isinstance(data, Data)
+        verdict = data.verdict(self._model)
+        if verdict is not Verdict.OK:
+            return Shot(heard.time_ns, _STATUS[verdict], None, data.strength)
+        return Shot(heard.time_ns, ReadingStatus.OK, data.distance / _CM_PER_M + self._bias_m, data.strength)
+
+    async def _greet(self, dialogue: Dialogue[Message]) -> None:
+        """Silence the stream, see who is there, and go over to trigger mode."""
+        dialogue.post(OUTPUT_OFF)
+        await dialogue.ask(VERSION, _is_version, timeout_s=_ANSWER_S, tries=_TRIES)
+        dialogue.post(FORMAT_CM + RATE_0 + OUTPUT_ON)
+
+    async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
+        """It speaks only when asked, so that it is still there must be asked."""
+        while True:
+            await asyncio.sleep(_IDLE_POLL_S)
+            await dialogue.ask(VERSION, _is_version, timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True)
+
+    def _report(self, heard: Heard[Message]) -> None:
+        """Let go by echoes, and readings that nobody asked for."""
+
+
+def _is_data(message: Message) -> bool:
+    return isinstance(message, Data)
+
+
+def _is_version(message: Message) -> bool:
+    return isinstance(message, Reply) and message.number == _VERSION_NUMBER

@@ -1,0 +1,143 @@
+"""The binary dialect of the Benewake TFmini family (TFmini, TFmini-S, TFmini Plus, TF-Luna): bytes and messages.
+
+Data frames are ``59 59``, distance, strength, two more bytes and a sum; commands and their echoes ``5A``, length,
+number, payload and a sum. ``59 59`` may stand inside a frame, so one is locked on only if its sum fits, and else one
+byte is let go. Whether a reading can be believed is told by strength first, then by a sentinel that differs from model
+to model.
+"""
+
+import enum
+import struct
+from dataclasses import dataclass
+
+DATA_BYTES = 9
+_DATA_HEAD, _COMMAND_HEAD = 0x59, 0x5A
+_COMMAND_MIN, _COMMAND_MAX = 4, 32
+_DATA = struct.Struct("<2xHH2sx")
+
+
+class Model(enum.StrEnum):
+    """Which one it is: they differ in how they say that nothing was measured."""
+
+    TFMINI = "tfmini"
+    TFMINI_S = "tfmini-s"
+    TFMINI_PLUS = "tfmini-plus"
+    TF_LUNA = "tf-luna"
+
+
+class Verdict(enum.StrEnum):
+    """What a data frame is worth."""
+
+    OK = "ok"
+    WEAK = "weak"
+    SATURATED = "saturated"
+    AMBIENT = "ambient"
+    OUT_OF_RANGE = "out_of_range"
+
+
+@dataclass(frozen=True, slots=True)
+class Data:
+    """One measurement, raw."""
+
+    distance: int
+    """Unsigned, in centimetres or as the unit was set."""
+    strength: int
+
+    def verdict(self, model: Model) -> Verdict:
+        """Return what it is worth, coming from a model; strength first, then sentinels."""
+        if self.strength == SATURATED_STRENGTH and model is not Model.TFMINI:
+            return Verdict.SATURATED
+        sentinel = _SENTINELS.get(self.distance) or _SENTINELS_OF_MODEL.get((model, self.distance), Verdict.OK)
+        is_weak = self.strength < _WEAK_BELOW[model] and sentinel is not Verdict.AMBIENT
+        return Verdict.WEAK if is_weak else sentinel
+
+
+SATURATED_STRENGTH = 0xFFFF
+_SENTINELS = {0xFFFF: Verdict.WEAK, 0xFFFE: Verdict.SATURATED, 0: Verdict.WEAK}
+_SENTINELS_OF_MODEL = {
+    (Model.TFMINI_S, 0xFFFC): Verdict.AMBIENT,
+    (Model.TFMINI, 1200): Verdict.OUT_OF_RANGE,
+}
+_WEAK_BELOW = {Model.TFMINI: 20, Model.TFMINI_S: 101, Model.TFMINI_PLUS: 100, Model.TF_LUNA: 100}
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """The answer to a command: an echo of it, a status, or the version."""
+
+    number: int
+    payload: bytes
+
+
+Message = Data | Reply
+
+
+def command(number: int, payload: bytes = b"") -> bytes:
+    """Return a command with its length and sum."""
+    head = bytes((_COMMAND_HEAD, len(payload) + _COMMAND_MIN, number)) + payload
+    return head + bytes((sum(head) & 0xFF,))
+
+
+VERSION = command(0x01)
+TRIGGER = command(0x04)
+RATE_0 = command(0x03, b"\0\0")
+OUTPUT_OFF, OUTPUT_ON = command(0x07, b"\0"), command(0x07, b"\1")
+FORMAT_CM, FORMAT_MM = command(0x05, b"\1"), command(0x05, b"\6")
+
+
+class TfminiWire:
+    """The receiving half."""
+
+    def __init__(self) -> None:
+        self._buffer = bytearray()
+        self._counters = {"measurements": 0, "replies": 0, "sum_errors": 0, "bytes_skipped": 0}
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """What was counted since start."""
+        return self._counters
+
+    def feed(self, data: bytes) -> list[Message]:
+        """Take bytes as they come; return the messages that are whole now."""
+        self._buffer += data
+        messages: list[Message] = []
+        while (size := self._size()) <= len(self._buffer) and self._buffer:
+            if size and self._sum_fits(size):
+                messages.append(self._message(bytes(self._buffer[:size])))
+                del self._buffer[:size]
+            else:
+                self._counters["sum_errors" if size else "bytes_skipped"] += 1
+                del self._buffer[:1]
+        return messages
+
+    def reset(self) -> None:
+        """Forget the beginning of a frame."""
+        self._buffer.clear()
+
+    def _size(self) -> int:
+        """Return how long the frame is that may begin here: 0 if none can, and too long if that cannot be seen yet."""
+        undecided = len(self._buffer) + 1
+        head = self._buffer[:2]
+        if not head:
+            return undecided
+        if head[0] == _DATA_HEAD:
+            return undecided if len(head) == 1 else DATA_BYTES * (head[1] == _DATA_HEAD)
+        if head[0] == _COMMAND_HEAD:
+            return undecided if len(head) == 1 else head[1] * (_COMMAND_MIN <= head[1] <= _COMMAND_MAX)
+        return 0
+
+    def _sum_fits(self, size: int) -> bool:
+        total, said = sum(self._buffer[: size - 1]) & 0xFF, self._buffer[size - 1]
+        if total == said:
+            return True
+        # The TFmini-S manual prints status replies whose sum is one too small; libraries keep the rule: both are taken.
+        is_status = self._buffer[0] == _COMMAND_HEAD and size == _COMMAND_MIN + 1 and self._buffer[2] in {0x02, 0x11}
+        return is_status and (said + 1) & 0xFF == total
+
+    def _message(self, frame: bytes) -> Message:
+        if frame[0] == _COMMAND_HEAD:
+            self._counters["replies"] += 1
+            return Reply(frame[2], frame[3:-1])
+        self._counters["measurements"] += 1
+        distance, strength, _ = _DATA.unpack(frame)
+        return Data(distance, strength)
