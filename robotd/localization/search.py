@@ -35,14 +35,12 @@ class Disk:
         """Return the rows and columns that hold the disk, and the columns of each row."""
         first = max(0, math.ceil(self.row - self.radius))
         last = max(first, min(shape[0], math.floor(self.row + self.radius) + 1))
-        rows = np.arange(first, last)
-        half = np.sqrt(np.maximum(self.radius**2 - (rows - self.row) ** 2, 0.0))
-        left = np.clip(np.ceil(self.col - half), 0, shape[1])
-        right = np.clip(np.floor(self.col + half) + 1, left, shape[1])
-        spans = np.stack((left, right), axis=1).astype(np.int32)
-        if len(spans) == 0 or not (spans[:, 1] > spans[:, 0]).any():
+        halves = [math.sqrt(max(self.radius**2 - (row - self.row) ** 2, 0.0)) for row in range(first, last)]
+        spans = [(max(0, math.ceil(self.col - h)), min(shape[1], math.floor(self.col + h) + 1)) for h in halves]
+        left, right = min((span[0] for span in spans), default=0), max((span[1] for span in spans), default=0)
+        if left >= right:
             return (0, 0, 0, 0), np.zeros((0, 2), np.int32)
-        return (first, last, int(spans[:, 0].min()), int(spans[:, 1].max())), spans
+        return (first, last, left, right), np.array(spans, np.int32)
 
 
 @dataclass(frozen=True, slots=True)

@@ -66,11 +66,11 @@ readings = st.lists(
     max_size=12,
 )
 headings = st.lists(st.floats(-4.0, 4.0), min_size=1, max_size=3)
-places = st.floats(-5.0, 60.0)
+eighths = st.integers(-40, 480).map(lambda eighths: eighths / 8)
 priors = st.one_of(
     st.none(),
     st.none(),
-    st.builds(Disk, places, places, st.floats(0.0, 30.0)),
+    st.builds(Disk, eighths, eighths, st.integers(0, 240).map(lambda eighths: eighths / 8)),
     st.builds(Box, *[st.integers(-5, 70)] * 4),
 )
 

@@ -53,7 +53,7 @@ typedef struct {
 } sheet;
 
 typedef struct {
-    void (*draw_heading)(const search_job *, int32_t, int32_t, beam *);
+    void (*draw_heading)(const search_job *, int32_t, beam *);
     void (*bound_tile)(const grid *, const pooled_beam *, int32_t, const int32_t *, int32_t, uint64_t *);
     int (*count_ends)(const search_job *, const beam *, sheet *, int32_t);
     int (*count_bodies)(const search_job *, const beam *, sheet *);
@@ -162,7 +162,7 @@ typedef struct {
     search_job *job;
     const kernel *with;
     grid grids[POOLS];
-    int32_t units, stride;          /* stride: readings are taken in an order that jumps round the robot */
+    int32_t units;
     int32_t (*tiles)[2];            /* [units]: column of words and first row of blocks, or row and column of a window */
     uint64_t *counters;             /* [headings][units][bits][8], if by blocks */
     int32_t *bounds;                /* [headings][units] */
@@ -347,15 +347,54 @@ static int32_t allowed_misses(const search *s)
     return s->job->reading_count - least_of(s);
 }
 
+/* Work out the rank of the cell that seems best: some rank that is reached, so that answers must come near it. */
+static void try_best(worker *self)
+{
+    search *s = self->shared;
+    const window alive = self->at.alive;
+    window misses[BITS_MAX + 1];
+    memcpy(misses, self->at.misses, sizeof misses);
+    const int32_t seen = keep_best(&self->at);
+    if (s->job->reading_count - seen > __atomic_load_n(&s->job->best_rank, __ATOMIC_RELAXED) &&
+        s->with->count_bodies(s->job, self->beams, &self->at)) {
+        pthread_mutex_lock(&s->lock);
+        found_rank(s, s->job->reading_count - keep_best(&self->at));
+        pthread_mutex_unlock(&s->lock);
+    }
+    self->at.alive = alive;
+    memcpy(self->at.misses, misses, sizeof misses);
+}
+
+/* Give up the cells that have missed too many by now. */
+static int drop(worker *self)
+{
+    const int32_t allowed = allowed_misses(self->shared);
+    int any = 0;
+    for (int32_t row = 0; row < WINDOW; row++)
+        for (uint32_t left = self->at.alive[row]; left; left &= left - 1) {
+            const int32_t col = __builtin_ctz(left);
+            if (misses_at(&self->at, row, col) > allowed)
+                self->at.alive[row] &= (uint16_t)~(1u << col);
+            else
+                any = 1;
+        }
+    return any;
+}
+
 /* Look at a window cell by cell. */
 static void search_window(worker *self, int32_t heading, int32_t row, int32_t col)
 {
     search *s = self->shared;
     const int32_t allowed = allowed_misses(s);
-    if (allowed < 0 || row >= s->job->map->rows || col >= s->job->map->cols || !open_window(s->job, row, col, &self->at))
+    if (allowed < 0 || row >= s->job->map->rows || col >= s->job->map->cols ||
+        !open_window(s->job, row, col, &self->at) || !s->with->count_ends(s->job, self->beams, &self->at, allowed))
         return;
-    if (s->with->count_ends(s->job, self->beams, &self->at, allowed) &&
-        s->with->count_bodies(s->job, self->beams, &self->at))
+    if (!s->job->by_blocks) {
+        try_best(self);
+        if (!drop(self))
+            return;
+    }
+    if (s->with->count_bodies(s->job, self->beams, &self->at))
         report(s, heading, &self->at);
 }
 
@@ -430,7 +469,7 @@ static void pool_beams(worker *self, int which)
 static void draw(worker *self, int32_t heading)
 {
     const search *s = self->shared;
-    s->with->draw_heading(s->job, heading, s->stride, self->beams);
+    s->with->draw_heading(s->job, heading, self->beams);
     self->drawn = 0;
 }
 
@@ -451,20 +490,13 @@ static void bound_tile(worker *self, int which, const int32_t *tile, uint64_t *c
 static void bound_heading(worker *self, int32_t heading)
 {
     search *s = self->shared;
-    const search_job *job = s->job;
-    int32_t *bounds = s->bounds + (size_t)heading * (size_t)s->units;
+    uint64_t where[8];
     draw(self, heading);
     for (int32_t unit = 0; unit < s->units; unit++) {
-        const int32_t *tile = s->tiles[unit];
-        if (!job->by_blocks) {
-            const int some = allowed_misses(s) >= 0 && open_window(job, tile[0], tile[1], &self->at) &&
-                             s->with->count_ends(job, self->beams, &self->at, allowed_misses(s));
-            bounds[unit] = some ? job->reading_count - keep_best(&self->at) : -1;
-            continue;
-        }
-        uint64_t where[8], *counter = counter_of(s, heading, unit);
-        bound_tile(self, 0, tile, counter);
-        bounds[unit] = greatest_of(counter, job->bits, where) + s->misses;
+        uint64_t *counter = counter_of(s, heading, unit);
+        bound_tile(self, 0, s->tiles[unit], counter);
+        s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] =
+            greatest_of(counter, s->job->bits, where) + s->misses;
     }
 }
 
@@ -570,23 +602,6 @@ static int32_t descend(worker *self, int32_t heading, int32_t unit, int32_t *pla
     return bound + s->misses;
 }
 
-/* The rank of the most promising cell of a window: some rank that is reached, so that answers must come near it. */
-static void try_window(worker *self, const int32_t *place)
-{
-    search *s = self->shared;
-    const search_job *job = s->job;
-    if (place[0] >= job->map->rows || place[1] >= job->map->cols || allowed_misses(s) < 0 ||
-        !open_window(job, place[0], place[1], &self->at) ||
-        !s->with->count_ends(job, self->beams, &self->at, allowed_misses(s)))
-        return;
-    keep_best(&self->at);
-    if (s->with->count_bodies(job, self->beams, &self->at)) {
-        for (int32_t row = 0; row < WINDOW; row++)
-            if (self->at.alive[row])
-                found_rank(s, job->reading_count - misses_at(&self->at, row, __builtin_ctz(self->at.alive[row])));
-    }
-}
-
 static void *work(void *argument)
 {
     worker *self = argument;
@@ -602,7 +617,7 @@ static void *work(void *argument)
         const int32_t heading = s->order[next];
         int drawn = 0;
         for (int32_t unit = 0; unit < s->units; unit++) {
-            if (s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] < least_of(s))
+            if (s->job->by_blocks && s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] < least_of(s))
                 continue;
             if (!drawn)
                 draw(self, heading);
@@ -659,22 +674,35 @@ static int32_t hopes_of(const search *s, hope *hopes)
 /* Look at the best bounds first: some rank is reached there. Returns the best bound of all. */
 static int32_t seed(search *s, worker *first)
 {
-    const int32_t all = hopes_of(s, s->hopes), count = clamp(all, 0, HOPES);
-    const int32_t best = all ? s->hopes[0].bound : 0, seeds = clamp(all, 0, s->job->by_blocks ? SEEDS : 2);
+    const int32_t all = hopes_of(s, s->hopes), count = clamp(all, 0, HOPES), best = all ? s->hopes[0].bound : 0;
     for (int32_t i = 0; i < all; i++)
         s->order[i] = s->hopes[i].heading;
     s->ordered = all;
-    for (int32_t i = 0; i < count && s->job->by_blocks; i++) {
+    for (int32_t i = 0; i < count; i++) {
         hope *h = s->hopes + i;
         draw(first, h->heading);
         h->bound = descend(first, h->heading, h->unit, h->place);
     }
     sort_best(s->hopes, count, SEEDS);
-    for (int32_t i = 0; i < seeds && s->hopes[i].bound >= s->least; i++) {
+    for (int32_t i = 0; i < clamp(count, 0, SEEDS) && s->hopes[i].bound >= s->least; i++) {
+        const int32_t *place = s->hopes[i].place;
+        if (place[0] >= s->job->map->rows || place[1] >= s->job->map->cols || allowed_misses(s) < 0 ||
+            !open_window(s->job, place[0], place[1], &first->at))
+            continue;
         draw(first, s->hopes[i].heading);
-        try_window(first, s->hopes[i].place);
+        if (s->with->count_ends(s->job, first->beams, &first->at, allowed_misses(s)))
+            try_best(first);
     }
     return best;
+}
+
+/* All headings, those in the middle first: where only a few are asked for, one of these is the likeliest. */
+static void from_the_middle(search *s)
+{
+    const int32_t count = s->job->heading_count;
+    for (int32_t i = 0; i < count; i++)
+        s->order[i] = count / 2 + (i % 2 ? -(i + 1) / 2 : i / 2);
+    s->ordered = count;
 }
 
 /* Find the best rank, if it may be far from what was seen: ask for high ranks first, then for lower ones, since that is
@@ -695,35 +723,19 @@ static void rank(search *s, worker *workers, int32_t bound)
     }
 }
 
-/* About 0.618 of the readings, and nothing in common with their number. */
-static int32_t stride_of(int32_t count)
-{
-    for (int32_t stride = (int32_t)(0.618 * count); stride > 1; stride--) {
-        int32_t a = stride, b = count;
-        while (b) {
-            const int32_t rest = a % b;
-            a = b;
-            b = rest;
-        }
-        if (a == 1)
-            return stride;
-    }
-    return 1;
-}
-
 int32_t search_poses(search_job *job)
 {
     const kernel *with = kernel_of(job->instructions);
     if (with == NULL)
         return 0;
-    search s = {.job = job, .with = with, .stride = stride_of(job->reading_count)};
+    search s = {.job = job, .with = with};
     worker workers[THREADS_MAX];
     uint64_t *scratch = job->scratch;
     for (int i = 0; i < POOLS; i++)
         s.grids[i] = (grid){pools[i], block_words(job->map, pools[i]), block_rows(job->map, pools[i]),
                             pooled_stride(job->map, pools[i])};
     for (int32_t i = 0; i < job->reading_count; i++)
-        s.misses += job->readings[5 * (size_t)i + 4] > 0.0;
+        s.misses += job->readings[4 * (size_t)i + 3] > 0.0;
     s.tiles = (int32_t(*)[2])scratch;
     scratch += units_of(job);
     place_units(&s);
@@ -745,16 +757,22 @@ int32_t search_poses(search_job *job)
     pthread_mutex_init(&s.lock, NULL);
     job->best_rank = job->pose_count = 0;
     s.least = larger(1, job->least_rank - job->slack);
-    s.phase = BOUNDING;
-    share(&s, workers);
-    rank(&s, workers, seed(&s, workers));
+    if (job->by_blocks) {
+        s.phase = BOUNDING;
+        share(&s, workers);
+        rank(&s, workers, seed(&s, workers));
+    } else
+        from_the_middle(&s);
     s.phase = COLLECTING;
     s.least = larger(1, larger(job->least_rank, job->best_rank) - job->slack);
-    if (job->best_rank >= job->least_rank) {
+    if (!job->by_blocks || job->best_rank >= job->least_rank) {
         share(&s, workers);
         compact(&s);
-    } else
-        job->best_rank = 0;
+    }
+    if (job->best_rank < job->least_rank) {
+        job->best_rank = job->pose_count = 0;
+        s.least = larger(1, job->least_rank - job->slack);
+    }
     job->least = s.least;
     pthread_mutex_destroy(&s.lock);
     return 1;

@@ -5,7 +5,8 @@
 
 typedef struct {
     const search_map *map;
-    const double *readings;    /* [reading_count][5]: bearing, range [m], (x, y) of the beam's start [m], is a miss */
+    const double *readings;    /* [reading_count][4]: range [cells], (x, y) of the beam's start [m], is a miss; the sooner
+                                * neighbours lie in different directions, the sooner bad poses are given up */
     const double *headings;    /* [heading_count][2]: sine and cosine */
     const double *sines;       /* [heading_count][reading_count], of each beam's bearing in the map */
     const double *cosines;

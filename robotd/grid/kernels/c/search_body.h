@@ -206,36 +206,35 @@ static TARGET int NAME(count_bodies)(const search_job *job, const beam *beams, s
 }
 
 /* Draw the beams of one heading; ray.py and probe.py say how. */
-static TARGET void NAME(draw_heading)(const search_job *job, int32_t heading, int32_t stride, beam *beams)
+static TARGET void NAME(draw_heading)(const search_job *job, int32_t heading, beam *beams)
 {
     const double *h = job->headings + 2 * (size_t)heading;
-    for (int32_t i = 0, reading = 0; i < job->reading_count; i++) {
-        const double *r = job->readings + 5 * (size_t)reading;
-        const double sine = job->sines[(size_t)heading * (size_t)job->reading_count + (size_t)reading];
-        const double cosine = job->cosines[(size_t)heading * (size_t)job->reading_count + (size_t)reading];
-        const double start_row = r[2] == 0.0 && r[3] == 0.0 ? 0.0 : (h[0] * r[2] + h[1] * r[3]) / job->resolution_m;
-        const double start_col = r[2] == 0.0 && r[3] == 0.0 ? 0.0 : (h[1] * r[2] - h[0] * r[3]) / job->resolution_m;
-        const double range_cells = r[1] / job->resolution_m;
+    const double *sines = job->sines + (size_t)heading * (size_t)job->reading_count;
+    const double *cosines = job->cosines + (size_t)heading * (size_t)job->reading_count;
+    for (int32_t i = 0; i < job->reading_count; i++) {
+        const double *r = job->readings + 4 * (size_t)i, sine = sines[i], cosine = cosines[i], range_cells = r[0];
+        const int starts_here = r[1] == 0.0 && r[2] == 0.0;
+        const double start_row = starts_here ? 0.0 : (h[0] * r[1] + h[1] * r[2]) / job->resolution_m;
+        const double start_col = starts_here ? 0.0 : (h[1] * r[1] - h[0] * r[2]) / job->resolution_m;
         const double tall = sine < 0.0 ? -sine : sine, wide = cosine < 0.0 ? -cosine : cosine;
-        const double dominant = tall > wide ? tall : wide;
+        const double dominant = tall > wide ? tall : wide, slope = (tall > wide ? cosine : sine) / dominant;
         const double shortened = range_cells - job->error_radius_cells;
         const double bounded = shortened < job->reach_cells ? shortened : job->reach_cells;
         beam *b = beams + i;
-        b->step[0] = sine / dominant;
-        b->step[1] = cosine / dominant;
+        b->step[0] = tall > wide ? (sine < 0.0 ? -1.0 : 1.0) : slope;
+        b->step[1] = tall > wide ? slope : (cosine < 0.0 ? -1.0 : 1.0);
         b->start[0] = nearest(start_row);
         b->start[1] = nearest(start_col);
         b->cells = bounded > 0.0 ? -whole(-(bounded * dominant)) : 1;
         b->cells = b->cells < 1 ? 1 : b->cells;
-        b->is_miss = r[4] > 0.0;
+        b->is_miss = r[3] > 0.0;
         b->head[0] = nearest(start_row + range_cells * sine);
         b->head[1] = nearest(start_col + range_cells * cosine);
         for (int axis = 0; axis < 2; axis++) {
             b->last[axis] = b->start[axis] + whole(0.5 + (b->cells - 1) * b->step[axis]);
-            b->before[axis] = b->cells < 2 ? 0 : b->start[axis] + whole(0.5 + (b->cells - 2) * b->step[axis]);
+            if (job->map->blocked_by > 1)
+                b->before[axis] = b->cells < 2 ? 0 : b->start[axis] + whole(0.5 + (b->cells - 2) * b->step[axis]);
         }
-        reading += stride;
-        reading -= reading < job->reading_count ? 0 : job->reading_count;
     }
 }
 

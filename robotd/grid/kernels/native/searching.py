@@ -1,8 +1,11 @@
 """Searching for the best poses, in C."""
 
+import functools
+import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robotd.grid.kernels._native import ffi, lib
 from robotd.grid.kernels.native.buffers import floats, ints, words
@@ -37,10 +40,12 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     Raises:
         ValueError: this processor lacks those instructions.
     """
-    readings, headings_rad = question.readings, question.headings_rad
-    bearings_rad = headings_rad[:, None] + readings[:, 0]
+    jumping, headings_rad = question.readings[_jumping(len(question.readings))], question.headings_rad
+    bearings_rad = headings_rad[:, None] + jumping[:, 0]
     sines, cosines = np.sin(bearings_rad), np.cos(bearings_rad)
-    turned = np.stack((np.sin(headings_rad), np.cos(headings_rad)), axis=1)
+    turned = np.array((np.sin(headings_rad), np.cos(headings_rad))).T.copy()
+    readings = jumping[:, 1:].copy()
+    readings[:, 0] /= question.resolution_m
     poses = np.empty((2 * question.limit + 256, 4), np.int32)
     c_map = _map_of(planes)
     job = ffi.new("search_job *")
@@ -62,6 +67,13 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     found = poses[: job.pose_count]
     order = np.lexsort((found[:, 2], found[:, 1], found[:, 0]))
     return Found(job.best_rank, job.least, found[order])
+
+
+@functools.lru_cache(maxsize=8)
+def _jumping(count: int) -> NDArray[np.intp]:
+    """Return an order of readings in which neighbours look in different directions, whatever the sweep."""
+    steps = (step for step in range(int(0.618 * count), 0, -1) if math.gcd(step, count) == 1)
+    return np.arange(count) * next(steps, 1) % count
 
 
 def _map_of(planes: Planes) -> Any:
