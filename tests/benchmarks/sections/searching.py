@@ -1,0 +1,91 @@
+"""Best poses and rivals by bounds, nothing known, and within a prior; the map prepared, anew and after a sweep."""
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.pose import Pose2
+from robotd.grid.readings import numbers_of
+from robotd.grid.spec import GridSpec
+from robotd.localization.obstacles import Obstacles
+from robotd.localization.rank import even_headings
+from robotd.localization.search import BestPoses, Disk, SearchMap, best_poses
+from tests.benchmarks import workload
+from tests.benchmarks.timing import Timing, timed
+
+HEADINGS = 300
+SLACK, LEAST_RANK = 45, 150
+_RIGHT_M, _RIGHT_RAD = 0.15, math.radians(2.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Case:
+    """A pose, and what is measured there."""
+
+    pose: Pose2
+    readings: NDArray[np.float64]
+
+
+def timings() -> Iterator[Timing]:
+    """Workloads S and L."""
+    for name, occupied, spec, goal_ms, prepare_ms in (
+        ("S", workload.room(), workload.SPEC, 8.0, 2.0),
+        ("L", workload.building(), workload.LARGE, 90.0, 20.0),
+    ):
+        obstacles = Obstacles.of(occupied, workload.ERROR_RADIUS_CELLS)
+        ready = SearchMap.of(obstacles, spec, workload.ERROR_RADIUS_CELLS)
+        poses = workload.poses_in(occupied, 200)
+        cases = [
+            Case(pose, numbers_of(workload.sweep_of(occupied, 100 + number, pose).measured))
+            for number, pose in enumerate(poses)
+        ]
+        yield _everywhere(name, ready, cases, goal_ms)
+        yield _two_threads(name, ready, cases[0])
+        yield _tracking(name, ready, cases[0])
+        yield timed(f"{name}, map made ready to search", partial(SearchMap.of, obstacles, spec, 1.5), 5)
+        rows, cols = (slice(size // 2 - 60, size // 2 + 60) for size in spec.shape)
+        again = partial(ready.updated, obstacles, (rows, cols))
+        yield timed(f"{name}, ready again where 120 x 120 cells changed", again, 9, goal_ms=prepare_ms)
+
+
+def _everywhere(name: str, ready: SearchMap, cases: list[Case], goal_ms: float) -> Timing:
+    headings_rad, seconds, right = np.array(even_headings(HEADINGS)), [], 0
+    for case in cases:
+        begin = time.perf_counter()
+        found = best_poses(ready, case.readings, headings_rad, slack=SLACK, least_rank=LEAST_RANK)
+        seconds.append(time.perf_counter() - begin)
+        right += _is_right(found, ready.spec, case.pose)
+    title = f"{name}, best pose and rivals, nothing known, {HEADINGS} headings, {workload.READINGS} readings, one thread"
+    return Timing(title, tuple(seconds), goal_ms, f"{right} of {len(cases)} best poses right")
+
+
+def _is_right(found: BestPoses, spec: GridSpec, pose: Pose2) -> bool:
+    """Whether all poses of greatest rank lie by the truth."""
+    best = found.poses[found.ranks == found.best_rank]
+    x_m = spec.origin_x_m + (best[:, 2] + 0.5) * spec.resolution_m
+    y_m = spec.origin_y_m + (best[:, 1] + 0.5) * spec.resolution_m
+    turned_rad = (best[:, 0] * (math.tau / HEADINGS) - pose.heading_rad + math.pi) % math.tau - math.pi
+    near = (np.hypot(x_m - pose.x_m, y_m - pose.y_m) < _RIGHT_M) & (np.abs(turned_rad) < _RIGHT_RAD)
+    return len(best) > 0 and bool(near.all())
+
+
+def _two_threads(name: str, ready: SearchMap, case: Case) -> Timing:
+    headings_rad = np.array(even_headings(HEADINGS))
+    run = partial(
+        best_poses, ready, case.readings, headings_rad, slack=SLACK, least_rank=LEAST_RANK, threads=2
+    )
+    return timed(f"{name}, one of these, two threads", run, 15)
+
+
+def _tracking(name: str, ready: SearchMap, case: Case) -> Timing:
+    headings_rad = case.pose.heading_rad + np.arange(-8, 9) * (math.tau / HEADINGS)
+    prior = Disk(case.pose.y_m / workload.RESOLUTION_M - 0.5, case.pose.x_m / workload.RESOLUTION_M - 0.5, 6.0)
+    run = partial(
+        best_poses, ready, case.readings, headings_rad, slack=SLACK, least_rank=LEAST_RANK, prior=prior
+    )
+    return timed(f"{name}, within 0.3 m and 10 deg of a prior", run, 200, goal_ms=0.1)
