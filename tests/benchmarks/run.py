@@ -16,7 +16,7 @@ import numpy as np
 
 from robotd.grid import kernels
 from tests.benchmarks import workload
-from tests.benchmarks.sections import counting, inserting, refining
+from tests.benchmarks.sections import counting, inserting, refining, searching
 from tests.benchmarks.timing import Timing, copying, yardstick
 
 ROOT = Path(__file__).parents[2]
@@ -26,6 +26,7 @@ SECTIONS: dict[str, Callable[[], Iterable[Timing]]] = {
     "counting": counting.timings,
     "inserting": inserting.timings,
     "refining": refining.timings,
+    "searching": searching.timings,
 }
 """In the order of the report, by the name that ``--only`` takes."""
 

@@ -60,7 +60,9 @@ def _everywhere(name: str, ready: SearchMap, cases: list[Case], goal_ms: float) 
         found = best_poses(ready, case.readings, headings_rad, slack=SLACK, least_rank=LEAST_RANK)
         seconds.append(time.perf_counter() - begin)
         right += _is_right(found, ready.spec, case.pose)
-    title = f"{name}, best pose and rivals, nothing known, {HEADINGS} headings, {workload.READINGS} readings, one thread"
+    title = (
+        f"{name}, best pose and rivals, nothing known, {HEADINGS} headings, {workload.READINGS} readings, one thread"
+    )
     return Timing(title, tuple(seconds), goal_ms, f"{right} of {len(cases)} best poses right")
 
 
@@ -76,16 +78,12 @@ def _is_right(found: BestPoses, spec: GridSpec, pose: Pose2) -> bool:
 
 def _two_threads(name: str, ready: SearchMap, case: Case) -> Timing:
     headings_rad = np.array(even_headings(HEADINGS))
-    run = partial(
-        best_poses, ready, case.readings, headings_rad, slack=SLACK, least_rank=LEAST_RANK, threads=2
-    )
+    run = partial(best_poses, ready, case.readings, headings_rad, slack=SLACK, least_rank=LEAST_RANK, threads=2)
     return timed(f"{name}, one of these, two threads", run, 15)
 
 
 def _tracking(name: str, ready: SearchMap, case: Case) -> Timing:
-    headings_rad = case.pose.heading_rad + np.arange(-8, 9) * (math.tau / HEADINGS)
+    headings_rad = np.array([case.pose.heading_rad + k * (math.tau / HEADINGS) for k in range(-8, 9)])
     prior = Disk(case.pose.y_m / workload.RESOLUTION_M - 0.5, case.pose.x_m / workload.RESOLUTION_M - 0.5, 6.0)
-    run = partial(
-        best_poses, ready, case.readings, headings_rad, slack=SLACK, least_rank=LEAST_RANK, prior=prior
-    )
+    run = partial(best_poses, ready, case.readings, headings_rad, slack=SLACK, least_rank=LEAST_RANK, prior=prior)
     return timed(f"{name}, within 0.3 m and 10 deg of a prior", run, 200, goal_ms=0.1)
