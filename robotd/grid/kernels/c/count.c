@@ -16,6 +16,7 @@
 
 #define TILE 32
 #define THREADS_MAX 16
+#define FEW 7
 #define FOUND_MAX 112 /* sixteen sevens */
 
 /* What one thread keeps of the bodies of a batch in one tile: the free cells that each leaves open. Bodies of one chain
@@ -50,6 +51,21 @@ static inline size_t seen_from(const count_job *job, const int32_t *tile, const 
 static inline uint64_t columns_from(const uint64_t *low, size_t stride, uint64_t shift)
 {
     return low[0] >> shift | low[stride] << 1 << (63 - shift);
+}
+
+/* Whether any of a few beams may have something to say of a tile; if none has, their chains need not be walked. */
+static int can_tell(const count_job *job, const int32_t *tile, int32_t first, int32_t end, const bodies *kept)
+{
+    const size_t stride = (size_t)job->rows + 2 * TILE;
+    const uint64_t *free = kept->planes + (size_t)job->slots * TILE;
+    uint64_t columns = 0;
+    for (int i = 0; i < TILE; i++)
+        columns |= free[i];
+    for (const int32_t *beam = job->beams + 3 * (size_t)first; beam < job->beams + 3 * (size_t)end; beam += 3)
+        if (beam[1] == NO_HEAD || (columns_from(job->ending + seen_from(job, tile, beam + 1), stride,
+                                                (uint64_t)(beam[2] & 63)) & columns) != 0)
+            return 1;
+    return 0;
 }
 
 #define NAME(x) x##_portable

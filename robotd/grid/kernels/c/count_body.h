@@ -35,7 +35,7 @@ static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, 
         open[i] = AT(kept->planes + (size_t)all_free * TILE, i);
     uint64_t columns = NAME(any)(open);
     int32_t plane = all_free, is_new = 0;
-    for (; offset < end; offset += 3) {
+    for (; offset < end && columns != 0; offset += 3) {
         const size_t at = seen_from(job, tile, offset);
         const uint64_t shift = (uint64_t)(offset[1] & 63);
         if ((columns_from(job->stopping + at, stride, shift) & columns) != 0) {
@@ -69,6 +69,11 @@ static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, 
         kept->columns[slot] = columns;
         kept->plane_of[slot] = plane;
     }
+    for (; offset < end; offset += 3) /* all is blocked from here on */
+        if (offset[2] >= 0) {
+            kept->columns[offset[2]] = 0;
+            kept->plane_of[offset[2]] = none;
+        }
 }
 
 /* counter += 7 beams: carry-save adders make a number of three bits of their planes, and it ripples up the counter. */
@@ -174,12 +179,14 @@ static TARGET void NAME(count_tile)(const count_job *job, int32_t number, const 
     const size_t counter_size = (size_t)job->bits * TILE;
     uint64_t *counters = job->counters + (size_t)number * (size_t)job->headings * counter_size;
     for (int32_t batch = 0; batch < job->batch_count; batch++) {
+        const int32_t *list = job->lists + (size_t)batch * (size_t)job->headings;
+        if (list[job->headings] - list[0] <= FEW && !can_tell(job, tile, list[0], list[job->headings], kept))
+            continue;
         for (int32_t group = job->batches[batch]; group < job->batches[batch + 1]; group++)
             if (job->blocked_by > 1)
                 NAME(walk)(job, tile, group, kept, 1);
             else
                 NAME(walk)(job, tile, group, kept, 0);
-        const int32_t *list = job->lists + (size_t)batch * (size_t)job->headings;
         for (int32_t heading = 0; heading < job->headings; heading++)
             NAME(count_list)(job, tile, job->beams + 3 * (size_t)list[heading],
                              job->beams + 3 * (size_t)list[heading + 1], kept,
