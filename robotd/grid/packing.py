@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid import kernels
-from robotd.grid.kernels.layout import PackedMap, planes_of, tiles_of
+from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, PackedMap, any_of_a_tile, tiles_of
 from robotd.grid.window import CellWindow
 
 
@@ -28,7 +28,14 @@ def repacked(
         grown: the same.
         changed: holds all cells in which any of them differs.
     """
-    planes = packed.planes[:3].copy()
-    for words, mask in zip(planes, (free, blocking, grown), strict=True):
+    if changed.is_empty:
+        return packed
+    planes = packed.planes.copy()
+    for words, mask in zip(planes, (free, blocking, grown), strict=False):
         kernels.pack_cells(words, mask, packed.origin, changed)
-    return replace(packed, planes=planes_of(*planes), tiles=tiles_of(planes[0]))
+    top, left = TILE_ROWS + packed.origin[0], PAD_WORDS * WORD_CELLS + packed.origin[1]
+    first, end = top + changed.first_row, top + changed.end_row
+    columns = slice((left + changed.first_col) // WORD_CELLS, (left + changed.end_col - 1) // WORD_CELLS + 1)
+    above = first - TILE_ROWS + 1  # the first row from which a tile reaches down to a changed one
+    planes[3:, columns, above:end] = any_of_a_tile(planes[1:3, columns, above : end + TILE_ROWS - 1])
+    return replace(packed, planes=planes, tiles=tiles_of(planes[0]))

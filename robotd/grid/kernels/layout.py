@@ -134,8 +134,14 @@ class PackedMap:
 def planes_of(free: Words, blocking: Words, grown: Words) -> Words:
     """Return the five planes of a packed map from its three masks, packed."""
     planes = np.stack((free, blocking, grown, blocking, grown))
+    planes[3:, :, : 1 - TILE_ROWS] = any_of_a_tile(planes[1:3])
+    return planes
+
+
+def any_of_a_tile(planes: Words) -> Words:
+    """Return the OR of each word and the 31 below it, ``uint64[..., rows - 31]`` of ``uint64[..., rows]``."""
     for step in (1, 2, 4, 8, 16):
-        planes[3:, :, :-step] |= planes[3:, :, step:]
+        planes = planes[..., :-step] | planes[..., step:]
     return planes
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.kernels.layout import pack, tiles_of
+from robotd.grid.kernels.layout import pack, planes_of, tiles_of
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.spec import GridSpec
 from robotd.grid.ternary import TernaryMap
@@ -53,7 +53,9 @@ def test_updated_sweep_by_sweep_it_is_what_it_is_made_anew(
         mask = getattr(expected, name)
         assert np.array_equal(getattr(the_map.obstacles, name), mask)
         assert np.array_equal(getattr(the_map.packed, name), pack(mask, origin, outside=outside))
-    assert np.array_equal(the_map.packed.tiles, tiles_of(the_map.packed.free))
+    packed = the_map.packed
+    assert np.array_equal(packed.planes, planes_of(packed.free, packed.blocking, packed.grown))
+    assert np.array_equal(packed.tiles, tiles_of(packed.free))
     one, other = (RankGrid(each, [0.3, 2.0]) for each in (the_map, PreparedMap.of(expected, SPEC, RADIUS)))
     for ranks in (one, other):
         ranks.add(*sweep_of(seeds[0])[0].readings)
