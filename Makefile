@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test bench paper conservative lint types contracts check clean
+.PHONY: help demo demo-real test bench bench-peers paper conservative lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
@@ -29,6 +29,9 @@ test: .venv/.dev  ## Run all tests
 
 bench: .venv/.dev  ## Measure the engine: all of it into docs/benchmarks, or a part: make bench ONLY=counting
 	@$(BIN)/python -m tests.benchmarks.run $(if $(ONLY),--only $(ONLY))
+
+bench-peers: .venv/.dev  ## Localizers of others beside ours, on the same questions: installs them for the run; writes docs/benchmarks/peers.md
+	@$(BIN)/python -m tests.benchmarks.peers.run
 
 paper: .venv/.dev  ## The paper's five tests in simulated rooms, as pictures and tables: writes docs/paper (a minute)
 	@$(BIN)/python -m tests.paper.run

@@ -100,6 +100,11 @@ def sweep_of(occupied: NDArray[np.bool_], seed: int = 1, pose: Pose2 = TRUTH) ->
     return Sweep(0, IDENTITY, tuple(_reading(occupied, pose, k, random) for k in range(READINGS)))
 
 
+def ranges_from(occupied: NDArray[np.bool_], pose: Pose2) -> NDArray[np.float64]:
+    """Return how far the walls really are along each bearing of a sweep, up to the cut-off, ``float64[300]``."""
+    return np.array([_free_m(occupied, pose, math.tau * number / READINGS) for number in range(READINGS)])
+
+
 def map_of(occupied: NDArray[np.bool_]) -> PreparedMap:
     """Return the map of a room."""
     return PreparedMap.of_binary(BinaryMap(SPEC, occupied), ERROR_RADIUS_CELLS)
