@@ -13,6 +13,7 @@ from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
+from robotd.hardware.devices.rflex_drive import RflexDrive
 from robotd.hardware.devices.rwi_drive import RwiDrive
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
 from robotd.hardware.devices.tfmini_rangefinder import TfminiRangefinder
@@ -40,6 +41,7 @@ _OURS = LineFormat(115_200)
 DRIVES: Mapping[str, Dialect[DriveSettings, Drive]] = {
     "board": Dialect(BoardDrive, _OURS),
     "rwi-ascii": Dialect(RwiDrive, LineFormat(9_600)),
+    "rflex": Dialect(RflexDrive, LineFormat(115_200)),
 }
 PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {
     "board": Dialect(BoardPanTilt, _OURS),

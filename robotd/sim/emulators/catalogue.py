@@ -9,10 +9,11 @@ from robotd.hardware.transport.line_format import LineFormat
 from robotd.sim.boards.drive import DriveBoard
 from robotd.sim.boards.pantilt import PanTiltBoard
 from robotd.sim.boards.rangefinder import RangefinderBoard
-from robotd.sim.emulators import rwi
+from robotd.sim.emulators import rflex, rwi
 from robotd.sim.emulators.dimetix import DimetixEmulator
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.ptu import PtuEmulator
+from robotd.sim.emulators.rflex import RflexEmulator
 from robotd.sim.emulators.rwi import RwiEmulator
 from robotd.sim.emulators.tfmini import TfminiEmulator
 from robotd.sim.host import HostedBoard
@@ -36,6 +37,10 @@ DRIVES: Mapping[str, Emulator[DrivePlant]] = {
     "rwi-ascii": Emulator(
         lambda plant, _: Paced(RwiEmulator(plant), LineFormat(9_600)),
         {"counts_per_m": rwi.COUNTS_PER_M, "counts_per_rad": rwi.COUNTS_PER_RAD},
+    ),
+    "rflex": Emulator(
+        lambda plant, _: Paced(RflexEmulator(plant), LineFormat(115_200)),
+        {"counts_per_m": rflex.COUNTS_PER_M, "counts_per_rad": rflex.COUNTS_PER_RAD},
     ),
 }
 PANTILTS: Mapping[str, Emulator[HeadPlant]] = {

@@ -1,0 +1,187 @@
+"""An RWI base with an rFLEX controller (B14R, B21R, ATRV, Magellan Pro).
+
+**The controller has no watchdog of its own.** A set-point holds until another comes: if this program is killed, or the
+cable comes out while the base drives, the base goes on. What can be done here is done: a timer ends each set-point
+after its time to live, a thread sends the stop when the event loop stands still, a lost line is opened and stopped
+anew, and the warning below is logged at every connection. None of that helps against a cut cable: such a robot needs an
+emergency stop that a person can reach, or a relay that drops with the host.
+"""
+
+import asyncio
+import logging
+from typing import ClassVar, NoReturn
+
+from robotd.core.broadcast import Broadcast
+from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.pose import STANDSTILL, Odometry, Twist2
+from robotd.hardware.devices.bought_device import BoughtDevice, is_a
+from robotd.hardware.devices.drive import DriveReadout
+from robotd.hardware.devices.odometer import Odometer
+from robotd.hardware.devices.settings import DriveSettings
+from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.link.dialogue import Dialogue, Heard
+from robotd.hardware.link.together import together
+from robotd.hardware.wire.rflex import (
+    BRAKE_RELEASE,
+    DEFAULTS,
+    STATUS,
+    AxisReport,
+    Message,
+    RflexWire,
+    Switches,
+    SystemStatus,
+    report_every,
+    safe_speed,
+    set_direction,
+    switches_every,
+)
+
+NO_WATCHDOG = (
+    "this base has no watchdog of its own: if the host dies or the cable comes out while it drives, it goes on. "
+    "Have an emergency stop within reach"
+)
+
+_ACCELERATIONS = (0.5, 1.5)
+"""Of translation [m/s^2] and rotation [rad/s^2]."""
+_TORQUES = (30_000, 35_000)
+_US_PER_MS = 1000
+_SPACING_S = 0.01
+"""What comes sooner after another order may be dropped."""
+_SILENCE_S = 1.0
+_ANSWER_S = 0.5
+_TRIES = 3
+_STATUS_EVERY_S = 5.0
+_CENTIVOLTS_PER_V = 100
+_FIRST_BUMPER, _LAST_BUMPER = 0x40, 0x4D
+_CORNERS = 0x0F
+
+log = logging.getLogger(__name__)
+
+_HALT = tuple(set_direction(axis, 0, 1_000_000, torque, forwards=True) for axis, torque in enumerate(_TORQUES))
+
+
+class RflexDrive(BoughtDevice[Message]):
+    """Implements :class:`robotd.hardware.devices.drive.Drive`."""
+
+    NAME: ClassVar[str] = "drive"
+    STOP = b"".join(_HALT)
+    """Of what comes in a burst only the first may be heard, so both are said again, with pauses."""
+
+    def __init__(self, settings: DriveSettings, wiring: Wiring) -> None:
+        """Make the device; its ``odom`` frame begins where the base is first seen."""
+        super().__init__(RflexWire(), wiring)
+        self._settings = settings
+        self._scales = settings.calibration
+        self._odometer = Odometer(settings.calibration)
+        self._odometry: Broadcast[Odometry] = Broadcast()
+        self._readouts: Broadcast[DriveReadout] = Broadcast()
+        self._translated: AxisReport | None = None
+        self._wanted = STANDSTILL
+        self._deadline_ns = 0
+        self._new_set_point = asyncio.Event()
+        self._is_halting = False
+
+    @property
+    def odometry(self) -> Broadcast[Odometry]:
+        """Wheel-derived pose, periodic."""
+        return self._odometry
+
+    @property
+    def readouts(self) -> Broadcast[DriveReadout]:
+        """Battery, periodic."""
+        return self._readouts
+
+    def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
+        """Let the base follow a set-point for ``ttl_s``; TransportError if it is absent, DeviceError if not armed."""
+        self._talk_armed()
+        self._wanted, self._deadline_ns = twist, now_ns() + round(ttl_s * NS_PER_S)
+        self._new_set_point.set()
+
+    def stop_now(self) -> None:
+        """Put the preformatted stop on the wire; see :meth:`BoughtDevice.stop_now`."""
+        self._wanted = STANDSTILL
+        self._is_halting = True
+        self._new_set_point.set()
+        super().stop_now()
+
+    async def _greet(self, dialogue: Dialogue[Message]) -> None:
+        log.warning("%s: %s", self.NAME, NO_WATCHDOG)
+        period_us = self._settings.telemetry_ms * _US_PER_MS
+        self._translated = None
+        for order in (*_HALT, report_every(period_us), switches_every(period_us), DEFAULTS, BRAKE_RELEASE):
+            dialogue.post(order)
+            await asyncio.sleep(_SPACING_S)
+        await dialogue.ask(STATUS, is_a(SystemStatus), timeout_s=_ANSWER_S, tries=_TRIES)
+
+    async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
+        await together(self._pace(dialogue), self._watch_battery(dialogue), dialogue.until_lost(_SILENCE_S))
+
+    async def _pace(self, dialogue: Dialogue[Message]) -> NoReturn:
+        """Send the newest set-point, one axis after the other no quicker than is heard, and end it in its time."""
+        sent = STANDSTILL
+        while True:
+            if self._is_halting:
+                self._is_halting, sent = False, STANDSTILL
+                for order in reversed(_HALT):
+                    await asyncio.sleep(_SPACING_S)
+                    dialogue.post(order)
+            twist = self._wanted
+            if self._may_move and (twist != sent or not twist.is_zero):
+                sent = twist
+                for axis, counts_per_s in enumerate(self._counts(twist)):
+                    dialogue.post(self._run(axis, counts_per_s))
+                    await asyncio.sleep(_SPACING_S)
+            self._new_set_point.clear()
+            if twist.is_zero:
+                await self._new_set_point.wait()
+                continue
+            try:
+                async with asyncio.timeout(max(0.0, (self._deadline_ns - now_ns()) / NS_PER_S)):
+                    await self._new_set_point.wait()
+            except TimeoutError:
+                sent = STANDSTILL
+                self._latch("deadman", "no set-point came in time")
+
+    async def _watch_battery(self, dialogue: Dialogue[Message]) -> NoReturn:
+        while True:
+            heard = await dialogue.ask(
+                STATUS, is_a(SystemStatus), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
+            )
+            if isinstance(heard.message, SystemStatus):
+                volts = heard.message.centivolts / _CENTIVOLTS_PER_V
+                self._readouts.publish(DriveReadout(heard.time_ns, volts, ()))
+            await asyncio.sleep(_STATUS_EVERY_S)
+
+    def _counts(self, twist: Twist2) -> tuple[float, float]:
+        return twist.speed_mps * self._scales.counts_per_m, twist.turn_radps * self._scales.counts_per_rad
+
+    def _run(self, axis: int, counts_per_s: float) -> bytes:
+        scales = (self._scales.counts_per_m, self._scales.counts_per_rad)
+        acceleration = safe_speed(round(abs(scales[axis]) * _ACCELERATIONS[axis]))
+        speed = safe_speed(round(abs(counts_per_s)))
+        return set_direction(axis, speed, acceleration, _TORQUES[axis], forwards=counts_per_s >= 0.0)
+
+    def _report(self, heard: Heard[Message]) -> None:
+        message = heard.message
+        if isinstance(message, AxisReport):
+            self._moved(message, heard.time_ns)
+        elif isinstance(message, Switches) and self._dialogue is not None and _is_pressed(message):
+            self._latch("bumper", f"bump panel {message.address - _FIRST_BUMPER}")
+
+    def _moved(self, report: AxisReport, time_ns: int) -> None:
+        """Publish odometry with each report of the rotation, which follows that of the translation."""
+        if report.axis == 0:
+            self._translated = report
+            return
+        if self._translated is None or self._dialogue is None:
+            return
+        in_odom = self._odometer.update(self.sessions, self._translated.position, report.position)
+        twist = Twist2(self._translated.speed / self._scales.counts_per_m, report.speed / self._scales.counts_per_rad)
+        self._odometry.publish(Odometry(time_ns, in_odom, twist))
+        if not self._may_move and not twist.is_zero:
+            self.stop_now()  # a stop can be lost like any order
+
+
+def _is_pressed(switches: Switches) -> bool:
+    is_bumper = _FIRST_BUMPER <= switches.address <= _LAST_BUMPER
+    return is_bumper and any(byte & _CORNERS for byte in switches.data[-2:])

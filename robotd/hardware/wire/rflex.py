@@ -1,0 +1,175 @@
+"""The binary dialect of RWI's rFLEX controllers (B14R, B21R, ATRV, Magellan Pro): bytes and messages.
+
+A frame is ``1B 02``, port, id, opcode, length, data, the XOR of all from the port on, ``1B 03``; integers are
+big-endian. Nothing is escaped, so the length leads, and a frame counts only if its XOR and its end are right. The
+controller never acknowledges, drops what comes in quick bursts, and loses speeds with a byte 1B in two places: see
+:func:`safe_speed`.
+"""
+
+import struct
+from dataclasses import dataclass
+
+HEAD, TAIL = b"\x1b\x02", b"\x1b\x03"
+OVERHEAD = 9
+DATA_MAX = 64
+"""No report that we know is longer; a larger length is noise."""
+
+SYSTEM, MOTION, DIO = 1, 2, 5
+_ESCAPE = 0x1B
+_AXIS_REPORT = struct.Struct(">IIBiiII")
+_STATUS = struct.Struct(">IIB")
+
+
+@dataclass(frozen=True, slots=True)
+class AxisReport:
+    """Port 2, opcode 33: where an axis is."""
+
+    axis: int
+    """0 translates, 1 rotates."""
+    position: int
+    """Signed 32 bits, wraps."""
+    speed: int
+    """Signed, units per second."""
+
+
+@dataclass(frozen=True, slots=True)
+class SystemStatus:
+    """Port 1, opcode 1."""
+
+    centivolts: int
+    """Less than the battery has by an offset of the robot."""
+    brake: int
+
+
+@dataclass(frozen=True, slots=True)
+class Switches:
+    """Port 5, opcode 1: the digital inputs of one address."""
+
+    address: int
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class OtherFrame:
+    """Whatever else is whole."""
+
+    port: int
+    opcode: int
+    data: bytes
+
+
+Message = AxisReport | SystemStatus | Switches | OtherFrame
+
+
+def frame(port: int, opcode: int, data: bytes = b"", *, sender: int = 0) -> bytes:
+    """Return a frame.
+
+    >>> frame(2, 12).hex(" ")
+    '1b 02 02 00 0c 00 0e 1b 03'
+    """
+    body = bytes((port, sender, opcode, len(data))) + data
+    check = 0
+    for byte in body:
+        check ^= byte
+    return HEAD + body + bytes((check,)) + TAIL
+
+
+def set_direction(axis: int, speed: int, acceleration: int, torque: int, *, forwards: bool) -> bytes:
+    """Return the order that lets an axis run at a speed."""
+    return frame(MOTION, 7, struct.pack(">BIIIB", axis, speed, acceleration, torque, forwards))
+
+
+def safe_speed(speed: int) -> int:
+    """Return the nearest lower speed that the controller does not lose: its firmware drops some with a byte 1B.
+
+    The lowest byte but one is rounded down to ``1A FF``; the highest cannot be 1B at any speed a base can run.
+
+    >>> hex(safe_speed(0x1B34)), hex(safe_speed(0x1C00))
+    ('0x1aff', '0x1c00')
+    """
+    if speed >> 8 & 0xFF == _ESCAPE:
+        return (speed & ~0xFFFF) | 0x1AFF
+    return speed
+
+
+STATUS = frame(SYSTEM, 1)
+BRAKE_SET, BRAKE_RELEASE, DEFAULTS = frame(MOTION, 11), frame(MOTION, 12), frame(MOTION, 10)
+
+
+def report_every(period_us: int, axes: int = 3) -> bytes:
+    """Return the order that asks for reports of both axes."""
+    return frame(MOTION, 34, struct.pack(">II", period_us, axes))
+
+
+def switches_every(period_us: int) -> bytes:
+    """Return the order that asks for reports of the digital inputs."""
+    return frame(DIO, 0, struct.pack(">I", period_us))
+
+
+class RflexWire:
+    """The receiving half."""
+
+    def __init__(self) -> None:
+        self._buffer = bytearray()
+        self._counters = {"frames": 0, "checksum_errors": 0, "bytes_skipped": 0}
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """What was counted since start."""
+        return self._counters
+
+    def feed(self, data: bytes) -> list[Message]:
+        """Take bytes as they come; return the messages that are whole now."""
+        self._buffer += data
+        messages: list[Message] = []
+        while self._hunt():
+            size = self._buffer[5] + OVERHEAD
+            if len(self._buffer) < size:
+                break
+            whole = bytes(self._buffer[:size])
+            check = 0
+            for byte in whole[2:-3]:
+                check ^= byte
+            if check != whole[-3] or whole[-2:] != TAIL:
+                self._counters["checksum_errors"] += 1
+                del self._buffer[: len(HEAD)]
+                continue
+            del self._buffer[:size]
+            self._counters["frames"] += 1
+            messages.append(_message(whole[2], whole[4], whole[6:-3]))
+        return messages
+
+    def reset(self) -> None:
+        """Forget the beginning of a frame."""
+        self._buffer.clear()
+
+    def _hunt(self) -> bool:
+        """Let go of what begins no frame; return whether the length of one can be seen."""
+        while True:
+            at = self._buffer.find(HEAD)
+            if at < 0:
+                keep = 1 if self._buffer[-1:] == HEAD[:1] else 0
+                self._drop(len(self._buffer) - keep)
+                return False
+            self._drop(at)
+            if len(self._buffer) < OVERHEAD - 3:
+                return False
+            if self._buffer[5] <= DATA_MAX:
+                return True
+            self._drop(len(HEAD))
+
+    def _drop(self, count: int) -> None:
+        self._counters["bytes_skipped"] += count
+        del self._buffer[:count]
+
+
+def _message(port: int, opcode: int, data: bytes) -> Message:
+    if (port, opcode, len(data)) == (MOTION, 33, _AXIS_REPORT.size):
+        _, _, axis, position, speed, _, _ = _AXIS_REPORT.unpack(data)
+        return AxisReport(axis, position, speed)
+    if (port, opcode, len(data)) == (SYSTEM, 1, _STATUS.size):
+        _, centivolts, brake = _STATUS.unpack(data)
+        return SystemStatus(centivolts, brake)
+    if (port, opcode) == (DIO, 1) and len(data) >= 6:
+        return Switches(data[4], data[5:])
+    return OtherFrame(port, opcode, data)
