@@ -18,6 +18,7 @@ from robotd.localization.orientation import (
     OrientationSettings,
     SeparatedOrientation,
     Verdict,
+    headings_from_walls,
     map_axis,
     readings_axis,
     separated_orientation,
@@ -124,6 +125,20 @@ def test_with_its_four_headings_localization_finds_the_place_by_translation_alon
     assert off_rad(result.headings_rad[number], heading, math.tau) < math.radians(2.0)
 
 
+def test_the_headings_to_search_lie_round_the_four_found_and_hold_the_true_one() -> None:
+    world, heading = load_world("office"), 2.2
+    sweep = swept(world.walls, *world.probes_m[0], heading)
+    axis = axis_of(drawn(world.walls).occupied)
+    step = math.radians(1.0 / 3.0)
+    headings = headings_from_walls(sweep, axis, step, SETTINGS)
+    assert len(headings) == 4 * 19
+    assert sorted(headings) == list(headings)
+    assert min(off_rad(found, heading, math.tau) for found in headings) <= step
+    assert headings_from_walls(sweep[:1], axis, step, SETTINGS) == ()
+    alone = headings_from_walls(sweep, axis, step, OrientationSettings(heading_error_rad=0.0))
+    assert alone == separated_orientation(sweep, axis, SETTINGS).headings_rad
+
+
 def clutter(seed: int) -> Walls:
     """Sixty short walls in all directions, none near the robot at the origin."""
     chance = random.Random(seed)
@@ -175,7 +190,8 @@ def test_little_in_sight_and_a_map_without_walls_are_no_reason_to_guess() -> Non
 
 
 @pytest.mark.parametrize(
-    ("field", "value"), [("window_m", 0.0), ("tolerance_rad", 0.8), ("share_min", 1.1), ("walls_min_m", 0.0)]
+    ("field", "value"),
+    [("window_m", 0.0), ("tolerance_rad", 0.8), ("share_min", 1.1), ("walls_min_m", 0.0), ("heading_error_rad", 0.8)],
 )
 def test_impossible_settings_are_refused(field: str, value: float) -> None:
     with pytest.raises(ValueError, match=field):
