@@ -13,9 +13,9 @@ found by :mod:`robotd.localization.projection`.
 
 **In simulated rooms**, 300 readings, sigma 2 cm, 5 % outliers, 152 sweeps of three rooms: with a cut-off of 6 m all
 were usable, 0.7 degrees off at most (mean 0.1), with a support of at least 0.74; with 2.1 m 142 were, 2.1 degrees off
-at most (mean 0.2), at least 0.62. Of 150 rooms of sixty short walls in random directions none was with 6 m (support 0.41 at
-most), and one with 2.1 m: there a piece of wall or two are all there is to see, and a piece of wall always has an axis.
-Hence the least length of wall in sight; without it 29 % would have been taken for rooms with an axis.
+at most (mean 0.2), at least 0.62. Of 150 rooms of sixty short walls in random directions none was with 6 m (support
+0.41 at most), and one with 2.1 m: there a piece of wall or two are all there is to see, and a piece of wall always
+has an axis. Hence the least length of wall in sight; without it 29 % would have been taken for rooms with an axis.
 
 **On real logs**, 5 cm maps of every second corrected scan, each of the others one 180-degree sweep to be turned:
 
