@@ -10,6 +10,7 @@ from robotd.hardware.devices.board_pantilt import BoardPanTilt
 from robotd.hardware.devices.board_rangefinder import BoardRangefinder
 from robotd.hardware.devices.dimetix_rangefinder import DimetixRangefinder
 from robotd.hardware.devices.drive import Drive
+from robotd.hardware.devices.dynamixel_pantilt import DynamixelPanTilt
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
@@ -46,6 +47,7 @@ DRIVES: Mapping[str, Dialect[DriveSettings, Drive]] = {
 PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {
     "board": Dialect(BoardPanTilt, _OURS),
     "ptu": Dialect(PtuPanTilt, LineFormat(9_600)),
+    "dynamixel": Dialect(DynamixelPanTilt, LineFormat(57_600)),
 }
 RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {
     "board": Dialect(BoardRangefinder, _OURS),

@@ -6,6 +6,7 @@ from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, Ran
 from robotd.hardware.transport.line_format import LineFormat
 
 _U16_MAX = 0xFFFF
+_SERVO_ID_MAX = 252
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +66,10 @@ class PanTiltSettings(PortSettings):
     """A device path, best one under ``/dev/serial/by-id``, or ``tcp://host:port``."""
     ttl_max_ms: int = 30_000
     """Longest time that one turn of the head may take [ms]."""
+    pan_id: int = 1
+    """Bus id of the pan servo, where the head is made of two."""
+    tilt_id: int = 2
+    """Bus id of the tilt servo, where the head is made of two."""
     x_m: float = 0.0
     """Pan axis in the robot frame, ahead of the centre."""
     y_m: float = 0.0
@@ -75,8 +80,13 @@ class PanTiltSettings(PortSettings):
     """Added to the tilt that the head reads back, to get the angle up from level."""
 
     def __post_init__(self) -> None:
-        """Refuse what the port or the mount refuses."""
+        """Refuse what the port, the bus or the mount refuses."""
         PortSettings.__post_init__(self)
+        for name in ("pan_id", "tilt_id"):
+            if not 0 <= getattr(self, name) <= _SERVO_ID_MAX:
+                raise ValueError(f"{name} must be 0 to {_SERVO_ID_MAX}, got {getattr(self, name)}")
+        if self.pan_id == self.tilt_id:
+            raise ValueError(f"tilt_id must differ from pan_id, got {self.tilt_id} twice")
         _ = self.mount
 
     @property

@@ -11,6 +11,7 @@ from robotd.sim.boards.pantilt import PanTiltBoard
 from robotd.sim.boards.rangefinder import RangefinderBoard
 from robotd.sim.emulators import rflex, rwi
 from robotd.sim.emulators.dimetix import DimetixEmulator
+from robotd.sim.emulators.dynamixel import DynamixelEmulator
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.ptu import PtuEmulator
 from robotd.sim.emulators.rflex import RflexEmulator
@@ -45,6 +46,7 @@ DRIVES: Mapping[str, Emulator[DrivePlant]] = {
 }
 PANTILTS: Mapping[str, Emulator[HeadPlant]] = {
     "board": Emulator(lambda plant, boot_id: PanTiltBoard(plant, boot_id=boot_id)),
+    "dynamixel": Emulator(lambda plant, _: Paced(DynamixelEmulator(plant), LineFormat(57_600))),
     "ptu": Emulator(lambda plant, _: Paced(PtuEmulator(plant), LineFormat(9_600))),
 }
 RANGEFINDERS: Mapping[str, Emulator[LaserPlant]] = {

@@ -58,7 +58,10 @@ def test_the_effective_text_loads_to_the_same(readings: int, tilt_rad: float, po
         ("[driving]\nspeed_mps = 0", "r.toml:2: driving.speed_mps: must be positive, got 0.0"),
         ("[drive]\nport = ''", "r.toml:2: drive.port: must not be empty"),
         ("[drive]\nport = 'COM3'", 'r.toml:2: drive.port: must be a device path or tcp://host:port, got "COM3"'),
-        ("[pantilt]\ndialect = 'klingon'", 'r.toml:2: pantilt.dialect: must be one of board, ptu; got "klingon"'),
+        (
+            "[pantilt]\ndialect = 'klingon'",
+            'r.toml:2: pantilt.dialect: must be one of board, ptu, dynamixel; got "klingon"',
+        ),
         (
             "[drive]\nport = '/dev/a'\n[pantilt]\nport = '/dev/a'",
             "r.toml:4: pantilt.port: must not be the port of another device, got that of drive",

@@ -1,0 +1,146 @@
+"""Two Dynamixel servos of the X series as a pan/tilt head.
+
+They measure where they are, so what is read back is true. Their bus watchdog stops them when the host falls silent; it
+is armed with the device, and fed by every poll.
+"""
+
+import asyncio
+import math
+from collections.abc import Callable
+from typing import ClassVar, NoReturn
+
+from robotd.core.angles import wrap_rad
+from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
+from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
+from robotd.hardware.devices.settings import PanTiltSettings
+from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.link.dialogue import Dialogue, Heard
+from robotd.hardware.wire import dynamixel
+from robotd.hardware.wire.dynamixel import ALERT, DynamixelWire, Message, Status
+
+_COUNTS_PER_RAD = 4096 / math.tau
+_CENTRE = 2048
+_ANSWER_S = 0.1
+_TRIES = 3
+_IDLE_POLL_S = 0.5
+_WATCHDOG_MAX = 127
+_SETTLED_COUNTS = 12
+"""A servo under load rests within so many counts of its goal: one degree."""
+_TILT_LIMIT_RAD = math.radians(90.0)
+
+
+class DynamixelPanTilt(BoughtDevice[Message]):
+    """Implements :class:`robotd.hardware.devices.pantilt.PanTilt`."""
+
+    NAME: ClassVar[str] = "pantilt"
+
+    def __init__(self, settings: PanTiltSettings, wiring: Wiring) -> None:
+        """Make the device; angles outside it have the zeros of its mount applied."""
+        super().__init__(DynamixelWire(), wiring)
+        self._mount = settings.mount
+        self._pan, self._tilt = settings.pan_id, settings.tilt_id
+        self._watchdog = min(max(1, settings.ttl_max_ms // dynamixel.BUS_WATCHDOG_MS), _WATCHDOG_MAX)
+        self.STOP = dynamixel.sync_write(dynamixel.TORQUE_ENABLE, 1, {self._pan: 0, self._tilt: 0})
+        self._one_aim = asyncio.Lock()
+
+    async def limits(self) -> PanTiltLimits:
+        """Return how far it turns, in the robot frame: all round, and a quarter turn up and down."""
+        self._talk()
+        low_rad, high_rad = -_TILT_LIMIT_RAD, _TILT_LIMIT_RAD
+        zero_rad = self._mount.tilt_zero_rad
+        return PanTiltLimits(-math.pi, math.pi, low_rad + zero_rad, high_rad + zero_rad)
+
+    async def aim(self, pan_rad: float, tilt_rad: float, *, timeout_s: float) -> AimReadback:
+        """Turn the head and return where it came to rest; see :meth:`robotd.hardware.devices.pantilt.PanTilt.aim`."""
+        tilt_of_head_rad = tilt_rad - self._mount.tilt_zero_rad
+        if abs(tilt_of_head_rad) > _TILT_LIMIT_RAD:
+            raise DeviceError(self.name, "out_of_range", f"tilt {tilt_rad:.3f} rad is beyond the limits")
+        async with self._one_aim:
+            dialogue = self._talk_armed()
+            goals = {
+                self._pan: _counts(wrap_rad(pan_rad - self._mount.pan_zero_rad)),
+                self._tilt: _counts(tilt_of_head_rad),
+            }
+            try:
+                async with asyncio.timeout(timeout_s):
+                    for servo, goal in goals.items():
+                        await self._write(dialogue, servo, dynamixel.GOAL_POSITION, goal, 4)
+                    return await self._arrived(dialogue, goals)
+            except TimeoutError:
+                self.stop_now()
+                raise LinkTimeout(f"{self.name}: still turning after {timeout_s:g} s") from None
+
+    async def _arrived(self, dialogue: Dialogue[Message], goals: dict[int, int]) -> AimReadback:
+        """Ask where the servos are until both rest at their goals."""
+        while True:
+            moving, at, time_ns = False, dict[int, int](), 0
+            for servo, goal in goals.items():
+                moving |= bool((await self._read(dialogue, servo, dynamixel.MOVING, 1))[0])
+                at[servo], time_ns = await self._read(dialogue, servo, dynamixel.PRESENT_POSITION, 4)
+                moving |= abs(at[servo] - goal) > _SETTLED_COUNTS
+            self._talk_armed()
+            if not moving:
+                pan_rad, tilt_rad = _rad(at[self._pan]), _rad(at[self._tilt])
+                return AimReadback(time_ns, pan_rad + self._mount.pan_zero_rad, tilt_rad + self._mount.tilt_zero_rad)
+
+    async def _greet(self, dialogue: Dialogue[Message]) -> None:
+        dialogue.post(self.STOP)
+        for servo in (self._pan, self._tilt):
+            await dialogue.ask(dynamixel.packet(servo, dynamixel.PING), _from(servo), timeout_s=_ANSWER_S, tries=_TRIES)
+            error, _ = await self._read(dialogue, servo, dynamixel.HARDWARE_ERROR, 1)
+            if error:
+                raise RemoteProtocolError(f"{self.name}: servo {servo} reports hardware error {error:#04x}: reboot it")
+
+    async def _enable(self, dialogue: Dialogue[Message]) -> None:
+        for servo in (self._pan, self._tilt):
+            await self._write(dialogue, servo, dynamixel.BUS_WATCHDOG, 0, 1)
+            await self._write(dialogue, servo, dynamixel.BUS_WATCHDOG, self._watchdog, 1)
+            await self._write(dialogue, servo, dynamixel.TORQUE_ENABLE, 1, 1)
+
+    async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
+        """Feed the bus watchdog, and see that the servos are there."""
+        while True:
+            for servo in (self._pan, self._tilt):
+                await self._read(dialogue, servo, dynamixel.PRESENT_POSITION, 4)
+            await asyncio.sleep(_IDLE_POLL_S)
+
+    def _report(self, heard: Heard[Message]) -> None:
+        """Let go by echoes and late answers."""
+
+    async def _read(self, dialogue: Dialogue[Message], servo: int, register: int, size: int) -> tuple[int, int]:
+        """Return a register and when it came."""
+        heard = await dialogue.ask(
+            dynamixel.read(servo, register, size), _from(servo), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
+        )
+        parameters = self._accepted(heard.message)
+        if len(parameters) != size:
+            raise RemoteProtocolError(f"{self.name}: expected {size} bytes of register {register}, got {parameters!r}")
+        return int.from_bytes(parameters, "little", signed=size == 4), heard.time_ns
+
+    async def _write(self, dialogue: Dialogue[Message], servo: int, register: int, value: int, size: int) -> None:
+        data = dynamixel.write(servo, register, value, size)
+        self._accepted((await dialogue.ask(data, _from(servo), timeout_s=_ANSWER_S, tries=_TRIES)).message)
+
+    def _accepted(self, message: Message) -> bytes:
+        assert isinstance(message, Status)
+        if message.error & ALERT:
+            self._latch("hardware", f"servo {message.servo} overloaded, overheated or undervolted")
+        if message.error & ~ALERT:
+            raise DeviceError(self.name, f"error_{message.error & ~ALERT}", f"servo {message.servo} refused")
+        return message.parameters
+
+
+def _from(servo: int) -> Callable[[Message], bool]:
+    def test(message: Message) -> bool:
+        return isinstance(message, Status) and message.servo == servo
+
+    return test
+
+
+def _counts(angle_rad: float) -> int:
+    return round(angle_rad * _COUNTS_PER_RAD) + _CENTRE
+
+
+def _rad(counts: int) -> float:
+    return (counts - _CENTRE) / _COUNTS_PER_RAD

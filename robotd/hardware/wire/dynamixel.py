@@ -1,0 +1,158 @@
+"""Dynamixel Protocol 2.0 (X series servos): packets and registers.
+
+A packet is ``FF FF FD 00``, id, length, instruction, parameters and a CRC-16; a ``FF FF FD`` among instruction and
+parameters gets an extra ``FD``. Servos answer with instruction 55 and an error byte. The bus is half duplex, so what is
+sent may come back as an echo: packets that are not answers are let go.
+"""
+
+import struct
+from dataclasses import dataclass
+from typing import Final
+
+HEADER: Final = b"\xff\xff\xfd\x00"
+STATUS = 0x55
+PING, READ, WRITE, REBOOT, SYNC_WRITE = 0x01, 0x02, 0x03, 0x08, 0x83
+BROADCAST = 0xFE
+LENGTH_MAX = 128
+"""No answer that we ask for is longer; a larger length is noise."""
+
+TORQUE_ENABLE, HARDWARE_ERROR, BUS_WATCHDOG = 64, 70, 98
+PROFILE_VELOCITY, GOAL_POSITION, MOVING, PRESENT_POSITION = 112, 116, 122, 132
+BUS_WATCHDOG_MS = 20
+"""Unit of the bus watchdog."""
+ALERT = 0x80
+"""Bit of the error byte: read the hardware error."""
+
+_STUFF, _STUFFED = b"\xff\xff\xfd", b"\xff\xff\xfd\xfd"
+
+
+def _crc_table() -> tuple[int, ...]:
+    table = []
+    for value in range(256):
+        crc = value << 8
+        for _ in range(8):
+            crc = (crc << 1 ^ 0x8005 if crc & 0x8000 else crc << 1) & 0xFFFF
+        table.append(crc)
+    return tuple(table)
+
+
+_CRC = _crc_table()
+
+
+def crc16(data: bytes) -> int:
+    """Return the CRC-16 with polynomial 0x8005, not reflected, from 0."""
+    crc = 0
+    for byte in data:
+        crc = (crc << 8 ^ _CRC[(crc >> 8 ^ byte) & 0xFF]) & 0xFFFF
+    return crc
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """An answer."""
+
+    servo: int
+    error: int
+    """0, or a result in the low bits and :data:`ALERT`."""
+    parameters: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Instruction:
+    """A packet that is no answer: an echo of our own, or another master's."""
+
+    servo: int
+    instruction: int
+    parameters: bytes
+
+
+Message = Status | Instruction
+
+
+def packet(servo: int, instruction: int, parameters: bytes = b"") -> bytes:
+    """Return a packet.
+
+    >>> packet(1, PING).hex(" ")
+    'ff ff fd 00 01 03 00 01 19 4e'
+    """
+    body = (bytes((instruction,)) + parameters).replace(_STUFF, _STUFFED)
+    head = HEADER + bytes((servo,)) + struct.pack("<H", len(body) + 2) + body
+    return head + struct.pack("<H", crc16(head))
+
+
+def read(servo: int, register: int, size: int) -> bytes:
+    """Return the instruction that reads a register."""
+    return packet(servo, READ, struct.pack("<HH", register, size))
+
+
+def write(servo: int, register: int, value: int, size: int) -> bytes:
+    """Return the instruction that writes a register of 1, 2 or 4 bytes."""
+    return packet(servo, WRITE, struct.pack("<H", register) + value.to_bytes(size, "little", signed=value < 0))
+
+
+def sync_write(register: int, size: int, values: dict[int, int]) -> bytes:
+    """Return the instruction that writes a register of several servos at once; nobody answers it."""
+    data = b"".join(
+        bytes((servo,)) + value.to_bytes(size, "little", signed=value < 0) for servo, value in values.items()
+    )
+    return packet(BROADCAST, SYNC_WRITE, struct.pack("<HH", register, size) + data)
+
+
+class DynamixelWire:
+    """The receiving half."""
+
+    def __init__(self) -> None:
+        self._buffer = bytearray()
+        self._counters = {"packets": 0, "crc_errors": 0, "bytes_skipped": 0}
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """What was counted since start."""
+        return self._counters
+
+    def feed(self, data: bytes) -> list[Message]:
+        """Take bytes as they come; return the messages that are whole now."""
+        self._buffer += data
+        messages: list[Message] = []
+        while self._hunt():
+            size = 7 + int.from_bytes(self._buffer[5:7], "little")
+            if len(self._buffer) < size:
+                break
+            whole = bytes(self._buffer[:size])
+            if crc16(whole[:-2]) != int.from_bytes(whole[-2:], "little"):
+                self._counters["crc_errors"] += 1
+                del self._buffer[:1]
+                continue
+            del self._buffer[:size]
+            self._counters["packets"] += 1
+            messages.append(_message(whole[4], whole[7:-2].replace(_STUFFED, _STUFF)))
+        return messages
+
+    def reset(self) -> None:
+        """Forget the beginning of a packet."""
+        self._buffer.clear()
+
+    def _hunt(self) -> bool:
+        """Let go of what begins no packet; return whether the length of one can be seen."""
+        while True:
+            at = self._buffer.find(HEADER)
+            if at < 0:
+                keep = next((k for k in (3, 2, 1) if self._buffer[-k:] == HEADER[:k]), 0)
+                self._drop(len(self._buffer) - keep)
+                return False
+            self._drop(at)
+            if len(self._buffer) < 7:
+                return False
+            if 3 <= int.from_bytes(self._buffer[5:7], "little") <= LENGTH_MAX:
+                return True
+            self._drop(1)
+
+    def _drop(self, count: int) -> None:
+        self._counters["bytes_skipped"] += count
+        del self._buffer[:count]
+
+
+def _message(servo: int, body: bytes) -> Message:
+    if body[0] == STATUS and len(body) > 1:
+        return Status(servo, body[1], body[2:])
+    return Instruction(servo, body[0], body[1:])
