@@ -160,6 +160,7 @@ def test_misses_alone_find_nobody() -> None:
         ("here_share", 0.0),
         ("settled_share", 1.1),
         ("rivals", -1),
+        ("settled_residual_m", 0.0),
         ("readings_min", 0),
     ],
 )
