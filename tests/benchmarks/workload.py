@@ -44,7 +44,7 @@ def open_square() -> NDArray[np.bool_]:
     return occupied
 
 
-def building(seed: int = 0) -> NDArray[np.bool_]:
+def building(seed: int = 1) -> NDArray[np.bool_]:
     """Return rooms made by dividing the largest one again and again, ``bool[rows, cols]``."""
     random = np.random.default_rng(seed)
     occupied = np.ones(LARGE.shape, np.bool_)

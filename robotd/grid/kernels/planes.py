@@ -2,6 +2,7 @@
 
 import functools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,10 +32,19 @@ class Ground:
     blocked_by: int
     error_radius_cells: float
 
+    @property
+    def everywhere(self) -> "Window":
+        """The window that holds all cells."""
+        return slice(0, self.free.shape[0]), slice(0, self.free.shape[1])
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Planes:
-    """See ``c/planes.h``; in bytes for every cell: 0.4 for ``cells``, 1 for ``near``, and for ``pooled`` 4 to 9."""
+    """What the search keeps; ``c/planes.h`` describes the arrays.
+
+    Bytes for every cell: 0.4 to 0.5 for ``cells``, 1 for ``near``, and for ``pooled`` 5 at 4096 x 4096 cells, 9 at 1024 x
+    1024 and 50 at 256 x 256, most of which stands for what lies outside and is seldom read.
+    """
 
     ground: Ground
     key_of: NDArray[np.int8]
@@ -42,11 +52,8 @@ class Planes:
     cells: NDArray[np.uint16]
     pooled: NDArray[np.uint64]
     near: NDArray[np.uint8]
-
-    @property
-    def keys(self) -> int:
-        """How many keys there are, 0 included."""
-        return int(self.key_of.max()) + 1
+    handle: Any
+    """What the kernels in C know it by, which holds no array alive; None for the twin."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -98,29 +98,38 @@ static uint64_t *bitmap_row(const bitmaps *maps, uint64_t *bitmap, int32_t row)
     return bitmap + (size_t)(row + MARGIN) * (size_t)maps->words;
 }
 
-/* seen = grown & ~(every cell where a body of this key may have ended is blocking). */
-static void look_back(const bitmaps *maps, int32_t key, int32_t row)
+/* Offsets (row, col) of a key. */
+typedef struct {
+    int32_t count;
+    int32_t at[(2 * RING + 1) * (2 * RING + 1)][2];
+} offsets;
+
+static void offsets_of(const search_map *map, int32_t key, offsets *of)
 {
-    const search_map *map = maps->map;
+    of->count = 0;
+    for (int32_t i = 0; key > 0 && i < (2 * RING + 1) * (2 * RING + 1); i++)
+        if (map->key_of[i] == key) {
+            of->at[of->count][0] = i / (2 * RING + 1) - RING;
+            of->at[of->count++][1] = i % (2 * RING + 1) - RING;
+        }
+}
+
+/* seen = grown & ~(every cell where a body of this key may have ended is blocking). */
+static void look_back(const bitmaps *maps, const offsets *of, int32_t row)
+{
     const int32_t words = maps->words;
+    const uint64_t beyond = maps->map->outside_blocks ? ~(uint64_t)0 : 0;
     uint64_t *seen = bitmap_row(maps, maps->seen, row);
     const uint64_t *grown = bitmap_row(maps, maps->grown, row);
-    if (key == 0) {
-        memcpy(seen, grown, (size_t)words * sizeof *seen);
-        return;
-    }
-    memset(seen, 0xff, (size_t)words * sizeof *seen);
-    for (int32_t r = -RING; r <= RING; r++)
-        for (int32_t c = -RING; c <= RING; c++) {
-            if (map->key_of[(r + RING) * (2 * RING + 1) + c + RING] != key)
-                continue;
-            const uint64_t *from = bitmap_row(maps, maps->blocking, row + r);
-            const uint64_t beyond = map->outside_blocks ? ~(uint64_t)0 : 0;
-            for (int32_t w = 0; w < words; w++) {
-                const uint64_t left = w > 0 ? from[w - 1] : beyond, right = w + 1 < words ? from[w + 1] : beyond;
-                seen[w] &= c == 0 ? from[w] : c > 0 ? from[w] >> c | right << (64 - c) : from[w] << -c | left >> (64 + c);
-            }
+    memset(seen, of->count ? 0xff : 0, (size_t)words * sizeof *seen);
+    for (int32_t i = 0; i < of->count; i++) {
+        const uint64_t *from = bitmap_row(maps, maps->blocking, row + of->at[i][0]);
+        const int32_t c = of->at[i][1];
+        for (int32_t w = 0; w < words; w++) {
+            const uint64_t left = w > 0 ? from[w - 1] : beyond, right = w + 1 < words ? from[w + 1] : beyond;
+            seen[w] &= c == 0 ? from[w] : c > 0 ? from[w] >> c | right << (64 - c) : from[w] << -c | left >> (64 + c);
         }
+    }
     for (int32_t w = 0; w < words; w++)
         seen[w] = grown[w] & ~seen[w];
 }
@@ -197,8 +206,10 @@ static void fill_pooled(const bitmaps *maps, int32_t first, int32_t last)
     }
     for (int32_t key = 0; key < map->keys; key++) {
         const uint64_t outside = far_heads(map, key) ? ~(uint64_t)0 : 0;
+        offsets of;
+        offsets_of(map, key, &of);
         for (int32_t row = first; row < deepest; row++)
-            look_back(maps, key, row);
+            look_back(maps, &of, row);
         for (int32_t step = 1; step < WINDOW; step *= 2) {
             widen(maps, first, deepest, step, outside);
             if (2 * step >= pools[POOLS - 1])

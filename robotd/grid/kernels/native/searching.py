@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.native.buffers import floats, ints, words
+from robotd.grid.kernels.native.buffers import floats, ints, octets, words
 from robotd.grid.kernels.native.counting import INSTRUCTION_SETS
 from robotd.grid.kernels.planes import Found, Ground, Planes, Question, Window, endings
 
@@ -16,22 +16,32 @@ from robotd.grid.kernels.planes import Found, Ground, Planes, Question, Window, 
 def make_planes(ground: Ground) -> Planes:
     """See the twin."""
     key_of = endings(ground.error_radius_cells, ground.blocked_by)
-    nothing = Planes(ground, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8))
-    c_map = _map_of(nothing)
-    cells = np.empty(lib.search_cells_size(c_map), np.uint16)
-    pooled = np.empty(lib.search_pooled_size(c_map), np.uint64)
-    planes = Planes(ground, key_of, cells, pooled, np.empty(ground.free.shape, np.uint8))
-    return renew_planes(planes, ground, (slice(0, ground.free.shape[0]), slice(0, ground.free.shape[1])))
+    sizes = _map_of(ground, key_of)
+    cells = np.empty(lib.search_cells_size(sizes), np.uint16)
+    pooled = np.empty(lib.search_pooled_size(sizes), np.uint64)
+    return _filled(ground, key_of, (cells, pooled, np.empty(ground.free.shape, np.uint8)), ground.everywhere)
 
 
 def renew_planes(planes: Planes, ground: Ground, window: Window) -> Planes:
     """See the twin."""
-    renewed = Planes(ground, planes.key_of, planes.cells, planes.pooled, planes.near)
-    c_map = _map_of(renewed)
+    return _filled(ground, planes.key_of, (planes.cells, planes.pooled, planes.near), window)
+
+
+def _filled(
+    ground: Ground,
+    key_of: NDArray[np.int8],
+    arrays: tuple[NDArray[np.uint16], NDArray[np.uint64], NDArray[np.uint8]],
+    window: Window,
+) -> Planes:
+    """Fill what depends on a window of the map."""
+    cells, pooled, near = arrays
+    c_map = _map_of(ground, key_of)
+    c_map.cells, c_map.pooled = ffi.from_buffer("uint16_t[]", cells), words(pooled)
+    c_map.near = octets(near)
     scratch = np.empty(lib.search_scratch_size(c_map), np.uint64)
     rows, cols = window
     lib.search_prepare(c_map, rows.start, rows.stop, cols.start, cols.stop, words(scratch))
-    return renewed
+    return Planes(ground, key_of, cells, pooled, near, c_map)
 
 
 def search_poses(planes: Planes, question: Question, *, threads: int = 1, instructions: str | None = None) -> Found:
@@ -46,10 +56,11 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     turned = np.array((np.sin(headings_rad), np.cos(headings_rad))).T.copy()
     readings = jumping[:, 1:].copy()
     readings[:, 0] /= question.resolution_m
-    poses = np.empty((2 * question.limit + 256, 4), np.int32)
-    c_map = _map_of(planes)
+    row_first, row_last, col_first, col_last = question.area
+    limit = min(question.limit, (row_last - row_first) * (col_last - col_first) * len(headings_rad))
+    poses = np.empty((2 * limit + 256, 4), np.int32)
     job = ffi.new("search_job *")
-    job.map = c_map
+    job.map = planes.handle
     job.readings, job.headings = floats(readings), floats(turned)
     job.sines, job.cosines = floats(sines), floats(cosines)
     job.reading_count, job.heading_count = len(readings), len(headings_rad)
@@ -57,7 +68,7 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     job.reach_cells = question.reach_cells
     job.area, job.spans = question.area, ints(question.spans)
     job.by_blocks = question.by_blocks
-    job.slack, job.least_rank, job.limit = question.slack, question.least_rank, question.limit
+    job.slack, job.least_rank, job.limit = question.slack, question.least_rank, limit
     job.bits, job.threads = max(3, len(readings).bit_length()), threads
     job.instructions = -1 if instructions is None else INSTRUCTION_SETS.index(instructions)
     scratch = np.empty(lib.search_size(job), np.uint64)
@@ -76,18 +87,13 @@ def _jumping(count: int) -> NDArray[np.intp]:
     return np.arange(count) * next(steps, 1) % count
 
 
-def _map_of(planes: Planes) -> Any:
-    """Return ``search_map *``; it does not keep the arrays alive."""
-    ground, c_map = planes.ground, ffi.new("search_map *")
+def _map_of(ground: Ground, key_of: NDArray[np.int8]) -> Any:
+    """Return ``search_map *`` of no planes yet; it does not keep the arrays alive."""
+    c_map = ffi.new("search_map *")
     c_map.rows, c_map.cols = ground.free.shape
-    c_map.keys = planes.keys
+    c_map.keys = int(key_of.max()) + 1
     c_map.outside_blocks, c_map.outside_ends = ground.outside_blocks, ground.outside_ends
     c_map.blocked_by = ground.blocked_by
-    c_map.free, c_map.blocking = (
-        ffi.from_buffer("uint8_t[]", ground.free),
-        ffi.from_buffer("uint8_t[]", ground.blocking),
-    )
-    c_map.grown, c_map.key_of = ffi.from_buffer("uint8_t[]", ground.grown), ffi.from_buffer("int8_t[]", planes.key_of)
-    c_map.cells, c_map.pooled = ffi.from_buffer("uint16_t[]", planes.cells), words(planes.pooled)
-    c_map.near = ffi.from_buffer("uint8_t[]", planes.near)
+    c_map.free, c_map.blocking = octets(ground.free.view(np.uint8)), octets(ground.blocking.view(np.uint8))
+    c_map.grown, c_map.key_of = octets(ground.grown.view(np.uint8)), ffi.from_buffer("int8_t[]", key_of)
     return c_map

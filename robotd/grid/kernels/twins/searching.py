@@ -12,7 +12,7 @@ _FAR_CELLS = float(1 << 28)
 def make_planes(ground: Ground) -> Planes:
     """Return what the search keeps of a map; the twin reads the map itself and keeps nothing more."""
     key_of = endings(ground.error_radius_cells, ground.blocked_by)
-    return Planes(ground, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8))
+    return Planes(ground, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8), None)
 
 
 def renew_planes(planes: Planes, ground: Ground, window: Window) -> Planes:  # noqa: ARG001  # nothing to renew
