@@ -1,5 +1,7 @@
 """Searching for the best poses, in NumPy: the twin of the kernel in C."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,21 +28,21 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1) -> Fou
     Heading by heading, cells that may hold an answer are kept in a list, and dropped once they have missed too many
     readings: first by the heads of all beams, then, only where the heads leave a chance, by their bodies.
     """
-    ground = planes.ground
+    ground, around = planes.ground, _Around.of(planes.ground)
     free = np.argwhere(_asked_for(ground.free, question))
     best, least, found = 0, max(1, question.least_rank - question.slack), [np.zeros((0, 4), np.int32)]
     total = len(question.readings)
     bounds = []
     for heading in range(len(question.headings_rad)):
         beams = _beams(ground, question, heading)
-        cells, heads = _count(ground, beams, free, np.zeros(len(free), np.int64), total - least, bodies=False)
+        cells, heads = _count(around, beams, free, np.zeros(len(free), np.int64), total - least, bodies=False)
         bounds.append((total - int(heads.min(initial=total)), heading, cells, heads))
     for bound, heading, hopeful, heads in sorted(bounds, key=lambda bound: -bound[0]):
         if bound < least:
             break
         kept = heads <= total - least
         beams = _beams(ground, question, heading)
-        cells, misses = _count(ground, beams, hopeful[kept], heads[kept], total - least, bodies=True)
+        cells, misses = _count(around, beams, hopeful[kept], heads[kept], total - least, bodies=True)
         ranks = total - misses
         best = max(best, int(ranks.max(initial=0)))
         least = max(least, best - question.slack if best >= question.least_rank else 0)
@@ -99,8 +101,38 @@ def _nearest(cells: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.floor(np.clip(cells, -_FAR_CELLS, _FAR_CELLS) + 0.5).astype(np.int64)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Around:
+    """A map with what lies outside around it, so that looking somewhere is looking up one number."""
+
+    grown: NDArray[np.bool_]
+    blocking: NDArray[np.bool_]
+    """Both ``bool[rows * cols]`` of the padded map."""
+    margin: tuple[int, int]
+    cols: int
+    blocked_by: int
+
+    @classmethod
+    def of(cls, ground: Ground) -> "_Around":
+        rows, cols = ground.free.shape
+        margin = ((rows, rows), (cols, cols))
+        grown = np.pad(ground.grown, margin, constant_values=ground.outside_ends)
+        blocking = np.pad(ground.blocking, margin, constant_values=ground.outside_blocks)
+        return cls(grown.ravel(), blocking.ravel(), (rows, cols), 3 * cols, ground.blocked_by)
+
+    def places(self, cells: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Return where cells ``intp[n, 2]`` of the map lie, ``intp[n]``."""
+        places: NDArray[np.intp] = (cells + self.margin) @ np.array([self.cols, 1])
+        return places
+
+    def steps(self, offsets: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return how far the places at offsets ``int64[..., 2]`` lie; what is out of sight is outside."""
+        steps: NDArray[np.int64] = np.clip(offsets, np.negative(self.margin), self.margin) @ np.array([self.cols, 1])
+        return steps
+
+
 def _count(
-    ground: Ground,
+    around: _Around,
     beams: list[Beam],
     cells: NDArray[np.intp],
     misses: NDArray[np.int64],
@@ -111,40 +143,35 @@ def _count(
     """Return the cells that miss no more than is allowed, and what they missed so far.
 
     Args:
-        ground: the map.
+        around: the map.
         beams: to be counted.
         cells: ``intp[n, 2]``.
         misses: ``int64[n]``, what they missed before.
         allowed: how many each may miss.
         bodies: whether beams count that meet their head and are blocked, or those that do not meet their head.
     """
+    places, kept = around.places(cells), np.arange(len(cells))
     for body, head in beams:
-        ends = np.ones(len(cells), np.bool_) if head is None else _at(ground.grown, cells + head, ground.outside_ends)
-        misses = misses + (_blocked(ground, cells, body, ends) if bodies else ~ends)
-        kept = misses <= allowed
-        if not kept.all():
-            cells, misses = cells[kept], misses[kept]
-        if len(cells) == 0:
+        if head is None and not bodies:
+            continue
+        meets = np.ones(len(places), np.bool_) if head is None else around.grown[places + around.steps(head)]
+        misses = misses + (_blocked(around, places, body, meets) if bodies else ~meets)
+        good = misses <= allowed
+        if not good.all():
+            places, kept, misses = places[good], kept[good], misses[good]
+        if len(places) == 0:
             break
-    return cells, misses
+    return cells[kept], misses
 
 
 def _blocked(
-    ground: Ground, cells: NDArray[np.intp], body: NDArray[np.int64], asked: NDArray[np.bool_]
+    around: _Around, places: NDArray[np.intp], body: NDArray[np.int64], asked: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
-    """Return from which of some cells a body meets too many that block, ``bool[n]``."""
-    blocked = np.zeros(len(cells), np.bool_)
+    """Return from which of some places a body meets too many cells that block, ``bool[n]``."""
+    blocked = np.zeros(len(places), np.bool_)
     some = np.flatnonzero(asked)
     met = np.zeros(len(some), np.int64)
-    for offset in body:
-        met += _at(ground.blocking, cells[some] + offset, ground.outside_blocks)
-    blocked[some] = met >= ground.blocked_by
+    for step in around.steps(body).tolist():
+        met += around.blocking[places[some] + step]
+    blocked[some] = met >= around.blocked_by
     return blocked
-
-
-def _at(plane: NDArray[np.bool_], cells: NDArray[np.int64], outside: bool) -> NDArray[np.bool_]:
-    """Return what a plane holds at some cells, inside it or not."""
-    inside = ((cells >= 0) & (cells < plane.shape)).all(axis=1)
-    values = np.full(len(cells), outside)
-    values[inside] = plane[cells[inside, 0], cells[inside, 1]]
-    return values
