@@ -54,6 +54,8 @@ def _way(border: Border) -> tuple[Point, Border, bool, Point]:
 
 def _nodes(points: list[Point]) -> dict[int, int]:
     """Number points by their identity, equal ones alike."""
+    if not points:
+        return {}
     ordered = sorted(points, key=cmp_to_key(compare_points))
     steps = (compare_points(one, other) != 0 for one, other in pairwise(ordered))
     return {id(point): number for point, number in zip(ordered, accumulate(steps, initial=0), strict=True)}
