@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test bench bench-peers paper conservative lint types contracts check clean
+.PHONY: help demo demo-real test bench bench-peers paper conservative exact lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
@@ -38,6 +38,9 @@ paper: .venv/.dev  ## The paper's five tests in simulated rooms, as pictures and
 
 conservative: .venv/.dev  ## Look 10 000 times for a true pose that the conservative mode loses
 	@$(BIN)/python -m tests.conservative.run $(if $(CASES),--cases $(CASES))
+
+exact: .venv/.dev  ## The exact algorithm measured, and the paper's figures of it: writes docs/exact (minutes)
+	@$(BIN)/python -m tests.exact.run
 
 lint: .venv/.dev  ## Check format and style
 	@echo "robotd: ruff"

@@ -44,7 +44,7 @@ def _measured(out: Path) -> list[str]:
         "Written by `make exact`. What it computes is told in `robotd/localization/exact/`, how to ask it in",
         "`robotctl exact --help`.",
         "",
-        f"Python {platform.python_version()}, numbers: {ARITHMETIC}; one core; each time the least of two runs.",
+        f"Python {platform.python_version()}, numbers: {ARITHMETIC}; time of one processor, the least of two runs.",
     ]
     print("\n".join(lines))
     lines += _laboratory(out)

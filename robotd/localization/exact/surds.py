@@ -20,6 +20,7 @@ Key = tuple[int, ...]
 """What roots are ordered by: depth first, so that a radicand has only smaller roots."""
 
 _COARSE_BITS = 96
+_SURE_BITS = 60
 _FINE_BITS = 320
 _ROUNDING = 2.0**-51
 """More than the relative error of one float operation or conversion."""
@@ -115,13 +116,18 @@ class Surd:
     def approximation(self) -> tuple[float, float]:
         """Return the number as a float, and a bound on its error."""
         if self._approximation is None:
-            low, high = enclosure(self, _COARSE_BITS)
-            value = low / (1 << _COARSE_BITS)
-            self._approximation = (
-                value,
-                (high - low + 1) / (1 << _COARSE_BITS) * (1.0 + _ROUNDING) + abs(value) * _ROUNDING,
-            )
+            self._approximation = self._approximated()
         return self._approximation
+
+    def _approximated(self) -> tuple[float, float]:
+        """Look closer until the error is below 2^-60: large parts can cancel each other."""
+        bits = _COARSE_BITS
+        low, high = enclosure(self, bits)
+        while high - low >= 1 << (bits - _SURE_BITS):
+            bits *= 2
+            low, high = enclosure(self, bits)
+        value, width = low / (1 << bits), (high - low + 1) / (1 << bits)
+        return value, width * (1.0 + _ROUNDING) + abs(value) * _ROUNDING
 
     def sign(self) -> int:
         """Return -1, 0 or 1."""

@@ -73,6 +73,13 @@ def test_an_approximation_is_as_good_as_it_says(number: Number) -> None:
     assert low <= Fraction(value) + Fraction(error)
 
 
+def test_an_approximation_is_near_though_large_parts_cancel() -> None:
+    large = rational(10**40)
+    value, error = approximation(large * sqrt(rational(2)) - large * sqrt(rational(2) + 1 / large) + 3)
+    assert value == pytest.approx(3.0 - 2.0**-1.5, abs=1e-12)
+    assert error < 1e-12
+
+
 def test_roots_that_are_sums_of_others_are_recognized() -> None:
     two, three, six = (sqrt(rational(number)) for number in (2, 3, 6))
     assert two * three == six
