@@ -15,12 +15,14 @@ from robotd.localization.exact.planar import PlanarSet
 
 SOLID = "#4a5763"
 _BEST = "#0b63ce"
+_FAR_M = 1000.0
+"""How far to fill a set that reaches to infinity; farther than any picture."""
 
 
 def box_of(planar: PlanarSet, margin_m: float = 0.1) -> Box:
     """Return a box around all borders of a set."""
     ends = [end.floats for border in planar.borders for end in (border.start, border.end)]
-    xs, ys = [x for x, _ in ends], [y for _, y in ends]
+    xs, ys = [x for x, _ in ends] or [0.0], [y for _, y in ends] or [0.0]
     return min(xs) - margin_m, min(ys) - margin_m, max(xs) + margin_m, max(ys) + margin_m
 
 
@@ -28,7 +30,7 @@ def fill(axes: Axes, planar: PlanarSet, colour: str, *, alpha: float = 1.0, zord
     """Fill the areas of a set, and draw what else of it there is as lines and points."""
     loops = outline_loops(planar)
     if planar.far:
-        (west, east), (south, north) = axes.get_xlim(), axes.get_ylim()
+        west, south, east, north = box_of(planar, _FAR_M)
         loops.append([(west, south), (east, south), (east, north), (west, north)])
     outlines = [Outline([*loop, loop[0]], closed=True) for loop in loops]
     if outlines:

@@ -1,7 +1,7 @@
 """A test as the paper shows it, side by side: the hand-drawn map, the robot's map, the localization ([BrownDonald2000]_
 figs. 23, 24, 26-31)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +12,9 @@ from matplotlib.patches import Circle, Polygon
 from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
+from robotd.core.reading import RangeReading
 from robotd.grid.occupancy import OccupancyGrid
+from tests.paper.exact import exact_panel
 from tests.paper.robot import ROBOT_RADIUS_M
 from tests.paper.rooms import Room, Test
 from tests.paper.trials import Outcome
@@ -29,13 +31,19 @@ _SIDE_INCH = 3.6
 _DPI = 100
 
 
-def draw_test(file: Path, test: Test, truth: Pose2, grid: OccupancyGrid, outcome: Outcome) -> None:
-    """Draw one test: the circle is the true robot, to scale; arrows point at the regions of black cells."""
+def draw_test(
+    file: Path, test: Test, truth: Pose2, grid: OccupancyGrid, outcome: Outcome, counted: Sequence[RangeReading]
+) -> None:
+    """Draw one test: the circle is the true robot, to scale; arrows point at the regions of black cells.
+
+    Beside the robot's answer stands that of the exact algorithm to the same readings, on the walls as they are.
+    """
     consistent = f"black: {outcome.consistent} of {outcome.counted} readings consistent"
     panels: tuple[Panel, ...] = (
         ("(a) hand-drawn map, with the stops", lambda axes: _hand_drawn(axes, test.room)),
         ("(b) the robot's map", lambda axes: _cells(axes, grid, grid.cells, 255)),
         (f"(c) localization; {consistent}", lambda axes: _localization(axes, grid, outcome)),
+        exact_panel(test.room, counted, truth.heading_rad),
     )
     draw_panels(file, f"Test {test.number}: {test.room.name}, {test.probes} probes", test.room, truth, panels)
 

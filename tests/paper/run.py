@@ -63,7 +63,9 @@ def _drawn(tours: Tours, results: Results, out: Path) -> None:
     for test in TESTS:
         grid = tours[test.room][0].map_by(PAPERS.grid, test.room.spec)
         outcome = results[test.number, PAPERS.name, SEEDS[0]]
-        draw_test(out / f"test-{test.number}.png", test, test.pose_on(grid), grid, outcome)
+        pose = test.pose_on(grid)
+        counted = PAPERS.counted(probes_at(test.room.world, pose, test.probes, SEEDS[0]))
+        draw_test(out / f"test-{test.number}.png", test, pose, grid, outcome, counted)
     draw_figures(out)
 
 

@@ -56,7 +56,7 @@ def test_what_is_drawn_is_the_sum_of_the_feasible_poses_as_the_paper_defines_the
         )
         rank += feasible_poses(obstacles, probe)
     assert np.array_equal(outcome.rank, rank)
-    draw_test(tmp_path / "test.png", FIRST, pose, grid, outcome)
+    draw_test(tmp_path / "test.png", FIRST, pose, grid, outcome, PAPERS.counted(readings))
     assert (tmp_path / "test.png").stat().st_size > 10_000
 
 
