@@ -31,7 +31,7 @@ except ImportError as error:
     draw_beams, count_feasible = twins.draw_beams, twins.count_feasible
     greatest, at_least, insert_sweep = twins.greatest, twins.at_least, twins.insert_sweep
     squared_distances, grow_disk, pack_cells = twins.squared_distances, twins.grow_disk, twins.pack_cells
-    wall_codes, skip_codes = twins.wall_codes, twins.skip_codes
+    wall_codes, skip_codes, weigh_beams = twins.wall_codes, twins.skip_codes, twins.weigh_beams
     make_planes, renew_planes, search_poses = twins.make_planes, twins.renew_planes, twins.search_poses
     fit_poses, scan_poses, cast_beams = twins.fit_poses, twins.scan_poses, twins.cast_beams
     count_fans = twins.count_fans
@@ -42,7 +42,7 @@ else:
     draw_beams, count_feasible = native.draw_beams, native.count_feasible
     greatest, at_least, insert_sweep = native.greatest, native.at_least, native.insert_sweep
     squared_distances, grow_disk, pack_cells = native.squared_distances, native.grow_disk, native.pack_cells
-    wall_codes, skip_codes = native.wall_codes, native.skip_codes
+    wall_codes, skip_codes, weigh_beams = native.wall_codes, native.skip_codes, native.weigh_beams
     make_planes, renew_planes, search_poses = native.make_planes, native.renew_planes, native.search_poses
     fit_poses, scan_poses, cast_beams = native.fit_poses, native.scan_poses, native.cast_beams
     count_fans = native.count_fans
@@ -67,4 +67,5 @@ __all__ = [
     "skip_codes",
     "squared_distances",
     "wall_codes",
+    "weigh_beams",
 ]

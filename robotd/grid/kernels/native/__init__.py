@@ -20,6 +20,7 @@ from robotd.grid.kernels.native.growing import grow_disk
 from robotd.grid.kernels.native.inserting import insert_sweep
 from robotd.grid.kernels.native.packing import pack_cells
 from robotd.grid.kernels.native.searching import make_planes, renew_planes, search_poses
+from robotd.grid.kernels.native.weighing import weigh_beams
 
 __all__ = [
     "INSTRUCTION_SETS",
@@ -41,4 +42,5 @@ __all__ = [
     "skip_codes",
     "squared_distances",
     "wall_codes",
+    "weigh_beams",
 ]

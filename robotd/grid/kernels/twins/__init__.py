@@ -10,6 +10,7 @@ from robotd.grid.kernels.twins.growing import grow_disk
 from robotd.grid.kernels.twins.inserting import insert_sweep
 from robotd.grid.kernels.twins.packing import pack_cells
 from robotd.grid.kernels.twins.searching import make_planes, renew_planes, search_poses
+from robotd.grid.kernels.twins.weighing import weigh_beams
 
 __all__ = [
     "at_least",
@@ -29,4 +30,5 @@ __all__ = [
     "skip_codes",
     "squared_distances",
     "wall_codes",
+    "weigh_beams",
 ]

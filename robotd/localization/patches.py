@@ -1,0 +1,58 @@
+"""How much readings say together: twenty beams on one near wall say one thing twenty times.
+
+What makes a reading err, an object moved or a wall that the map has a little aside, makes its neighbours err alike.
+Readings whose heads lie near to each other therefore share one weight, and some of them can be left out.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+_COARSER = 1.15
+
+
+def heads_of(readings: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return where readings ``float64[m, 5]`` end, in the robot frame, ``float64[m, 2]`` [m]."""
+    bearing_rad, range_m, x_m, y_m, _ = readings.T
+    return np.stack((x_m + range_m * np.cos(bearing_rad), y_m + range_m * np.sin(bearing_rad)), axis=1)
+
+
+def thinned(readings: NDArray[np.float64], gap_m: float, most: int) -> NDArray[np.float64]:
+    """Return those of ``float64[m, 5]`` whose head lies at least a gap from that of the last one kept, by bearing.
+
+    The gap is widened until no more than ``most`` are left. O(m log m) for each gap.
+    """
+    by_bearing = readings[np.argsort(readings[:, 0], kind="stable")]
+    heads: list[tuple[float, float]] = [(x_m, y_m) for x_m, y_m in heads_of(by_bearing).tolist()]
+    kept = _apart(heads, gap_m)
+    while len(kept) > most:
+        gap_m *= _COARSER
+        kept = _apart(heads, gap_m)
+    return by_bearing[kept]
+
+
+def weights(readings: NDArray[np.float64], patch_m: float) -> NDArray[np.float64]:
+    """Return the weight of each reading of ``float64[m, 5]``: one, shared with all whose heads lie within a patch.
+
+    Sharing fades linearly to the patch's length. The sum is how many things the readings say. O(m^2).
+    """
+    weights: NDArray[np.float64] = 1.0 / alike(readings, patch_m).sum(axis=1)
+    return weights
+
+
+def alike(readings: NDArray[np.float64], patch_m: float) -> NDArray[np.float64]:
+    """Return how far readings say the same, 0 to 1, ``float64[m, m]``."""
+    heads = heads_of(readings)
+    apart_m = np.hypot(heads[:, None, 0] - heads[:, 0], heads[:, None, 1] - heads[:, 1])
+    return np.maximum(0.0, 1.0 - apart_m / patch_m)
+
+
+def _apart(heads: list[tuple[float, float]], gap_m: float) -> list[int]:
+    kept: list[int] = []
+    x_m, y_m = math.inf, math.inf
+    for index, head in enumerate(heads):
+        if math.dist(head, (x_m, y_m)) >= gap_m:
+            kept.append(index)
+            x_m, y_m = head
+    return kept
