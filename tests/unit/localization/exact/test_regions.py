@@ -1,0 +1,94 @@
+"""Regions are what hangs together; areas and outlines are those of the sets they come from."""
+
+import math
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robotd.localization.exact.arrangement import Arrangement
+from robotd.localization.exact.locate import contains
+from robotd.localization.exact.loops import outline_loops, single_lines, single_points
+from robotd.localization.exact.measure import face_areas
+from robotd.localization.exact.planar import PlanarSet, Spot, area_within, disk, segment
+from robotd.localization.exact.points import Point
+from robotd.localization.exact.polygons import ring_of
+from robotd.localization.exact.rationals import Rational, rational
+from robotd.localization.exact.regions import of_rank, regions
+from robotd.localization.exact.surds import sqrt
+from robotd.localization.exact.sweep import arrange
+from tests.unit.localization.exact.shapes import planar_sets, point
+
+
+def square(x: int, y: int, side: int, *, closed: bool = True) -> PlanarSet:
+    corners = [(x, y), (x + side, y), (x + side, y + side), (x, y + side)]
+    return area_within([ring_of(corners)], closed=closed)
+
+
+def area_of(arrangement: Arrangement) -> float:
+    areas = face_areas(arrangement)
+    return sum(area for area, mask in zip(areas, arrangement.faces, strict=True) if mask)
+
+
+def test_the_area_of_a_disk_is_that_of_a_disk() -> None:
+    assert area_of(arrange([disk(point(3, -2), sqrt(rational(5)), closed=True)])) == pytest.approx(5.0 * math.pi)
+
+
+def test_areas_with_holes_are_counted_without_them() -> None:
+    holed = area_within(
+        [ring_of([(0, 0), (4, 0), (4, 4), (0, 4)]), ring_of([(1, 1), (1, 3), (3, 3), (3, 1)])], closed=True
+    )
+    assert area_of(arrange([holed])) == pytest.approx(12.0)
+
+
+def test_closed_squares_that_touch_in_a_corner_are_one_region_and_open_ones_two() -> None:
+    for closed, expected in ((True, 1), (False, 2)):
+        sets = [square(0, 0, 1, closed=closed), square(1, 1, 1, closed=closed)]
+        assert len(regions(arrange(sets), of_rank(1))) == expected
+
+
+def test_regions_come_best_and_largest_first_and_know_their_readings() -> None:
+    lonely = PlanarSet(
+        (segment(point(20, 0), point(23, 4), on=True, left=False, right=False),), (Spot(point(30, 0), on=True),)
+    )
+    found = regions(arrange([square(0, 0, 3), square(1, 1, 1), square(10, 0, 5), lonely]), of_rank(1))
+    assert [region.kind for region in found] == ["area", "area", "segment", "point"]
+    assert [region.readings for region in found] == [0b11, 0b100, 0b1000, 0b1000]
+    assert [region.area_m2 for region in found] == pytest.approx([9.0, 25.0, 0.0, 0.0])
+    assert found[2].length_m == pytest.approx(5.0)
+    assert found[0].centre_m == (1.5, 1.5)
+
+
+def test_all_that_no_reading_denies_reaches_to_infinity() -> None:
+    everywhere = arrange([PlanarSet(far=True)])
+    (region,) = regions(everywhere, of_rank(1))
+    assert region.area_m2 == math.inf
+    assert region.kind == "area"
+
+
+odd = st.integers(-50, 700).map(lambda number: 2 * number + 1)
+places = st.tuples(odd.map(lambda number: Rational(number, 194)), odd.map(lambda number: Rational(number, 178)))
+"""Points that are on no line and no circle of small whole numbers."""
+
+
+def windings(planar: PlanarSet, x: float, y: float) -> int:
+    turned = 0.0
+    for loop in outline_loops(planar):
+        angles = [math.atan2(at_y - y, at_x - x) for at_x, at_y in (*loop, loop[0])]
+        turned += sum(math.remainder(after - before, math.tau) for before, after in pairwise(angles))
+    return round(turned / math.tau)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(planar_sets, min_size=1, max_size=4), st.integers(1, 2), st.lists(places, min_size=2, max_size=6))
+def test_outlines_run_once_round_every_area(
+    sets: list[PlanarSet], least: int, somewhere: list[tuple[Rational, Rational]]
+) -> None:
+    whole = arrange(sets).select(of_rank(least))
+    corners = [corner for loop in outline_loops(whole) for corner in loop]
+    for x, y in somewhere:
+        if all(math.dist(corner, (x, y)) > 0.3 for corner in corners):  # arcs are drawn as polylines
+            assert windings(whole, float(x), float(y)) == contains(whole, Point(x, y)) - whole.far
+    assert len(list(single_points(whole))) == sum(spot.on for spot in whole.spots)
+    assert all(len(line) >= 2 for line in single_lines(whole))
