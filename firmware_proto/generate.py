@@ -1,7 +1,6 @@
-"""Write the tables of ``PROTOCOL.md`` from the declarations: ``python -m firmware_proto.generate [--check]``.
+"""Write the tables of ``PROTOCOL.md`` and the C of the messages: ``python -m firmware_proto.generate [--check]``.
 
-Text between ``<!-- generated: NAME -->`` and ``<!-- end -->`` belongs to this program. The C header will be
-one more entry of :func:`outputs`.
+In the document, text between ``<!-- generated: NAME -->`` and ``<!-- end -->`` belongs to this program.
 """
 
 import argparse
@@ -14,7 +13,8 @@ import sys
 import textwrap
 from pathlib import Path
 
-from firmware_proto import common, drive, pantilt, rangefinder
+from firmware_proto import c_devices, c_messages, common, drive, framing, pantilt, rangefinder
+from firmware_proto.c_messages import Enum
 from firmware_proto.common import BoardState
 from firmware_proto.rules import RULES
 from firmware_proto.schema import Message, Wire, payload_size, wire_fields
@@ -23,9 +23,16 @@ HERE = Path(__file__).parent
 
 _MODULES = (common, drive, pantilt, rangefinder)
 _TYPES = {"B": ("u8", 1), "H": ("u16", 2), "h": ("i16", 2), "I": ("u32", 4), "i": ("i32", 4), "Q": ("u64", 8)}
+_NUMBERS = {
+    "PROTOCOL_MAJOR": common.PROTOCOL_MAJOR,
+    "PROTOCOL_MINOR": common.PROTOCOL_MINOR,
+    "DICTIONARY_CHUNK": common.DICTIONARY_CHUNK,
+    "TTL_LIMIT_MS": drive.TTL_LIMIT_MS,
+    "PAYLOAD_MAX": framing.PAYLOAD_MAX,
+    "PACKET_MAX": framing.PACKET_MAX,
+}
+"""What the C side needs besides messages and enumerations."""
 _MARKED = re.compile(r"(<!-- generated: (\S+) -->\n).*?(<!-- end -->)", re.DOTALL)
-
-Enum = type[enum.IntEnum] | type[enum.IntFlag]
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -33,18 +40,30 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m firmware_proto.generate", description="Generate from the schema.")
     parser.add_argument("--check", action="store_true", help="write nothing; fail when a file is stale")
     check = parser.parse_args(arguments).check
-    stale = [(path, text) for path, text in outputs().items() if path.read_text(encoding="utf-8") != text]
+    stale = [(path, text) for path, text in outputs().items() if _text(path) != text]
     for path, text in stale:
         print(f"{path.name} {'is stale: run python -m firmware_proto.generate' if check else 'written'}")
         if not check:
+            path.parent.mkdir(exist_ok=True)
             path.write_text(text, encoding="utf-8")
     return int(check and bool(stale))
 
 
 def outputs() -> dict[Path, str]:
     """Return what each generated file should hold."""
-    protocol = HERE / "PROTOCOL.md"
-    return {protocol: filled(protocol.read_text(encoding="utf-8"))}
+    protocol, c = HERE / "PROTOCOL.md", HERE / "c"
+    messages = tuple(message for module in _MODULES for message in module.MESSAGES)
+    return {
+        protocol: filled(_text(protocol)),
+        c / "messages.h": c_messages.header(messages, declared_enums(), _NUMBERS),
+        c / "messages.c": c_messages.source(messages),
+        c / "devices.h": c_devices.header(),
+        c / "devices.c": c_devices.source(_text(c / "devices.c")),
+    }
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8") if path.exists() else ""
 
 
 def filled(document: str) -> str:

@@ -1,0 +1,26 @@
+"""Programs made of the firmware's C, once for all tests; without a compiler these tests are skipped."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.codec import build_codec
+from tests.firmware.compiling import compiler, run
+
+Program = Callable[[bytes], str]
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where programs are made."""
+    if compiler() is None:
+        pytest.skip("there is no C compiler")
+    return tmp_path_factory.mktemp("firmware")
+
+
+@pytest.fixture(scope="session")
+def codec(built: Path) -> Program:
+    """What a C receiver tells of a stream."""
+    program = build_codec(built)
+    return lambda stream: run(program, stream)
