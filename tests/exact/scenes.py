@@ -13,7 +13,7 @@ from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import Polygon, Ring, ring_of, solid
 from robotd.localization.exact.rationals import Rational, rational
 
-CUT_OFF_M = rational(6)
+CUT_OFF_M = rational(4)
 POSE = Point(rational("2.35"), rational("5.55"))
 """Where the robot really is, in the laboratory."""
 _FAR_M = rational(100)

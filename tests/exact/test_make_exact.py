@@ -31,4 +31,4 @@ def test_the_laboratory_has_many_edges_and_readings_of_both_kinds() -> None:
     walls = laboratory()
     beams = readings(walls, POSE, 24)
     assert len(walls.borders) >= 60
-    assert {beam.is_hit for beam in beams} == {True}
+    assert {beam.is_hit for beam in beams} == {True, False}
