@@ -7,10 +7,13 @@ from hypothesis import strategies as st
 
 from robotd.localization.exact.arrangement import Arrangement
 from robotd.localization.exact.locate import contains
+from robotd.localization.exact.minkowski import grown
 from robotd.localization.exact.pairwise import Part, parts, parts_of, vertices
 from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.points import Point
+from robotd.localization.exact.polygons import solid
 from robotd.localization.exact.sweep import arrange
+from tests.unit.localization.exact.maps import polygons, radii
 from tests.unit.localization.exact.shapes import planar_sets, points
 
 
@@ -22,6 +25,19 @@ def same(one: Part, other: Part) -> bool:
 @settings(max_examples=150, deadline=None)
 @given(st.lists(planar_sets, max_size=5))
 def test_it_agrees_with_brute_force(sets: list[PlanarSet]) -> None:
+    expect_brute_force(sets)
+
+
+grown_polygons = st.builds(lambda polygon, eps: grown(solid([polygon]), eps), polygons(), radii)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(grown_polygons, min_size=2, max_size=2))
+def test_it_agrees_with_brute_force_where_there_are_roots_under_roots(sets: list[PlanarSet]) -> None:
+    expect_brute_force(sets)
+
+
+def expect_brute_force(sets: list[PlanarSet]) -> None:
     arrangement = arrange(sets)
     found = [(vertex.point, vertex.mask) for vertex in arrangement.vertices]
     assert found == vertices(sets)
