@@ -11,6 +11,8 @@ from robotd.hardware.devices.board_rangefinder import BoardRangefinder
 from robotd.hardware.devices.dimetix_rangefinder import DimetixRangefinder
 from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.dynamixel_pantilt import DynamixelPanTilt
+from robotd.hardware.devices.lw20_rangefinder import Lw20Rangefinder
+from robotd.hardware.devices.lwnx_rangefinder import LwnxRangefinder
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
@@ -52,6 +54,9 @@ PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {
 RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {
     "board": Dialect(BoardRangefinder, _OURS),
     "dimetix": Dialect(DimetixRangefinder, LineFormat(19_200, 7, "E", 1)),
+    "disto": Dialect(DimetixRangefinder, LineFormat(9_600, 7, "E", 1)),
+    "lw20": Dialect(Lw20Rangefinder, LineFormat(115_200)),
+    "lwnx": Dialect(LwnxRangefinder, LineFormat(115_200)),
     **{model.value: Dialect(TfminiRangefinder, LineFormat(115_200)) for model in Model},
 }
 

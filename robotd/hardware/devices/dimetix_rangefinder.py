@@ -1,8 +1,9 @@
-"""A Dimetix distance sensor: one command, one reading or one numbered error."""
+"""A Dimetix distance sensor, or an older Leica DISTO: one command, one reading or one numbered error."""
 
 import asyncio
 from collections.abc import Callable
-from typing import ClassVar, NoReturn
+from dataclasses import dataclass
+from typing import ClassVar, NoReturn, Self
 
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
@@ -12,7 +13,8 @@ from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
-from robotd.hardware.wire.dimetix import DimetixWire, Distance, ErrorCode, Failed, Message, Ready, Value, command
+from robotd.hardware.wire import dimetix, disto
+from robotd.hardware.wire.dimetix import DimetixWire, Distance, ErrorCode, Failed, Message, Ready, Value
 
 _TENTH_MM_PER_M = 10_000
 _ANSWER_S = 1.0
@@ -28,6 +30,26 @@ _STATUS: dict[int, ReadingStatus] = {
 }
 
 
+@dataclass(frozen=True, slots=True)
+class _Tongue:
+    """What differs between the two dialects."""
+
+    parse: Callable[[str], Message | None]
+    device: int
+    stop: bytes
+    """Clears a measurement under way, where that can be told, and switches the light off."""
+    light_on: bytes
+    measure: bytes
+    temperature: bytes
+
+    @classmethod
+    def of(cls, settings: RangefinderSettings) -> Self:
+        if settings.dialect == "disto":
+            return cls(disto.parsed, 0, *map(disto.command, "pogt"))
+        device = settings.device_id
+        return cls(dimetix.parsed, device, *(dimetix.command(device, letter) for letter in "cogt"))
+
+
 class DimetixRangefinder(BoughtDevice[Message]):
     """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`."""
 
@@ -35,15 +57,15 @@ class DimetixRangefinder(BoughtDevice[Message]):
 
     def __init__(self, settings: RangefinderSettings, wiring: Wiring) -> None:
         """Make the device; its bias is applied to every range."""
-        super().__init__(DimetixWire(), wiring)
-        self.STOP = command(settings.device_id, "c")  # clears a measurement under way and switches the light off
-        self._device = settings.device_id
+        self._tongue = _Tongue.of(settings)
+        super().__init__(DimetixWire(self._tongue.parse), wiring)
+        self.STOP = self._tongue.stop
         self._bias_m = settings.range_bias_m
         self._shooting = asyncio.Lock()
 
     async def switch_laser(self, *, on: bool) -> None:
         """Switch the light; same errors as :meth:`arm`."""
-        await self._order("o" if on else "c")
+        await self._order(self._tongue.light_on if on else self.STOP)
 
     async def shoot(self, *, timeout_s: float) -> Shot:
         """Take one reading; TransportError if the device is absent, any other failure is a result."""
@@ -51,7 +73,7 @@ class DimetixRangefinder(BoughtDevice[Message]):
         patience_s = min(timeout_s, _MEASURES_S)
         async with self._shooting:
             try:
-                heard = await dialogue.ask(command(self._device, "g"), self._is(Distance), timeout_s=patience_s)
+                heard = await dialogue.ask(self._tongue.measure, self._is(Distance), timeout_s=patience_s)
             except LinkTimeout:
                 dialogue.post(self.STOP)
                 return Shot(now_ns(), ReadingStatus.TIMEOUT, None, None)
@@ -74,18 +96,17 @@ class DimetixRangefinder(BoughtDevice[Message]):
         while True:
             await asyncio.sleep(_IDLE_POLL_S)
             await dialogue.ask(
-                command(self._device, "t"), self._is(Value), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
+                self._tongue.temperature, self._is(Value), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
             )
 
     def _report(self, heard: Heard[Message]) -> None:
         """Let go by what comes late: the answer to a measurement that was given up."""
 
-    async def _order(self, letter: str) -> None:
-        data = command(self._device, letter)
+    async def _order(self, data: bytes) -> None:
         answer = (await self._talk().ask(data, self._is(Ready), timeout_s=_ANSWER_S, tries=_TRIES)).message
         if isinstance(answer, Failed):
             raise DeviceError(self.name, f"error_{answer.code}", f"refused {data!r}")
 
     def _is(self, kind: type) -> Callable[[Message], bool]:
         """Return a test for answers of this device: the one expected, or an error."""
-        return lambda message: message.device == self._device and isinstance(message, (kind, Failed))
+        return lambda message: message.device == self._tongue.device and isinstance(message, (kind, Failed))

@@ -11,7 +11,10 @@ from robotd.sim.boards.pantilt import PanTiltBoard
 from robotd.sim.boards.rangefinder import RangefinderBoard
 from robotd.sim.emulators import rflex, rwi
 from robotd.sim.emulators.dimetix import DimetixEmulator
+from robotd.sim.emulators.disto import DistoEmulator
 from robotd.sim.emulators.dynamixel import DynamixelEmulator
+from robotd.sim.emulators.lw20 import Lw20Emulator
+from robotd.sim.emulators.lwnx import LwnxEmulator
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.ptu import PtuEmulator
 from robotd.sim.emulators.rflex import RflexEmulator
@@ -53,6 +56,9 @@ RANGEFINDERS: Mapping[str, Emulator[LaserPlant]] = {
     "board": Emulator(lambda plant, boot_id: RangefinderBoard(plant, boot_id=boot_id)),
     "tfmini-s": Emulator(lambda plant, _: Paced(TfminiEmulator(plant), LineFormat(115_200))),
     "dimetix": Emulator(lambda plant, _: Paced(DimetixEmulator(plant), LineFormat(19_200, 7, "E", 1))),
+    "disto": Emulator(lambda plant, _: Paced(DistoEmulator(plant), LineFormat(9_600, 7, "E", 1))),
+    "lw20": Emulator(lambda plant, _: Paced(Lw20Emulator(plant), LineFormat(115_200))),
+    "lwnx": Emulator(lambda plant, _: Paced(LwnxEmulator(plant), LineFormat(115_200))),
 }
 OWN = "board"
 

@@ -23,7 +23,8 @@ class DimetixEmulator:
         self._plant = plant
         self._device = device
         self._typed = bytearray()
-        self._said = bytearray(f"g{device}?\r\n".encode())
+        self._said = bytearray()
+        self._say("?")
         self._pending: tuple[int, ShotAnswer] | None = None
         self._points = False
 
@@ -42,7 +43,7 @@ class DimetixEmulator:
             answer, self._pending = self._pending[1], None
             self._plant.switch(on=self._points)
             if answer.status is ShotStatus.OK:
-                self._say(f"g{round(answer.range_m * 10_000):+09d}")
+                self._say_distance(round(answer.range_m * 10_000))
             else:
                 self._say(f"@E{_ERRORS.get(answer.status, 203)}")
 
@@ -59,12 +60,14 @@ class DimetixEmulator:
 
     def _obey(self, typed: bytes, now_us: int) -> None:
         found = _COMMAND.fullmatch(typed)
-        if found is None or int(found[1]) != self._device:
-            if typed and found is None:
+        if found is None:
+            if typed:
                 self._say("@E203")
-            return
+        elif int(found[1]) == self._device:
+            self._do(found[2].decode(), now_us)
+
+    def _do(self, letters: str, now_us: int) -> None:
         self._pending = None
-        letters = found[2].decode()
         if letters == "g":
             self._plant.switch(on=True)
             answer = self._plant.shoot(now_us)
@@ -77,6 +80,9 @@ class DimetixEmulator:
             self._say(f"t{_TEMPERATURE_TENTH_C:+09d}")
         else:
             self._say("@E203")
+
+    def _say_distance(self, tenth_mm: int) -> None:
+        self._say(f"g{tenth_mm:+09d}")
 
     def _say(self, text: str) -> None:
         self._said += f"g{self._device}{text}\r\n".encode()

@@ -1,0 +1,86 @@
+"""The ASCII dialect of the LightWare LW20 and SF20: bytes and messages.
+
+A command is a type (``?`` reads, ``#`` sets), a channel and a parameter, perhaps a comma and a value, CR LF; the answer
+is the name in lower case, perhaps a comma and an index, a colon and the value, in at most 32 characters. The very
+first message after power-up is never answered, for it only tells the device that it is not on its other bus: so
+something that nobody needs goes first (maker's guide to the serial line).
+"""
+
+import re
+from dataclasses import dataclass
+
+LINE_MAX_BYTES = 64
+"""Answers have at most 32; what is longer without a line end is noise."""
+_ANSWER = re.compile(r"([a-z]{1,8})(?:,(\d{1,3}))?:(.+)")
+_NUMBER = re.compile(r"[+-]?\d{1,9}(?:\.\d{1,9})?")
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """``ldf,0:23.67``, ``lf:0`` or ``p:LW20,1.0,1.0``."""
+
+    name: str
+    index: int | None
+    text: str
+
+    @property
+    def number(self) -> float | None:
+        """The value, if it is one number."""
+        return float(self.text) if _NUMBER.fullmatch(self.text) else None
+
+
+def command(text: str) -> bytes:
+    """Return a command with its line end."""
+    return f"{text}\r\n".encode("ascii")
+
+
+WAKE = command("www")
+"""Never answered after power-up, and unknown later."""
+PRODUCT = command("?P")
+FIRST_RETURN_RAW = command("?LDF,1")
+"""Index 0 is a median of the last few, 2 the closest and 3 the furthest of them."""
+LASER_OFF, LASER_ON = command("#LF,0"), command("#LF,1")
+FASTEST = command("#LM,1")
+"""388 measurements a second."""
+
+
+class Lw20Wire:
+    """The receiving half."""
+
+    def __init__(self) -> None:
+        self._line = bytearray()
+        self._counters = {"replies": 0, "bytes_skipped": 0}
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """What was counted since start."""
+        return self._counters
+
+    def feed(self, data: bytes) -> list[Answer]:
+        """Take bytes as they come; return the messages that are whole now."""
+        messages: list[Answer] = []
+        for byte in data:
+            if byte in b"\r\n":
+                messages += self._finish()
+                continue
+            self._line.append(byte)
+            if len(self._line) > LINE_MAX_BYTES:
+                self._skip()
+        return messages
+
+    def reset(self) -> None:
+        """Forget the beginning of a line."""
+        self._line.clear()
+
+    def _finish(self) -> list[Answer]:
+        found = _ANSWER.fullmatch(self._line.decode("ascii", errors="replace").strip())
+        if found is None:
+            self._skip()
+            return []
+        self._line.clear()
+        self._counters["replies"] += 1
+        return [Answer(found[1], None if found[2] is None else int(found[2]), found[3])]
+
+    def _skip(self) -> None:
+        self._counters["bytes_skipped"] += len(self._line)
+        self._line.clear()

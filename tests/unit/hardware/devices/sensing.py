@@ -1,0 +1,78 @@
+"""A bought rangefinder on a line in memory, with an emulated one at the other end, in virtual time."""
+
+import asyncio
+import contextlib
+import random
+from collections.abc import AsyncIterator
+from dataclasses import dataclass, field
+
+from firmware_proto.rangefinder import ShotStatus
+from robotd.hardware.devices.catalogue import rangefinder
+from robotd.hardware.devices.device import DeviceStatus, LinkState
+from robotd.hardware.devices.rangefinder import Rangefinder
+from robotd.hardware.devices.settings import RangefinderSettings
+from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.link.tap import NoTap
+from robotd.hardware.transport.memory import MemoryEnd, memory_pair
+from robotd.hardware.transport.transport import Transport
+from robotd.sim.board_clock import BoardClock
+from robotd.sim.emulators.catalogue import RANGEFINDERS
+from robotd.sim.host import serve
+from robotd.sim.plant import ShotAnswer
+
+
+class Wall:
+    """A wall somewhere."""
+
+    def __init__(self) -> None:
+        self.answer = ShotAnswer(ShotStatus.OK, 1.2345, 60_000, 4_000)
+        self.lit = False
+        self.shots = 0
+
+    def switch(self, *, on: bool) -> None:
+        self.lit = on
+
+    def shoot(self, at_us: int) -> ShotAnswer:
+        self.shots += 1
+        return self.answer
+
+
+@dataclass
+class Sensor:
+    device: Rangefinder
+    wall: Wall
+    lines: list[MemoryEnd] = field(default_factory=list)
+
+    def is_lit(self) -> bool:
+        return self.wall.lit
+
+    async def until(self, link: LinkState) -> DeviceStatus:
+        with self.device.status_changes.subscribe() as changes:
+            while self.device.status.link is not link:
+                await changes.get()
+        return self.device.status
+
+
+@contextlib.asynccontextmanager
+async def sensor(dialect: str, *, greeted: bool = True) -> AsyncIterator[Sensor]:
+    wall = Wall()
+    ends: asyncio.Queue[Transport] = asyncio.Queue()
+
+    async def connect() -> Transport:
+        near, far = memory_pair()
+        it.lines.append(near)
+        ends.put_nowait(far)
+        return near
+
+    settings = RangefinderSettings(dialect=dialect, range_bias_m=0.01)
+    it = Sensor(rangefinder(settings, Wiring(connect, NoTap(), random.Random(0))), wall)
+    tasks = [
+        asyncio.create_task(serve(RANGEFINDERS[dialect].power_up(wall, 0), BoardClock(), ends)),
+        asyncio.create_task(it.device.run()),
+    ]
+    if greeted:
+        await it.until(LinkState.READY)
+    yield it
+    for task in tasks:
+        task.cancel()
+    await asyncio.wait(tasks)
