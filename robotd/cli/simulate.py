@@ -5,6 +5,7 @@ import asyncio
 import contextlib
 from collections.abc import Callable
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 
 from robotd.cli.emulated import config_text, recorded_config_text, write_config
@@ -14,6 +15,9 @@ from robotd.core.log import configure
 from robotd.recording.reader import read
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
 from robotd.sim.fake_robot import FakeRobot
+from robotd.sim.faults.catalogue import FAULTS, meaning_of
+from robotd.sim.faults.laid import run_faulty_on_ptys
+from robotd.sim.faults.plan import PlannedFault, parse_plan
 from robotd.sim.load import load_robot
 from robotd.sim.recorded_building import OdometrySource
 from robotd.sim.robot import EmulatedRobot
@@ -29,7 +33,8 @@ def _sim(arguments: argparse.Namespace) -> int:
     def write(file: Path, ports: dict[str, str]) -> None:
         write_config(file, config_text(ports, dialects.settings()))
 
-    _serve(arguments, robot, write, truth_path=arguments.truth)
+    plan = parse_plan(arguments.faults) if arguments.faults else ()
+    _serve(arguments, robot, write, truth_path=arguments.truth, plan=plan)
     return OK
 
 
@@ -56,6 +61,7 @@ def _serve(
     robot: EmulatedRobot,
     write: Callable[[Path, dict[str, str]], None],
     truth_path: Path | None = None,
+    plan: tuple[PlannedFault, ...] = (),
 ) -> None:
     """Serve the boards on pseudo-terminals until Ctrl-C, which is how it ends."""
     links = None if arguments.links is None else arguments.links.absolute()
@@ -65,8 +71,9 @@ def _serve(
             write(arguments.write_config, ports)
         _announce(ports, arguments.write_config, as_json=arguments.json)
 
+    run = partial(run_faulty_on_ptys, plan=plan, seed=arguments.seed, say=err().print) if plan else run_on_ptys
     with contextlib.suppress(KeyboardInterrupt):
-        asyncio.run(run_on_ptys(robot, announce=announce, directory=links, truth_path=truth_path))
+        asyncio.run(run(robot, announce=announce, directory=links, truth_path=truth_path))
 
 
 def _announce(ports: dict[str, str], file: Path | None, *, as_json: bool) -> None:
@@ -90,6 +97,16 @@ def _sim_arguments(parser: argparse.ArgumentParser) -> None:
         )
     parser.add_argument("--truth", type=Path, metavar="FILE", help="note in it where the robot really came to rest")
     _lines_arguments(parser)
+    words = "\n".join(f"  {word:10}{meaning_of(word)}" for word in FAULTS)
+    faults = parser.add_argument_group(
+        "faults",
+        "DEVICE:FAULT@START[+DURATION],... lets a fault begin on the cable of\n"
+        "drive, pantilt, rangefinder or all of them, START seconds after the\n"
+        f"simulation did; without a DURATION it lasts to the end. The faults:\n\n{words}",
+    )
+    faults.add_argument(
+        "--faults", metavar="PLAN", help="what goes wrong: drive:unplug@20s+3s,rangefinder:garbage@35s+2s"
+    )
 
 
 def _fake_arguments(parser: argparse.ArgumentParser) -> None:

@@ -12,6 +12,8 @@ from robotd.hardware.link.tap import Direction
 from robotd.recording.comparison import Difference
 from robotd.recording.entries import BytesEntry, RecordingHeader
 from robotd.recording.recorder import Recorder
+from robotd.sim.faults.catalogue import FAULTS, meaning_of
+from robotd.sim.faults.plan import PlannedFault
 from robotd.sim.load import load_robot
 from robotd.sim.world import load_world
 
@@ -27,6 +29,7 @@ def interrupted(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("robotd.cli.simulate.run_on_ptys", run)
+    monkeypatch.setattr("robotd.cli.simulate.run_faulty_on_ptys", run)
     return asked
 
 
@@ -79,6 +82,23 @@ def test_a_recorded_building_is_made_of_a_log(
     assert json.loads(capsys.readouterr().out) == {"file": str(out), "stops": 3, "kept_out": 3}
     robot = load_robot(str(out))
     assert len(robot.probes_m) == 3
+
+
+def test_what_goes_wrong_is_planned_on_the_command_line(
+    interrupted: list[dict[str, Any]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["sim", "office", "--faults", "drive:unplug@20s+3s", "--seed", "5"]) == 0
+    assert interrupted[0]["plan"] == (PlannedFault("drive", "unplug", 20.0, 3.0),)
+    assert interrupted[0]["seed"] == 5
+    assert main(["sim", "office", "--faults", "drive:unplug@soon"]) == 78
+    assert capsys.readouterr().err.splitlines()[-1].startswith("expected DEVICE:FAULT@START[+DURATION], as in drive")
+
+
+def test_the_help_says_what_every_fault_does(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["sim", "--help"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert all(f"{word} {meaning_of(word)}" in said for word in FAULTS)
 
 
 def test_a_log_that_there_is_not_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,0 +1,1 @@
+"""Everything that a serial cable can do, on purpose and repeatably."""
