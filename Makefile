@@ -4,7 +4,7 @@
 # make help   the rest
 PYTHON ?= python3
 BIN := .venv/bin
-KERNELS := setup.py $(wildcard robotd/grid/kernels/c/*)
+COMPILED := setup.py $(wildcard robotd/grid/kernels/c/* firmware_proto/c/*.[ch]) robotd/sim/firmware/build.py
 WORLD ?= laboratory
 SEED ?= 1
 PYTEST_ARGS ?=
@@ -59,19 +59,19 @@ contracts: .venv/.dev  ## Check which room may import which, and that generated 
 check: lint types contracts test  ## Everything that CI checks
 
 clean:  ## Remove the environment and all that was made
-	@rm -rf .venv build demo *.egg-info robotd/grid/kernels/*.so .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
+	@rm -rf .venv build demo *.egg-info robotd/grid/kernels/*.so robotd/sim/firmware/*.so .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
 
 .venv/bin/python:
 	@echo "robotd: making a Python environment in .venv (once)"
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "robotd needs Python 3.11 or newer: make PYTHON=python3.11 ...")'
 	@$(PYTHON) -m venv .venv
 
-.venv/.demo: pyproject.toml $(KERNELS) | .venv/bin/python
+.venv/.demo: pyproject.toml $(COMPILED) | .venv/bin/python
 	@echo "robotd: installing robotd and what it needs (once, under a minute)"
 	@test -e .venv/.dev || $(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[plots]'
 	@touch $@
 
-.venv/.dev: pyproject.toml $(KERNELS) | .venv/bin/python
+.venv/.dev: pyproject.toml $(COMPILED) | .venv/bin/python
 	@echo "robotd: installing robotd and its development tools (once, about a minute)"
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[dev]'
 	@touch $@

@@ -13,7 +13,7 @@ from robotd.cli.terminal import err, out, print_json, print_pairs
 from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.log import configure
 from robotd.recording.reader import read
-from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
+from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects, Firmware
 from robotd.sim.fake_robot import FakeRobot
 from robotd.sim.faults.catalogue import FAULTS, meaning_of
 from robotd.sim.faults.laid import run_faulty_on_ptys
@@ -26,7 +26,8 @@ from robotd.sim.world import world_names
 
 
 def _sim(arguments: argparse.Namespace) -> int:
-    dialects = Dialects(arguments.drive, arguments.pantilt, arguments.rangefinder)
+    boards = Firmware(arguments.boards)
+    dialects = Dialects(arguments.drive, arguments.pantilt, arguments.rangefinder, boards)
     odometry = OdometrySource(arguments.odometry)
     robot = load_robot(arguments.world, arguments.seed, odometry=odometry, dialects=dialects)
 
@@ -95,6 +96,12 @@ def _sim_arguments(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(
             f"--{device}", choices=list(table), default=OWN, help=f"what the {device} speaks (default: {OWN})"
         )
+    parser.add_argument(
+        "--boards",
+        choices=[firmware.value for firmware in Firmware],
+        default=Firmware.PYTHON.value,
+        help="what our own boards run: Python that does the same, or the firmware in C (default: python)",
+    )
     parser.add_argument("--truth", type=Path, metavar="FILE", help="note in it where the robot really came to rest")
     _lines_arguments(parser)
     words = "\n".join(f"  {word:10}{meaning_of(word)}" for word in FAULTS)

@@ -9,7 +9,7 @@ from robotd.core.pose import Pose2
 from robotd.sim.board_clock import BoardClock, DriveOnClock, HeadOnClock, LaserOnClock
 from robotd.sim.boards.board import Board
 from robotd.sim.body import Body, BodySettings
-from robotd.sim.emulators.catalogue import DRIVES, PANTILTS, RANGEFINDERS, Dialects
+from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.head import Head, HeadSettings
 from robotd.sim.host import HostedBoard
 from robotd.sim.laser import Laser, LaserSettings
@@ -121,11 +121,9 @@ def board_by_device(
     """Put a board on top of each plant, each with a clock and a boot id of its own."""
     boot_ids = {device: stream(seed, f"{device}/boot {boot}").getrandbits(32) for device in DEVICES}
     return {
-        "drive": DRIVES[dialects.drive].power_up(DriveOnClock(drive, clocks["drive"]), boot_ids["drive"]),
-        "pantilt": PANTILTS[dialects.pantilt].power_up(HeadOnClock(head, clocks["pantilt"]), boot_ids["pantilt"]),
-        "rangefinder": RANGEFINDERS[dialects.rangefinder].power_up(
-            LaserOnClock(laser, clocks["rangefinder"]), boot_ids["rangefinder"]
-        ),
+        "drive": dialects.drive_on(DriveOnClock(drive, clocks["drive"]), boot_ids["drive"]),
+        "pantilt": dialects.pantilt_on(HeadOnClock(head, clocks["pantilt"]), boot_ids["pantilt"]),
+        "rangefinder": dialects.rangefinder_on(LaserOnClock(laser, clocks["rangefinder"]), boot_ids["rangefinder"]),
     }
 
 

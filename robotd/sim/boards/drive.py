@@ -62,21 +62,22 @@ class DriveBoard(Board):
 
     def _velocity(self) -> tuple[int, int]:
         speed_mps, turn_radps = self._plant.velocity
-        return _signed16(speed_mps * 1000), _signed16(turn_radps * 1000)
+        return signed16(speed_mps * 1000), signed16(turn_radps * 1000)
 
     def _reports(self) -> tuple[Message, ...]:
         translate, rotate = self._plant.counts
-        odometry = OdometryReport(self._now_us, _signed32(translate), _signed32(rotate), *self._velocity())
+        odometry = OdometryReport(self._now_us, signed32(translate), signed32(rotate), *self._velocity())
         return odometry, self._drive_report()
 
     def _drive_report(self) -> DriveReport:
         return DriveReport(self._now_us, min(max(self._plant.battery_mv, 0), 0xFFFF), self._bumpers & 0xFFFF)
 
 
-def _signed16(value: float) -> int:
+def signed16(value: float) -> int:
+    """Round to what a register of 16 bits can hold."""
     return max(-(1 << 15), min(round(value), (1 << 15) - 1))
 
 
-def _signed32(count: int) -> int:
-    """Wrap a count as the board's register does."""
+def signed32(count: int) -> int:
+    """Wrap a count as a register of 32 bits does."""
     return (count + (1 << 31)) % (1 << 32) - (1 << 31)

@@ -9,7 +9,8 @@ from firmware_proto.schema import Message
 from robotd.sim.boards.board import Board, Handler, Outcome
 from robotd.sim.plant import HeadPlant
 
-_PER_RAD = 10_000
+PER_RAD = 10_000
+"""Counts of an angle on the wire."""
 
 
 class PanTiltBoard(Board):
@@ -17,13 +18,7 @@ class PanTiltBoard(Board):
 
     def __init__(self, plant: HeadPlant, *, boot_id: int) -> None:
         self._plant = plant
-        pan_min, pan_max, tilt_min, tilt_max = plant.limits_rad
-        self._limits = Limits(
-            math.ceil(pan_min * _PER_RAD),
-            math.floor(pan_max * _PER_RAD),
-            math.ceil(tilt_min * _PER_RAD),
-            math.floor(tilt_max * _PER_RAD),
-        )
+        self._limits = limits_of(plant)
         self._motion = Motion.HALTED
         self._aim_seq = 0
         handlers: dict[type[Message], Handler] = {
@@ -36,7 +31,7 @@ class PanTiltBoard(Board):
     def _aim(self, aim: Aim, seq: int) -> Outcome:
         if not aim.ttl_ms or not self._reaches(aim):
             return Result.BAD_VALUE
-        self._plant.aim(aim.pan_tenth_mrad / _PER_RAD, aim.tilt_tenth_mrad / _PER_RAD)
+        self._plant.aim(aim.pan_tenth_mrad / PER_RAD, aim.tilt_tenth_mrad / PER_RAD)
         self._motion = Motion.TURNING
         self._aim_seq = seq
         self._grant(aim.ttl_ms)
@@ -50,7 +45,7 @@ class PanTiltBoard(Board):
         )
 
     def _read_aim(self, read: ReadAim, seq: int) -> Outcome:
-        return AimReadback(self._now_us, *self._angles(), self._aim_seq, self._motion)
+        return AimReadback(self._now_us, *tenth_mrad(self._plant), self._aim_seq, self._motion)
 
     def _read_limits(self, read: ReadLimits, seq: int) -> Outcome:
         return self._limits
@@ -83,8 +78,21 @@ class PanTiltBoard(Board):
         return (self._aim_report(),)
 
     def _aim_report(self) -> AimReport:
-        return AimReport(self._now_us, *self._angles(), self._aim_seq, self._motion)
+        return AimReport(self._now_us, *tenth_mrad(self._plant), self._aim_seq, self._motion)
 
-    def _angles(self) -> tuple[int, int]:
-        pan_rad, tilt_rad = self._plant.angles_rad
-        return round(pan_rad * _PER_RAD), round(tilt_rad * _PER_RAD)
+
+def limits_of(plant: HeadPlant) -> Limits:
+    """Return a head's limits, rounded inwards."""
+    pan_min, pan_max, tilt_min, tilt_max = plant.limits_rad
+    return Limits(
+        math.ceil(pan_min * PER_RAD),
+        math.floor(pan_max * PER_RAD),
+        math.ceil(tilt_min * PER_RAD),
+        math.floor(tilt_max * PER_RAD),
+    )
+
+
+def tenth_mrad(plant: HeadPlant) -> tuple[int, int]:
+    """Return where a head points."""
+    pan_rad, tilt_rad = plant.angles_rad
+    return round(pan_rad * PER_RAD), round(tilt_rad * PER_RAD)

@@ -1,5 +1,6 @@
 """Which emulator speaks which dialect. A new one is one row here, and in the catalogue of the adapters."""
 
+import enum
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
@@ -22,6 +23,11 @@ from robotd.sim.emulators.rwi import RwiEmulator
 from robotd.sim.emulators.tfmini import TfminiEmulator
 from robotd.sim.host import HostedBoard
 from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant
+
+try:
+    from robotd.sim.firmware import boards as firmware
+except ImportError:  # no C compiler when robotd was installed
+    firmware = None  # type: ignore[assignment]  # there is none
 
 Plant = TypeVar("Plant")
 
@@ -63,20 +69,45 @@ RANGEFINDERS: Mapping[str, Emulator[LaserPlant]] = {
 OWN = "board"
 
 
+class Firmware(enum.StrEnum):
+    """What our own boards run."""
+
+    PYTHON = "python"
+    C = "c"
+
+
 @dataclass(frozen=True, slots=True)
 class Dialects:
-    """What each emulated device speaks."""
+    """What each emulated device speaks, and which firmware those run that speak our own protocol."""
 
     drive: str = OWN
     pantilt: str = OWN
     rangefinder: str = OWN
+    boards: Firmware = Firmware.PYTHON
 
     def __post_init__(self) -> None:
-        """Refuse a dialect that no emulator speaks."""
+        """Refuse a dialect that no emulator speaks, and firmware that is not there."""
         for device, table in (("drive", DRIVES), ("pantilt", PANTILTS), ("rangefinder", RANGEFINDERS)):
             dialect = getattr(self, device)
             if dialect not in table:
                 raise ConfigError(f"no emulated {device} speaks {dialect!r}; known: {', '.join(table)}", key=device)
+        if self.boards is Firmware.C and firmware is None:
+            raise ConfigError("there was no C compiler for the firmware when robotd was installed", key="boards")
+
+    def drive_on(self, plant: DrivePlant, boot_id: int) -> HostedBoard:
+        """Put a board on a base."""
+        in_c = self.boards is Firmware.C and self.drive == OWN
+        return (firmware.drive_board if in_c else DRIVES[self.drive].power_up)(plant, boot_id)
+
+    def pantilt_on(self, plant: HeadPlant, boot_id: int) -> HostedBoard:
+        """Put a board on a head."""
+        in_c = self.boards is Firmware.C and self.pantilt == OWN
+        return (firmware.pantilt_board if in_c else PANTILTS[self.pantilt].power_up)(plant, boot_id)
+
+    def rangefinder_on(self, plant: LaserPlant, boot_id: int) -> HostedBoard:
+        """Put a board on a rangefinder."""
+        in_c = self.boards is Firmware.C and self.rangefinder == OWN
+        return (firmware.rangefinder_board if in_c else RANGEFINDERS[self.rangefinder].power_up)(plant, boot_id)
 
     def settings(self) -> dict[str, dict[str, object]]:
         """Return what the daemon's configuration must say of each device; what is the default is left out."""

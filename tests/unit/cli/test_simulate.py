@@ -1,6 +1,7 @@
 """Robots that are not there: where their devices are, and a configuration to run a daemon on them."""
 
 import json
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +58,18 @@ def test_the_configuration_it_writes_is_one_to_run_on(
     assert (config.drive.port, config.rangefinder.port) == ("/dev/pts/7", "/dev/pts/9")
     assert config.server.runtime_dir == str(tmp_path / "lab" / "run")
     assert config.maps.dir == str(tmp_path / "lab" / "maps")
+
+
+def test_boards_may_run_the_firmware_in_c(
+    interrupted: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if find_spec("robotd.sim.firmware._native") is not None:
+        assert main(["sim", "office", "--boards", "c", "--pantilt", "ptu"]) == 0
+        boards = [type(board).__name__ for board in interrupted[0]["robot"].boards.values()]
+        assert boards == ["FirmwareBoard", "Paced", "FirmwareBoard"]
+    monkeypatch.setattr("robotd.sim.emulators.catalogue.firmware", None)
+    assert main(["sim", "office", "--boards", "c"]) == 78
+    assert "there was no C compiler for the firmware when robotd was installed" in capsys.readouterr().err
 
 
 def test_a_configuration_that_cannot_be_written_is_a_failure(
