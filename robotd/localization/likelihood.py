@@ -11,13 +11,13 @@ Around the obstacle that stops it, a reading scatters by the error of the sensor
 made the map knew its poses to a few centimetres and to a fraction of a degree.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid import kernels
-from robotd.grid.kernels.endings import IN_UNKNOWN
+from robotd.grid.kernels.chances import IN_UNKNOWN, ChanceMap
 from robotd.grid.spec import GridSpec
 from robotd.grid.tables import NO_INFORMATION, SURELY_OCCUPIED
 from robotd.localization.elsewhere import elsewhere
@@ -32,6 +32,8 @@ class Sight:
     """``float64[m, 8]``, as :func:`~robotd.grid.kernels.weigh_beams` takes them."""
     elsewhere: NDArray[np.float64]
     """``float64[m]``, how likely each is somewhere in any building."""
+    seen_so_far: NDArray[np.float64]
+    """``float64[m]``, the chance that nothing that is not on the map stands before its end."""
     unseen: NDArray[np.float64]
     """``float64[m]``, how much likelier that is than a plain rate of obstacles: readings that end where nobody has
     looked are as readings are anywhere."""
@@ -44,14 +46,21 @@ class Likelihood:
     """The likelihood of readings on one map."""
 
     spec: GridSpec
-    cells: NDArray[np.uint8]
-    """``uint8[rows, cols]``, the evidence of the occupancy grid."""
     model: ErrorModel
+    chances: ChanceMap
+    vacant_m2: float
+    """How much room the robot has."""
 
-    @property
-    def vacant_m2(self) -> float:
-        """How much room the robot has."""
-        return float(np.count_nonzero(self.cells < NO_INFORMATION)) * self.spec.resolution_m**2
+    @classmethod
+    def of(cls, spec: GridSpec, cells: NDArray[np.uint8], model: ErrorModel) -> "Likelihood":
+        """Prepare a map: ``uint8[rows, cols]``, the evidence of the occupancy grid, which is copied. O(cells)."""
+        own = np.array(cells, np.uint8, order="C")
+        vacant_m2 = float(np.count_nonzero(own < NO_INFORMATION)) * spec.resolution_m**2
+        return cls(spec, model, ChanceMap(own, skips_of(own), _stops(model, spec.resolution_m)), vacant_m2)
+
+    def with_model(self, model: ErrorModel) -> "Likelihood":
+        """Return the likelihood on the same map for other errors."""
+        return replace(self, model=model, chances=replace(self.chances, stops=_stops(model, self.spec.resolution_m)))
 
     def sight(self, readings: NDArray[np.float64]) -> Sight:
         """Return readings ``float64[m, 5]`` (:func:`~robotd.grid.readings.numbers_of`), by bearing, drawn."""
@@ -62,7 +71,8 @@ class Likelihood:
         x, y, *lengths = np.stack((x_m, y_m, range_m, along_m, across_m)) / resolution_m
         beams = np.stack((x, y, np.cos(bearing_rad), np.sin(bearing_rad), *lengths, is_miss), axis=1)
         is_hit, likely = is_miss == 0.0, elsewhere(readings, model)
-        return Sight(beams, likely, likely / model.anywhere(range_m, is_hit), model.meaningless(is_hit))
+        free = np.exp(-model.unmapped_per_m * range_m)
+        return Sight(beams, likely, free, likely / model.anywhere(range_m, is_hit), model.meaningless(is_hit))
 
     def densities(self, sight: Sight, poses: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return how likely readings are by where they end, ``float64[n, m, 3]``.
@@ -75,8 +85,9 @@ class Likelihood:
             poses: ``float64[n, 3]``: x, y [m] and heading [rad], map frame.
         """
         at = np.column_stack((self.spec.positions_at(poses[:, :2]), np.cos(poses[:, 2]), np.sin(poses[:, 2])))
-        densities = kernels.weigh_beams(self.cells, self._stops(), at, sight.beams)
+        densities = kernels.weigh_beams(self.chances, at, sight.beams)
         densities[:, sight.beams[:, 7] == 0.0] /= self.spec.resolution_m
+        densities *= sight.seen_so_far[:, None]
         densities[:, :, IN_UNKNOWN] *= sight.unseen
         return densities
 
@@ -92,9 +103,20 @@ class Likelihood:
         logs: NDArray[np.float64] = np.log((1.0 - self.model.outlier_share) * densities + sight.meaningless)
         return logs
 
-    def _stops(self) -> NDArray[np.float64]:
-        """Return the chance of each cell value to stop a beam, for the kernel."""
-        model, values = self.model, np.arange(SURELY_OCCUPIED + 1)
-        obstacle = np.minimum(values / SURELY_OCCUPIED, 1.0 - model.removed_share)
-        rate = np.where(values == NO_INFORMATION, model.unknown_per_m, model.unmapped_per_m)
-        return np.where(values > NO_INFORMATION, obstacle, -np.expm1(-rate * self.spec.resolution_m))
+
+def skips_of(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return how far it is to the next cell of another kind, ``uint8[rows, cols]``, as :class:`ChanceMap` has it."""
+    unknown, vacant, none = cells == NO_INFORMATION, cells < NO_INFORMATION, np.zeros(cells.shape, np.bool_)
+    over_vacant = kernels.skip_codes(~vacant, none)[1:-1, 1:-1]
+    over_unknown = kernels.skip_codes(~unknown, none)[1:-1, 1:-1]
+    return np.where(vacant, over_vacant, np.where(unknown, over_unknown, 1)).astype(np.uint8)
+
+
+def _stops(model: ErrorModel, resolution_m: float) -> NDArray[np.float64]:
+    """Return what each cell value means to a beam, ``float64[256]``, for the kernel."""
+    values = np.arange(SURELY_OCCUPIED + 1)
+    obstacle = np.minimum(values / SURELY_OCCUPIED, 1.0 - model.removed_share)
+    rate = np.where(
+        values == NO_INFORMATION, -np.expm1(-model.unknown_per_m * resolution_m), model.unmapped_per_m * resolution_m
+    )
+    return np.where(values > NO_INFORMATION, obstacle, rate)

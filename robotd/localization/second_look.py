@@ -26,6 +26,9 @@ from robotd.localization.patches import thinned, weights
 from robotd.localization.shortlist import near, shortlist
 
 _GLANCE_STEPS = ((0.06, 0.026), (0.03, 0.012))
+_GLANCE_MOVES = 2
+_CLIMBERS_PER_PLACE = 3
+"""So many of the starts, for each place that will be looked at, are moved uphill: several may end on the same hill."""
 _LOOK_STEPS = ((0.04, 0.012), (0.02, 0.006), (0.01, 0.003))
 _ASIDE_STEPS = ((0.02, 0.006),)
 _ASIDE_MOVES = 4
@@ -130,15 +133,15 @@ def _glance(
     """Return the starts, moved uphill, that are worth a closer look: with half the sharpness and fewer readings."""
     if len(starts) == 0 or len(readings) == 0:
         return starts
-    blurred = replace(likelihood, model=_blurred(likelihood.model))
+    blurred = likelihood.with_model(_blurred(likelihood.model))
     kept = thinned(readings, settings.patch_m, settings.glance_readings_max)
     hill = Hill(blurred, blurred.sight(kept), weights(kept, settings.patch_m))
-    found, scores = climb(hill, starts, _GLANCE_STEPS)
-    hopeless = float(scores.max()) - _HOPELESS_SHARE * hill.weights.sum() - _HOPELESS
+    highest = np.argsort(-hill.heights(starts), kind="stable")[: _CLIMBERS_PER_PLACE * settings.places_max]
+    found, scores = climb(hill, starts[highest], _GLANCE_STEPS, _GLANCE_MOVES)
+    hopeless = float(scores.max()) - _HOPELESS_SHARE * float(hill.weights.sum()) - _HOPELESS
     found, scores = found[scores >= hopeless], scores[scores >= hopeless]
-    best: NDArray[np.float64] = found[
-        shortlist(found, _in_order(scores), _TOGETHER_M, _TOGETHER_RAD, settings.places_max)
-    ]
+    chosen = shortlist(found, _in_order(scores), _TOGETHER_M, _TOGETHER_RAD, settings.places_max)
+    best: NDArray[np.float64] = found[chosen]
     return best
 
 

@@ -14,12 +14,12 @@ SPEC = GridSpec(0.05, 0.0, -1.0, (40, 200))
 HERE = np.array([[1.0, 0.0, 0.0]])
 
 
-def hallway() -> Likelihood:
+def hallway(wall: int = 250) -> Likelihood:
     """Vacant up to a wall at 5 m, vacant behind it up to 7 m, and unknown from there on."""
     cells = np.full(SPEC.shape, 128, np.uint8)
     cells[:, :140] = 20
-    cells[:, 100] = 250
-    return Likelihood(SPEC, cells, ErrorModel())
+    cells[:, 100] = wall
+    return Likelihood.of(SPEC, cells, ErrorModel())
 
 
 def logs(likelihood: Likelihood, *ranges_m: float, misses: bool = False, bearing_rad: float = 0.0) -> list[float]:
@@ -46,11 +46,7 @@ def test_something_new_before_the_wall_is_likelier_than_to_see_through_it() -> N
 
 
 def test_the_surer_the_wall_the_less_likely_a_beam_goes_through() -> None:
-    passed = []
-    for value in (129, 160, 200, 250):
-        likelihood = hallway()
-        likelihood.cells[:, 100] = value
-        passed.append(logs(likelihood, 5.5, misses=True)[0])
+    passed = [logs(hallway(value), 5.5, misses=True)[0] for value in (129, 160, 200, 250)]
     assert passed == sorted(passed, reverse=True)
 
 
@@ -61,7 +57,7 @@ def test_a_miss_is_likely_where_nothing_stands_and_not_behind_a_wall() -> None:
 
 
 def test_where_nobody_has_looked_readings_are_as_anywhere() -> None:
-    unknown = Likelihood(SPEC, np.full(SPEC.shape, 128, np.uint8), ErrorModel())
+    unknown = Likelihood.of(SPEC, np.full(SPEC.shape, 128, np.uint8), ErrorModel(unmapped_per_m=1e-4))
     readings = np.array([[0.3 * k, 0.5 * k, 0.0, 0.0, float(k % 4 == 0)] for k in range(1, 12)])
     sight = unknown.sight(readings)
     assert np.allclose(unknown.logs(sight, HERE)[0], unknown.elsewhere_logs(sight), atol=0.03)

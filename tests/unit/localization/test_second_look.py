@@ -68,13 +68,13 @@ def mapped(world: World) -> Likelihood:
     for x_m, y_m in world.stops_m:
         pose = Pose2(x_m, y_m, rng.uniform(-3, 3))
         grid.insert(Sweep(0, IDENTITY, tuple(scan(world.boxes, pose, rng, 0.015, 0.0))), pose)
-    return Likelihood(spec, grid.cells, ErrorModel())
+    return Likelihood.of(spec, grid.cells, ErrorModel())
 
 
 def everywhere(likelihood: Likelihood, truth: Pose2, others: tuple[Pose2, ...] = ()) -> NDArray[np.float64]:
     """Return where to start: all over the map, and near to some poses."""
     rng = np.random.default_rng(3)
-    rows, cols = np.nonzero(likelihood.cells < 128)
+    rows, cols = np.nonzero(likelihood.chances.cells < 128)
     picked = rng.integers(0, len(rows), 40)
     at = [likelihood.spec.centre_of(int(rows[i]), int(cols[i])) for i in picked]
     poses = [(*place, rng.uniform(-3, 3)) for place in at]

@@ -1,8 +1,4 @@
-"""Beams on a map of chances, in NumPy: the twin of the kernel in C.
-
-A cell does not stop a beam or let it through: it stops it with a chance that its evidence gives. A beam that is
-followed through the map is thinned cell by cell, and what is taken from it in a cell is the chance that it ends there.
-"""
+"""Beams on a map of chances, in NumPy: the twin of the kernel in C."""
 
 import math
 from dataclasses import dataclass
@@ -10,36 +6,34 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels.endings import AS_MAPPED, IN_UNKNOWN, IN_VACANT
+from robotd.grid.kernels.chances import AS_MAPPED, IN_UNKNOWN, IN_VACANT, UNKNOWN, ChanceMap
+from robotd.grid.kernels.fitting import SKIP_MAX
 
-_UNKNOWN = 128
 _ASIDE = (-math.sqrt(2.0), 0.0, math.sqrt(2.0))
 _SHARE = (0.25, 0.5, 0.25)
 _PEAK = 0.36755259694786135
 _FAR = 8.0
-_STOPPED = 1e-4
+_STOPPED = 0.02
 
 
-def weigh_beams(
-    cells: NDArray[np.uint8], stops: NDArray[np.float64], poses: NDArray[np.float64], beams: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def weigh_beams(the_map: ChanceMap, poses: NDArray[np.float64], beams: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return how likely each beam ended where it did, seen from each pose.
 
-    A beam is sampled as in :mod:`robotd.grid.ray`. Where it meets an obstacle is blurred by Student's t with three
-    degrees of freedom along the beam, and across it by three parallel beams, which have its variance.
-    Obstacle cells side by side are one obstacle, as likely to be there as the likeliest of them.
+    A beam that is followed through the map is thinned cell by cell, and what is taken from it in a cell is the chance
+    that it ends there; only what is not on the map takes nothing from it. It is sampled as in :mod:`robotd.grid.ray`.
+    Where it meets an obstacle is blurred by Student's t with three degrees of freedom along the beam, and across it by
+    three parallel rays, which have its variance. Obstacle cells side by side are one obstacle, as likely to be there
+    as the likeliest of them.
 
     Args:
-        cells: the map, ``uint8[rows, cols]``; what lies outside was never seen.
-        stops: ``float64[256]``: the chance that a cell of this value stops a beam, for obstacles, below 1; for others
-            the chance for each cell's length of way.
+        the_map: the map.
         poses: ``float64[n, 4]``: row, column, cosine and sine of the heading, in cells.
         beams: ``float64[m, 8]``: x and y of the start in the robot frame, cosine and sine of the bearing, the range,
             its standard deviation along and across the beam, all in cells, and 1 for a miss, 0 for a hit.
 
     Returns:
         ``float64[n, m, 3]``: for a hit the density [1 / cell] of its range by where it ends; for a miss the
-        chance that nothing stops it, and two zeros. O(n m length).
+        chance that nothing stops it, and two zeros. O(n m obstacles and unknown cells on the way).
     """
     chances = np.zeros((len(poses), len(beams), 3))
     row, col, cos, sin = (poses[:, i, None] for i in range(4))
@@ -48,60 +42,77 @@ def weigh_beams(
     row, col = row + (sin * x + cos * y), col + (cos * x - sin * y)
     for aside, share in zip(_ASIDE, _SHARE, strict=True):
         off = aside * across
-        rays = _Rays(row + off * col_way, col - off * row_way, row_way, col_way, share)
-        _follow(cells, stops, beams, rays, chances)
+        starts = np.stack((row + off * col_way, col - off * row_way), axis=-1)
+        rays = _Rays.of(starts.reshape(-1, 2), np.stack((row_way, col_way), axis=-1).reshape(-1, 2), beams)
+        _follow(the_map, rays, share, chances.reshape(-1, 3))
     return chances
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rays:
-    """One ray for each beam from every pose: where it starts, where to, and the beam's share that it stands for."""
+    """One ray for each beam from every pose, ``[n m]``."""
 
-    row: NDArray[np.float64]
-    col: NDArray[np.float64]
-    row_way: NDArray[np.float64]
-    col_way: NDArray[np.float64]
-    share: float
+    starts: NDArray[np.float64]
+    steps: NDArray[np.float64]
+    pace: NDArray[np.float64]
+    ranges: NDArray[np.float64]
+    spread: NDArray[np.float64]
+    ends: NDArray[np.float64]
+    last: NDArray[np.intp]
+    is_miss: NDArray[np.bool_]
 
-
-def _follow(
-    cells: NDArray[np.uint8],
-    stops: NDArray[np.float64],
-    beams: NDArray[np.float64],
-    rays: _Rays,
-    chances: NDArray[np.float64],
-) -> None:
-    """Follow rays sample after sample, and add what they say to the chances."""
-    longest = np.maximum(np.abs(rays.row_way), np.abs(rays.col_way))
-    pace = 1.0 / longest
-    is_miss = np.broadcast_to(beams[:, 7] > 0.0, pace.shape)
-    ranges, spread = beams[:, 4], beams[:, 5]
-    end = np.where(is_miss, ranges, ranges + _FAR * spread)
-    left, through = np.ones(pace.shape), np.ones(pace.shape)
-    for k in range(int((end / pace).max(initial=0.0)) + 2):
-        under_way = (k * pace <= end) & (left >= _STOPPED)
-        if not under_way.any():
-            break
-        value = _values(cells, rays.row + k * (rays.row_way / longest), rays.col + k * (rays.col_way / longest))
-        is_wall, off = value > _UNKNOWN, ranges - k * pace
-        passes = 1.0 - stops[value]
-        newly = is_wall & (passes < through)
-        stop = np.where(is_wall, np.where(newly, 1.0 - passes / through, 0.0), stops[value] * pace)
-        through = np.where(newly & under_way, passes, np.where((value < _UNKNOWN) & under_way, 1.0, through))
-        counts = under_way & ~is_miss
-        ends_here = counts & ~is_wall & (np.abs(off) <= 0.5 * pace)
-        chances[..., AS_MAPPED] += np.where(counts & is_wall, rays.share * left * stop * _density(off, spread), 0.0)
-        chances[..., IN_UNKNOWN] += np.where(ends_here & (value == _UNKNOWN), rays.share * left * stop / pace, 0.0)
-        chances[..., IN_VACANT] += np.where(ends_here & (value < _UNKNOWN), rays.share * left * stop / pace, 0.0)
-        left = np.where(under_way, left * (1.0 - stop), left)
-    chances[..., AS_MAPPED] += np.where(is_miss, rays.share * left, 0.0)
+    @classmethod
+    def of(cls, starts: NDArray[np.float64], ways: NDArray[np.float64], beams: NDArray[np.float64]) -> "_Rays":
+        longest = np.abs(ways).max(axis=1, initial=0.0)
+        every = np.tile(beams, (len(ways) // max(len(beams), 1), 1))
+        pace, ranges, spread, is_miss = 1.0 / longest, every[:, 4], every[:, 5], every[:, 7] > 0.0
+        ends = np.where(is_miss, ranges, ranges + _FAR * spread)
+        last = (ranges / pace + 0.5).astype(np.intp)
+        return cls(starts, ways / longest[:, None], pace, ranges, spread, ends, last, is_miss)
 
 
-def _values(cells: NDArray[np.uint8], row: NDArray[np.float64], col: NDArray[np.float64]) -> NDArray[np.uint8]:
-    rows, cols = cells.shape
-    inside = (row >= 0.0) & (col >= 0.0) & (row < rows) & (col < cols)
-    row, col = np.where(inside, row, 0.0), np.where(inside, col, 0.0)
-    return np.where(inside, cells[row.astype(np.intp), col.astype(np.intp)], _UNKNOWN).astype(np.uint8)
+def _follow(the_map: ChanceMap, rays: _Rays, share: float, chances: NDArray[np.float64]) -> None:
+    """Follow all rays, each from obstacle to obstacle, and add what they say to the chances."""
+    sample, left, through = np.zeros(len(rays.pace), np.intp), np.ones(len(rays.pace)), np.ones(len(rays.pace))
+    passing = 1.0 - the_map.stops[UNKNOWN] * rays.pace[:, None]
+    faded = np.cumprod(np.concatenate((np.ones_like(passing), np.tile(passing, SKIP_MAX)), axis=1), axis=1)
+    under_way = np.arange(len(rays.pace))
+    while under_way.size:
+        under_way = under_way[(sample * rays.pace <= rays.ends)[under_way] & (left[under_way] >= _STOPPED)]
+        value, skip = _look_up(the_map, rays, under_way, sample)
+        stop = the_map.stops[value]
+        to_end = rays.last[under_way] - sample[under_way]
+        ends_here = ~rays.is_miss[under_way] & (to_end >= 0) & (to_end < skip)
+        vacant, unseen = value < UNKNOWN, value == UNKNOWN
+        here = under_way[vacant & ends_here]
+        chances[here, IN_VACANT] += share * left[here] * stop[vacant & ends_here]
+        through[under_way[vacant]] = 1.0
+        here = under_way[unseen & ends_here]
+        reached = left[here] * faded[here, to_end[unseen & ends_here]]
+        chances[here, IN_UNKNOWN] += share * reached * stop[unseen & ends_here]
+        left[under_way[unseen]] *= faded[under_way[unseen], skip[unseen]]
+        is_new = ~vacant & ~unseen & (1.0 - stop < through[under_way])
+        met, passes = under_way[is_new], 1.0 - stop[is_new]
+        newly = 1.0 - passes / through[met]
+        through[met] = passes
+        off = rays.ranges[met] - sample[met] * rays.pace[met]
+        density = share * left[met] * newly * _density(off, rays.spread[met])
+        chances[met, AS_MAPPED] += np.where(rays.is_miss[met], 0.0, density)
+        left[met] *= 1.0 - newly
+        sample[under_way] += skip
+    chances[:, AS_MAPPED] += np.where(rays.is_miss, share * left, 0.0)
+
+
+def _look_up(
+    the_map: ChanceMap, rays: _Rays, which: NDArray[np.intp], sample: NDArray[np.intp]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the values of the cells in which rays are, and how far they may skip."""
+    at = rays.starts[which] + sample[which, None] * rays.steps[which]
+    rows, cols = the_map.cells.shape
+    inside = (at[:, 0] >= 0.0) & (at[:, 1] >= 0.0) & (at[:, 0] < rows) & (at[:, 1] < cols)
+    row, col = np.where(inside[:, None], at, 0.0).astype(np.intp).T
+    value = np.where(inside, the_map.cells[row, col], UNKNOWN)
+    return value.astype(np.intp), np.where(inside, the_map.skips[row, col], 1).astype(np.intp)
 
 
 def _density(off: NDArray[np.float64], spread: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -9,12 +9,17 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from robotd.grid.kernels import twins, weigh_beams
-from robotd.grid.kernels.endings import AS_MAPPED, IN_UNKNOWN, IN_VACANT
+from robotd.grid.kernels.chances import AS_MAPPED, IN_UNKNOWN, IN_VACANT, ChanceMap
+from robotd.localization.likelihood import skips_of
 
 VALUES = np.array([0, 60, 127, 128, 129, 190, 255], np.uint8)
 STOPS = np.where(np.arange(256) > 128, np.minimum(np.arange(256) / 255, 0.9), 0.001)
 STOPS[128] = 0.015
 SHAPE = (23, 31)
+
+
+def chance_map(cells: NDArray[np.uint8], stops: NDArray[np.float64] = STOPS) -> ChanceMap:
+    return ChanceMap(cells, skips_of(cells), stops)
 
 
 def random_case(seed: int) -> tuple[NDArray[np.uint8], NDArray[np.float64], NDArray[np.float64]]:
@@ -32,21 +37,21 @@ def random_case(seed: int) -> tuple[NDArray[np.uint8], NDArray[np.float64], NDAr
 def test_the_same_chances_to_the_last_bit(seed: int) -> None:
     native = pytest.importorskip("robotd.grid.kernels.native")
     cells, poses, beams = random_case(seed)
-    one = native.weigh_beams(cells, STOPS, poses, beams)
-    assert np.array_equal(one, twins.weigh_beams(cells, STOPS, poses, beams))
+    one = native.weigh_beams(chance_map(cells), poses, beams)
+    assert np.array_equal(one, twins.weigh_beams(chance_map(cells), poses, beams))
     assert (one >= 0.0).all()
 
 
 def test_nothing_is_weighed_without_poses_or_beams() -> None:
     cells, poses, beams = random_case(0)
     for kernels in (twins, importlib.import_module("robotd.grid.kernels")):
-        assert kernels.weigh_beams(cells, STOPS, poses[:0], beams).shape == (0, 12, 3)
-        assert kernels.weigh_beams(cells, STOPS, poses, beams[:0]).shape == (4, 0, 3)
+        assert kernels.weigh_beams(chance_map(cells), poses[:0], beams).shape == (0, 12, 3)
+        assert kernels.weigh_beams(chance_map(cells), poses, beams[:0]).shape == (4, 0, 3)
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_a_beam_ends_somewhere_once(seed: int) -> None:
-    """The density over all ranges and the chance that nothing stops the beam make one."""
+    """The density over all ranges and the chance that nothing stops the beam make one, without what is not mapped."""
     cells, poses, beams = random_case(seed)
     cells[6:17, 9:22], poses[:, :2] = 0, (11.5, 15.5)
     beams[0, :2] = 0.0
@@ -55,7 +60,7 @@ def test_a_beam_ends_somewhere_once(seed: int) -> None:
     every = np.repeat(beams[:1], len(ranges) + 1, axis=0)
     every[:, 4:] = np.column_stack((np.append(ranges, end), np.full((len(every), 2), (0.5, 0.7)), np.zeros(len(every))))
     every[-1, 7] = 1.0
-    chances = weigh_beams(cells, STOPS, poses, every)
+    chances = weigh_beams(chance_map(cells, np.where(np.arange(256) < 128, 0.0, STOPS)), poses, every)
     whole = chances[:, :-1].sum(axis=(1, 2)) * step + chances[:, -1, AS_MAPPED]
     # Student's tails are cut, and what is nearly stopped is dropped.
     assert ((whole > 0.98) & (whole < 1.001)).all(), whole
@@ -67,13 +72,14 @@ def test_a_range_is_as_likely_as_the_way_there_is_free() -> None:
     pose = np.array([[2.5, 0.5, 1.0, 0.0]])
     ranges = np.array([10.0, 20.0, 30.0, 40.0, 55.0])
     beams = np.column_stack((np.tile([0, 0, 1, 0], (5, 1)), ranges, np.full((5, 2), 0.5), np.zeros(5)))
-    near, first, between, second, beyond = weigh_beams(cells, STOPS, pose, beams)[0]
+    near, first, between, second, beyond = weigh_beams(chance_map(cells), pose, beams)[0]
+    cells[:, 20:41] = 0
+    assert weigh_beams(chance_map(cells), pose, beams)[0, 4].argmax() == IN_UNKNOWN
     assert near.argmax() == IN_VACANT
     assert first.argmax() == AS_MAPPED
     assert between.argmax() == IN_VACANT
-    assert beyond.argmax() == IN_UNKNOWN
     assert first.sum() > 5 * second.sum() > 20 * near.sum() > 40 * between.sum()
-    assert beyond.sum() < 0.02 * STOPS[128]
+    assert beyond.sum() < 1e-4  # two walls are between
 
 
 def test_a_thick_wall_stops_no_more_than_a_thin_one() -> None:
@@ -81,6 +87,7 @@ def test_a_thick_wall_stops_no_more_than_a_thin_one() -> None:
     thin[:, 20], thick[:, 20:24] = 255, 255
     pose = np.array([[2.5, 0.5, 1.0, 0.0]])
     miss = np.array([[0.0, 0.0, 1.0, 0.0, 50.0, 0.5, 0.5, 1.0]])
-    through = weigh_beams(thin, np.where(STOPS < 0.5, 0.0, STOPS), pose, miss)[0, 0, AS_MAPPED]
+    no_rates = np.where(STOPS < 0.5, 0.0, STOPS)
+    through = weigh_beams(chance_map(thin, no_rates), pose, miss)[0, 0, AS_MAPPED]
     assert through == pytest.approx(0.1)
-    assert weigh_beams(thick, np.where(STOPS < 0.5, 0.0, STOPS), pose, miss)[0, 0, AS_MAPPED] == pytest.approx(0.1)
+    assert weigh_beams(chance_map(thick, no_rates), pose, miss)[0, 0, AS_MAPPED] == pytest.approx(0.1)
