@@ -42,6 +42,9 @@ conservative: .venv/.dev  ## Look 10 000 times for a true pose that the conserva
 exact: .venv/.dev  ## The exact algorithm measured, and the paper's figures of it: writes docs/exact (minutes)
 	@$(BIN)/python -m tests.exact.run
 
+faults: .venv/.dev  ## Everything that can go wrong on a serial line, in every state of the daemon: a table (two minutes)
+	@$(BIN)/python -m tests.faults.run $(if $(ONLY),--only $(ONLY))
+
 lint: .venv/.dev  ## Check format and style
 	@echo "robotd: ruff"
 	@$(BIN)/ruff format --check --quiet .
