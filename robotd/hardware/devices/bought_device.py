@@ -12,6 +12,7 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, DialogueCounters, Heard, Wire
 from robotd.hardware.link.keep_up import keep_up
 from robotd.hardware.link.tapped import TappedLine
+from robotd.hardware.link.together import together
 
 M = TypeVar("M")
 
@@ -69,7 +70,11 @@ class BoughtDevice(ABC, Generic[M]):
         if self._health.faults:
             raise DeviceError(self.NAME, "fault", f"{', '.join(self._health.faults)} latched: clear first")
         dialogue, stops = self._talk(), self._stops
-        await self._enable(dialogue)
+        try:
+            await self._enable(dialogue)
+        except BaseException:
+            self.stop_now()  # whatever came between: half enabled is not armed, and must not stay so
+            raise
         if self._stops != stops:
             self.stop_now()
             raise DeviceError(self.NAME, "stopped", "while arming")
@@ -82,7 +87,10 @@ class BoughtDevice(ABC, Generic[M]):
         """Acknowledge latched faults; leaves the device disarmed; same errors as :meth:`arm`."""
         dialogue = self._talk()
         self.stop_now()
+        stops = self._stops
         await self._acknowledge(dialogue)
+        if self._stops != stops:
+            raise DeviceError(self.NAME, "stopped", "while clearing")  # by somebody, or by a fault that is new
         self._health.change(faults=(), detail="")
 
     def stop_now(self) -> None:
@@ -118,7 +126,7 @@ class BoughtDevice(ABC, Generic[M]):
                 self._counters.sessions += 1
                 self._dialogue = dialogue
                 self._health.change(link=LinkState.READY, armed=False, detail="")
-                await self._attend(dialogue)
+                await together(self._attend(dialogue), dialogue.until_lost())
             finally:
                 self._dialogue = None
                 dialogue.stop_now(self.STOP)  # whatever ended it, nothing must go on moving

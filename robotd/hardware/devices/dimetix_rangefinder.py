@@ -22,6 +22,8 @@ _TRIES = 3
 _IDLE_POLL_S = 2.0
 _MEASURES_S = 5.0
 """A dark target may take so long; then the measurement is cleared."""
+_LINE_END = b"\r\n"
+"""Comes before a stop, to end a command that was cut in half."""
 _STATUS: dict[int, ReadingStatus] = {
     ErrorCode.BAD_SIGNAL: ReadingStatus.WEAK,
     ErrorCode.TOO_WEAK: ReadingStatus.WEAK,
@@ -36,7 +38,7 @@ class _Tongue:
 
     parse: Callable[[str], Message | None]
     device: int
-    stop: bytes
+    off: bytes
     """Clears a measurement under way, where that can be told, and switches the light off."""
     light_on: bytes
     measure: bytes
@@ -59,13 +61,13 @@ class DimetixRangefinder(BoughtDevice[Message]):
         """Make the device; its bias is applied to every range."""
         self._tongue = _Tongue.of(settings)
         super().__init__(DimetixWire(self._tongue.parse), wiring)
-        self.STOP = self._tongue.stop
+        self.STOP = _LINE_END + self._tongue.off
         self._bias_m = settings.range_bias_m
         self._shooting = asyncio.Lock()
 
     async def switch_laser(self, *, on: bool) -> None:
         """Switch the light; same errors as :meth:`arm`."""
-        await self._order(self._tongue.light_on if on else self.STOP)
+        await self._order(self._tongue.light_on if on else self._tongue.off)
 
     async def shoot(self, *, timeout_s: float) -> Shot:
         """Take one reading; TransportError if the device is absent, any other failure is a result."""
@@ -75,7 +77,7 @@ class DimetixRangefinder(BoughtDevice[Message]):
             try:
                 heard = await dialogue.ask(self._tongue.measure, self._is(Distance), timeout_s=patience_s)
             except LinkTimeout:
-                dialogue.post(self.STOP)
+                dialogue.post(self._tongue.off)
                 return Shot(now_ns(), ReadingStatus.TIMEOUT, None, None)
             except DeviceError:
                 return Shot(now_ns(), ReadingStatus.DEVICE_ERROR, None, None)
@@ -87,7 +89,8 @@ class DimetixRangefinder(BoughtDevice[Message]):
         return Shot(heard.time_ns, _STATUS.get(code, ReadingStatus.DEVICE_ERROR), None, None)
 
     async def _greet(self, dialogue: Dialogue[Message]) -> None:
-        clear = await dialogue.ask(self.STOP, self._is(Ready), timeout_s=_ANSWER_S, tries=_TRIES)
+        dialogue.post(self.STOP)
+        clear = await dialogue.ask(self._tongue.off, self._is(Ready), timeout_s=_ANSWER_S, tries=_TRIES)
         if isinstance(clear.message, Failed):
             raise RemoteProtocolError(f"{self.name}: refused to clear: error {clear.message.code}")
 

@@ -16,7 +16,8 @@ _RAW = 1
 class Lw20Rangefinder(LightwareRangefinder[Answer]):
     """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`."""
 
-    STOP = lw20.LASER_OFF
+    STOP = b"\r\n" + lw20.LASER_OFF
+    """The line end ends a command that was cut in half."""
 
     def __init__(self, settings: RangefinderSettings, wiring: Wiring) -> None:
         """Make the device; its bias is applied to every range."""
@@ -34,7 +35,7 @@ class Lw20Rangefinder(LightwareRangefinder[Answer]):
         return heard.message.text
 
     async def _fire(self, dialogue: Dialogue[Answer], *, on: bool) -> None:
-        await dialogue.ask(lw20.LASER_ON if on else self.STOP, _named("lf"), timeout_s=ANSWER_S, tries=TRIES)
+        await dialogue.ask(lw20.LASER_ON if on else lw20.LASER_OFF, _named("lf"), timeout_s=ANSWER_S, tries=TRIES)
 
     async def _newest(self, dialogue: Dialogue[Answer], timeout_s: float) -> Shot:
         heard = await dialogue.ask(lw20.FIRST_RETURN_RAW, _named("ldf", _RAW), timeout_s=timeout_s, tries=TRIES)

@@ -122,7 +122,9 @@ class PtuPanTilt(BoughtDevice[Message]):
             return
         self._is_resetting = True
         try:
-            await dialogue.ask(command("R"), is_a(Done, Refused), timeout_s=RESET_S)
+            answer = (await dialogue.ask(command("R"), is_a(Done, Refused), timeout_s=RESET_S)).message
+            if isinstance(answer, Refused):
+                raise DeviceError(self.name, "refused", f"to reset: {answer.text}")
         finally:
             self._is_resetting = False
 

@@ -47,6 +47,8 @@ _TORQUES = (30_000, 35_000)
 _US_PER_MS = 1000
 _SPACING_S = 0.01
 """What comes sooner after another order may be dropped."""
+_QUIET_S = 0.005
+"""It reports on and on, so it is never quiet for long; and an answer that comes late is a voltage all the same."""
 _SILENCE_S = 1.0
 _ANSWER_S = 0.5
 _TRIES = 3
@@ -69,7 +71,7 @@ class RflexDrive(BoughtDevice[Message]):
 
     def __init__(self, settings: DriveSettings, wiring: Wiring) -> None:
         """Make the device; its ``odom`` frame begins where the base is first seen."""
-        super().__init__(RflexWire(), wiring)
+        super().__init__(RflexWire(), wiring, quiet_s=_QUIET_S)
         self._settings = settings
         self._scales = settings.calibration
         self._odometer = Odometer(settings.calibration)
@@ -108,6 +110,7 @@ class RflexDrive(BoughtDevice[Message]):
         log.warning("%s: %s", self.NAME, NO_WATCHDOG)
         period_us = self._settings.telemetry_ms * _US_PER_MS
         self._translated = None
+        self._wanted = STANDSTILL
         for order in (*_HALT, report_every(period_us), switches_every(period_us), DEFAULTS, BRAKE_RELEASE):
             dialogue.post(order)
             await asyncio.sleep(_SPACING_S)
@@ -120,6 +123,7 @@ class RflexDrive(BoughtDevice[Message]):
         """Send the newest set-point, one axis after the other no quicker than is heard, and end it in its time."""
         sent = STANDSTILL
         while True:
+            self._new_set_point.clear()
             if self._is_halting:
                 self._is_halting, sent = False, STANDSTILL
                 for order in reversed(_HALT):
@@ -129,9 +133,10 @@ class RflexDrive(BoughtDevice[Message]):
             if self._may_move and (twist != sent or not twist.is_zero):
                 sent = twist
                 for axis, counts_per_s in enumerate(self._counts(twist)):
+                    if self._is_halting or not self._may_move:
+                        break  # stopped since the axis before: nothing may follow a stop
                     dialogue.post(self._run(axis, counts_per_s))
                     await asyncio.sleep(_SPACING_S)
-            self._new_set_point.clear()
             if twist.is_zero:
                 await self._new_set_point.wait()
                 continue

@@ -95,7 +95,12 @@ class TfminiRangefinder(BoughtDevice[Message]):
             await dialogue.ask(VERSION, _is_version, timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True)
 
     def _report(self, heard: Heard[Message]) -> None:
-        """Let go by echoes, and readings that nobody asked for."""
+        """Let go by echoes and late answers; a reading that nobody asked for may be a stream, which is ended again.
+
+        It streams if it was switched off and on, or missed what it was told when greeted.
+        """
+        if isinstance(heard.message, Data) and self._dialogue is not None:
+            self._dialogue.post(RATE_0)
 
 
 def _is_data(message: Message) -> bool:

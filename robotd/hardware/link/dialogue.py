@@ -3,7 +3,8 @@
 Makers' protocols have no sequence numbers, so a reply is known by what it looks like and by when it comes. Hence the
 rules: one request is under way at a time; what does not settle it is handed on as a report; and once a request was
 given up (no answer in time, or a stop came between) its answer may still come, so the next request waits until the line
-has been quiet for a moment. What happens is caused by messages; timers only bound silence.
+has been quiet for a moment. So does the first one: a line just opened may bring answers to what somebody asked before.
+What happens is caused by messages; timers only bound silence.
 """
 
 import asyncio
@@ -82,7 +83,8 @@ class Dialogue(Generic[M]):
             wire: the dialect.
             counters: shared by all conversations with this device.
             on_report: told every message that settles no request, in order.
-            quiet_s: how long the line must have been quiet before a request follows one that was given up.
+            quiet_s: how long the line must have been quiet before the first request, and one that follows a stop or a
+                request that was given up.
         """
         self._device = device
         self._line = line
@@ -92,7 +94,7 @@ class Dialogue(Generic[M]):
         self._quiet_s = quiet_s
         self._one_at_a_time = asyncio.Lock()
         self._request: _Request[M] | None = None
-        self._is_unsettled = False
+        self._is_unsettled = True
         self._stops = 0
         self._heard_ns = now_ns()
         self._lost: RobotdError | None = None
@@ -193,7 +195,9 @@ class Dialogue(Generic[M]):
             TransportError: the line is lost.
             LinkTimeout: nothing came for ``silence_s``.
         """
-        while True:
+        if silence_s is None:
+            await asyncio.wait({self._reader})
+        while not self._reader.done():
             self._bytes_came.clear()
             try:
                 async with asyncio.timeout(silence_s):
@@ -204,22 +208,21 @@ class Dialogue(Generic[M]):
                         came.cancel()
             except TimeoutError:
                 raise self._lose(LinkTimeout(f"{self._device}: silent for {silence_s:g} s")) from None
-            if self._reader.done():
-                self._reader.result()
+        self._reader.result()
+        raise AssertionError("the reader only ends with an error")
 
     async def _settle_down(self) -> None:
         """Let late answers to what was given up go by, as reports; what never falls silent is not waited for."""
         for _ in range(_PIECES_MAX):
             if not self._is_unsettled or self._lost is not None:
                 return
-            self._is_unsettled = False
+            stops = self._stops
             self._bytes_came.clear()
             try:
                 async with asyncio.timeout(self._quiet_s):
                     await self._bytes_came.wait()
             except TimeoutError:
-                return
-            self._is_unsettled = True
+                self._is_unsettled = self._stops != stops
         self._is_unsettled = False
 
     async def _read(self) -> NoReturn:
@@ -232,6 +235,9 @@ class Dialogue(Generic[M]):
                     self._take(Heard(message, chunk.time_ns))
         except RobotdError as error:
             raise self._lose(error) from error.__cause__
+        except Exception as error:
+            self._lose(TransportError(f"{self._device}: cannot go on reading: {error!r}"))
+            raise  # a mistake of ours: nobody may wait for answers that are not read any more
 
     def _take(self, heard: Heard[M]) -> None:
         request = self._request

@@ -9,10 +9,11 @@ async def together(*duties: Coroutine[Any, Any, NoReturn]) -> NoReturn:
     """Do all of them until one ends with an error; end the others, and raise that error."""
     tasks = [asyncio.ensure_future(duty) for duty in duties]
     try:
-        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        ended = next(task for task in tasks if task.done())  # in their order: the same every time
     finally:
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-    done.pop().result()
+    ended.result()
     raise AssertionError("a duty only ends with an error")

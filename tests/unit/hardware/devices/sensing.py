@@ -17,7 +17,7 @@ from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
 from robotd.sim.board_clock import BoardClock
 from robotd.sim.emulators.catalogue import RANGEFINDERS
-from robotd.sim.host import serve
+from robotd.sim.host import HostedBoard, serve
 from robotd.sim.plant import ShotAnswer
 
 
@@ -41,6 +41,7 @@ class Wall:
 class Sensor:
     device: Rangefinder
     wall: Wall
+    board: HostedBoard
     lines: list[MemoryEnd] = field(default_factory=list)
 
     def is_lit(self) -> bool:
@@ -65,9 +66,10 @@ async def sensor(dialect: str, *, greeted: bool = True) -> AsyncIterator[Sensor]
         return near
 
     settings = RangefinderSettings(dialect=dialect, range_bias_m=0.01)
-    it = Sensor(rangefinder(settings, Wiring(connect, NoTap(), random.Random(0))), wall)
+    board = RANGEFINDERS[dialect].power_up(wall, 0)
+    it = Sensor(rangefinder(settings, Wiring(connect, NoTap(), random.Random(0))), wall, board)
     tasks = [
-        asyncio.create_task(serve(RANGEFINDERS[dialect].power_up(wall, 0), BoardClock(), ends)),
+        asyncio.create_task(serve(board, BoardClock(), ends)),
         asyncio.create_task(it.device.run()),
     ]
     if greeted:

@@ -143,3 +143,14 @@ async def test_a_unit_that_falls_silent_is_lost() -> None:
         u.emulator.take_output = bytes  # type: ignore[method-assign]  # says nothing any more
         await until(u.device, LinkState.ABSENT)
         assert "no answer" in u.device.status.detail
+
+
+async def test_a_refused_reset_clears_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with unit() as u:
+        u.emulator.hit_limit("P")
+        await asyncio.sleep(1.5)
+        assert u.device.status.faults == ("lost_steps",)
+        monkeypatch.setattr(u.emulator, "_reset", lambda: u.emulator._refuse("R", "Illegal Command Entered"))
+        with pytest.raises(DeviceError, match="refused: to reset"):
+            await u.device.clear_faults()
+        assert u.device.status.faults == ("lost_steps",)

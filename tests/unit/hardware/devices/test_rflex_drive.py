@@ -17,6 +17,7 @@ from robotd.hardware.devices.settings import DriveSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Transport
+from robotd.hardware.wire.rflex import OtherFrame, RflexWire
 from robotd.sim.emulators import rflex
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.emulators.paced import Paced
@@ -119,6 +120,42 @@ async def test_a_line_that_comes_back_begins_with_a_stop_and_stays_disarmed() ->
         assert b.device.status.link is LinkState.READY
         assert b.velocity == (0.0, 0.0)
         assert not b.device.status.armed
+        assert b.device.status.faults == ()
+
+
+async def test_nothing_but_halts_follows_a_stop_that_comes_between_the_orders_of_the_two_axes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with base() as b:
+        await asyncio.sleep(0.1)
+        written = bytearray()
+        write = b.lines[-1].write
+
+        def noted(data: bytes) -> None:
+            written.extend(data)
+            write(data)
+
+        monkeypatch.setattr(b.lines[-1], "write", noted)
+        b.device.set_velocity(Twist2(0.3, 0.5), 10.0)
+        await asyncio.sleep(0.005)
+        b.device.stop_now()
+        written.clear()
+        await asyncio.sleep(0.06)
+        assert b.emulator._speeds == [0.0, 0.0]
+        speeds = [frame.data[1:5] for frame in RflexWire().feed(bytes(written)) if isinstance(frame, OtherFrame)]
+        assert speeds
+        assert set(speeds) == {bytes(4)}
+
+
+async def test_a_set_point_that_comes_while_another_is_being_sent_is_not_forgotten() -> None:
+    async with base() as b:
+        await asyncio.sleep(0.1)
+        b.device.set_velocity(Twist2(0.3, 0.5), 10.0)
+        await asyncio.sleep(0.005)
+        b.device.set_velocity(STANDSTILL, 10.0)
+        await asyncio.sleep(0.1)
+        assert b.emulator._speeds == [0.0, 0.0]
+        assert b.device.status.faults == ()
 
 
 async def test_that_it_has_no_watchdog_is_said_at_every_connection(caplog: pytest.LogCaptureFixture) -> None:

@@ -1,4 +1,4 @@
-"""The adapters of both LightWare dialects, and of the DISTO, against emulated devices."""
+"""The adapters of bought rangefinders against emulated devices."""
 
 import asyncio
 
@@ -10,6 +10,8 @@ from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.device import LinkState
 from robotd.sim.emulators import lw20, lwnx
+from robotd.sim.emulators.paced import Paced
+from robotd.sim.emulators.tfmini import TfminiEmulator
 from robotd.sim.plant import ShotAnswer
 from tests.unit.hardware.devices.sensing import sensor
 
@@ -76,11 +78,14 @@ async def test_another_device_is_not_used(
             await s.device.shoot(timeout_s=1.0)
 
 
-@each_dialect
-async def test_an_unplugged_device_is_absent_and_comes_back(dialect: str) -> None:
+@pytest.mark.parametrize("dialect", [*LIGHTWARE, "disto", "dimetix", "tfmini-s"])
+async def test_an_unplugged_device_is_absent_at_once_and_comes_back(dialect: str) -> None:
     async with sensor(dialect) as s:
-        s.lines[-1].close()
+        await asyncio.sleep(0.7)
+        began_ns = now_ns()
+        s.lines[-1].cut()
         await s.until(LinkState.ABSENT)
+        assert now_ns() - began_ns < 0.01 * NS_PER_S
         await s.until(LinkState.READY)
         await s.device.switch_laser(on=True)
         assert (await s.device.shoot(timeout_s=1.0)).status is ReadingStatus.OK
@@ -95,4 +100,17 @@ async def test_a_stop_while_a_reading_is_awaited_ends_it_as_a_failed_reading(dia
         s.device.stop_now()
         assert (await shooting).status is ReadingStatus.DEVICE_ERROR
         await s.device.switch_laser(on=True)
+        assert (await s.device.shoot(timeout_s=1.0)).status is ReadingStatus.OK
+
+
+async def test_a_stream_that_begins_again_is_ended_again() -> None:
+    async with sensor("tfmini-s") as s:
+        assert isinstance(s.board, Paced)
+        emulator = s.board.device
+        assert isinstance(emulator, TfminiEmulator)
+        await asyncio.sleep(0.1)
+        assert not emulator._streams
+        emulator._streams, emulator._next_us = True, None  # as after a moment without power
+        await asyncio.sleep(3.0)
+        assert not emulator._streams
         assert (await s.device.shoot(timeout_s=1.0)).status is ReadingStatus.OK
