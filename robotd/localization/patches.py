@@ -18,18 +18,23 @@ def heads_of(readings: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack((x_m + range_m * np.cos(bearing_rad), y_m + range_m * np.sin(bearing_rad)), axis=1)
 
 
-def thinned(readings: NDArray[np.float64], gap_m: float, most: int) -> NDArray[np.float64]:
-    """Return those of ``float64[m, 5]`` whose head lies at least a gap from that of the last one kept, by bearing.
+def spread_out(readings: NDArray[np.float64], gap_m: float, most: int) -> NDArray[np.intp]:
+    """Return which of ``float64[m, 5]`` have heads at least a gap from that of the last one chosen, by bearing.
 
     The gap is widened until no more than ``most`` are left. O(m log m) for each gap.
     """
-    by_bearing = readings[np.argsort(readings[:, 0], kind="stable")]
-    heads: list[tuple[float, float]] = [(x_m, y_m) for x_m, y_m in heads_of(by_bearing).tolist()]
+    by_bearing = np.argsort(readings[:, 0], kind="stable")
+    heads: list[tuple[float, float]] = [(x_m, y_m) for x_m, y_m in heads_of(readings[by_bearing]).tolist()]
     kept = _apart(heads, gap_m)
     while len(kept) > most:
         gap_m *= _COARSER
         kept = _apart(heads, gap_m)
     return by_bearing[kept]
+
+
+def thinned(readings: NDArray[np.float64], gap_m: float, most: int) -> NDArray[np.float64]:
+    """Return the readings themselves that :func:`spread_out` chooses, by bearing."""
+    return readings[spread_out(readings, gap_m, most)]
 
 
 def weights(readings: NDArray[np.float64], patch_m: float) -> NDArray[np.float64]:

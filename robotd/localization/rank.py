@@ -147,6 +147,11 @@ class RankGrid:
         poses -= np.array([0, *self._map.origin])
         return poses
 
+    def count_of_rank(self, least: int) -> int:
+        """Return how many poses explain at least so many readings, one or more."""
+        reached = kernels.at_least(self._counters, self._map, max(least, 1))
+        return int(np.unpackbits(reached[reached != 0].view(np.uint8)).sum())
+
     def rank_at(self, poses: NDArray[np.intp]) -> NDArray[np.uint16]:
         """Return the counts ``uint16[n]`` of poses that :meth:`cells_of_rank` returned."""
         heading, row, col = poses.T
