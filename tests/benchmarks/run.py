@@ -16,7 +16,7 @@ import numpy as np
 
 from robotd.grid import kernels
 from tests.benchmarks import workload
-from tests.benchmarks.sections import counting, inserting, refining, searching
+from tests.benchmarks.sections import counting, erring, inserting, refining, searching
 from tests.benchmarks.timing import Timing, copying, yardstick
 
 ROOT = Path(__file__).parents[2]
@@ -25,6 +25,7 @@ SECTIONS: dict[str, Callable[[], Iterable[Timing]]] = {
     "machine": lambda: [copying()],
     "counting": counting.timings,
     "inserting": inserting.timings,
+    "erring": erring.timings,
     "refining": refining.timings,
     "searching": searching.timings,
 }

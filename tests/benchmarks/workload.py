@@ -113,10 +113,12 @@ def map_of(occupied: NDArray[np.bool_]) -> PreparedMap:
 def _reading(occupied: NDArray[np.bool_], pose: Pose2, number: int, random: np.random.Generator) -> RangeReading:
     bearing_rad = math.tau * number / READINGS
     range_m = _free_m(occupied, pose, bearing_rad)
+    met_nothing = range_m >= CUT_OFF_M
     if random.random() < 0.05:
         range_m *= random.uniform(0.2, 1.0)
+        met_nothing = False
     range_m += random.normal() * 0.02
-    if range_m >= CUT_OFF_M:
+    if met_nothing or range_m >= CUT_OFF_M:
         return RangeReading(0, bearing_rad, ReadingStatus.MISS, CUT_OFF_M)
     return RangeReading(0, bearing_rad, ReadingStatus.OK, max(range_m, RESOLUTION_M))
 

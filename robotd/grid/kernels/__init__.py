@@ -34,7 +34,7 @@ except ImportError as error:
     wall_codes, skip_codes, weigh_beams = twins.wall_codes, twins.skip_codes, twins.weigh_beams
     make_planes, renew_planes, search_poses = twins.make_planes, twins.renew_planes, twins.search_poses
     fit_poses, scan_poses, cast_beams = twins.fit_poses, twins.scan_poses, twins.cast_beams
-    count_fans = twins.count_fans
+    count_fans, share_errors = twins.count_fans, twins.share_errors
 else:
     IN_USE = KernelsInUse(
         compiled=True, instructions=native.instruction_set(), reason="compiled when robotd was installed"
@@ -45,7 +45,7 @@ else:
     wall_codes, skip_codes, weigh_beams = native.wall_codes, native.skip_codes, native.weigh_beams
     make_planes, renew_planes, search_poses = native.make_planes, native.renew_planes, native.search_poses
     fit_poses, scan_poses, cast_beams = native.fit_poses, native.scan_poses, native.cast_beams
-    count_fans = native.count_fans
+    count_fans, share_errors = native.count_fans, native.share_errors
 
 __all__ = [
     "IN_USE",
@@ -64,6 +64,7 @@ __all__ = [
     "renew_planes",
     "scan_poses",
     "search_poses",
+    "share_errors",
     "skip_codes",
     "squared_distances",
     "wall_codes",

@@ -187,6 +187,20 @@ class Beams:
     """No batch has more than so many."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Bodies:
+    """Readings drawn on the grid at one heading, each as long as it is."""
+
+    chains: NDArray[np.int32]
+    """``int32[cells, 2]``: ``(row, col)`` offsets from the robot's cell, body after body."""
+    lengths: NDArray[np.uint16]
+    """``uint16[cells]``: the error radius that shortens the body so much that this cell is not in it; 65535 if none
+    does."""
+    readings: NDArray[np.int32]
+    """``int32[readings, 4]``: first cell of the body and end; ``(row, col)`` of the head, ``NO_HEAD`` twice for a
+    miss."""
+
+
 FAR_CELLS = 1 << 28
 """Heads that are farther away count as being so far."""
 NO_HEAD = -(1 << 30)

@@ -18,7 +18,9 @@ from robotd.localization.obstacles import Obstacles
 from robotd.localization.probe import probe_of
 from robotd.localization.smallest_error import (
     errors_for_share,
+    errors_for_share_reading_by_reading,
     errors_needed,
+    errors_over_headings,
     smallest_error,
     smallest_error_by_search,
 )
@@ -87,6 +89,26 @@ def test_one_pass_finds_what_the_search_finds_120_cases(
         return
     assert one_pass.error_cells == search.error_cells
     assert np.array_equal(one_pass.cells, search.cells)
+
+
+@settings(max_examples=60)
+@given(maps, st.lists(near_readings, min_size=1, max_size=6), st.lists(bearings, min_size=1, max_size=3), shares)
+def test_tile_by_tile_is_reading_by_reading_and_the_best_slice_is_the_least_60_cases(
+    binary: BinaryMap, several: list[RangeReading], headings_rad: list[float], share: float
+) -> None:
+    slow = [errors_for_share_reading_by_reading(binary, several, one, share) for one in headings_rad]
+    errors, which = errors_over_headings(binary, several, headings_rad, share, threads=2)
+    assert np.array_equal(errors, np.min(slow, axis=0))
+    assert np.array_equal(which, np.argmin(slow, axis=0))
+
+
+def test_a_large_map_is_solved_in_every_tile() -> None:
+    random = np.random.default_rng(0)
+    occupied = random.random((150, 200)) < 0.01
+    binary = BinaryMap(GridSpec(0.05, 0.0, 0.0, occupied.shape), occupied)
+    sweep = [RangeReading(0, k / 4, ReadingStatus.OK, float(random.uniform(0.2, 5.0))) for k in range(25)]
+    fast = errors_for_share(binary, sweep, 0.3, 0.7, threads=2)
+    assert np.array_equal(fast, errors_for_share_reading_by_reading(binary, sweep, 0.3, 0.7))
 
 
 ROOM = BinaryMap(

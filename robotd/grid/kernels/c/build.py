@@ -5,7 +5,21 @@ from pathlib import Path
 from cffi import FFI
 
 HERE = Path(__file__).parent
-KERNELS = ("cast", "count", "distance", "draw", "fan", "fit", "grow", "insert", "pack", "planes", "search", "weigh")
+KERNELS = (
+    "cast",
+    "count",
+    "distance",
+    "draw",
+    "errors",
+    "fan",
+    "fit",
+    "grow",
+    "insert",
+    "pack",
+    "planes",
+    "search",
+    "weigh",
+)
 """Each a source and the header that declares what Python calls."""
 
 builder = FFI()

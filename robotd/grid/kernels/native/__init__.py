@@ -14,6 +14,7 @@ from robotd.grid.kernels.native.counting import (
 )
 from robotd.grid.kernels.native.distances import squared_distances
 from robotd.grid.kernels.native.drawing import draw_beams
+from robotd.grid.kernels.native.erring import share_errors
 from robotd.grid.kernels.native.fanning import count_fans
 from robotd.grid.kernels.native.fitting import fit_poses, scan_poses
 from robotd.grid.kernels.native.growing import grow_disk
@@ -39,6 +40,7 @@ __all__ = [
     "renew_planes",
     "scan_poses",
     "search_poses",
+    "share_errors",
     "skip_codes",
     "squared_distances",
     "wall_codes",

@@ -23,6 +23,11 @@ def floats(array: NDArray[np.float64]) -> Any:
     return ffi.from_buffer("double[]", array)
 
 
+def shorts(array: NDArray[np.uint16]) -> Any:
+    """Return ``uint16_t *``."""
+    return ffi.from_buffer("uint16_t[]", array)
+
+
 def octets(array: NDArray[np.uint8]) -> Any:
     """Return ``uint8_t *``."""
     return ffi.from_buffer("uint8_t[]", array)

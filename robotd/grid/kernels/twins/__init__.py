@@ -4,6 +4,7 @@ from robotd.grid.kernels.twins.casting import cast_beams, skip_codes, wall_codes
 from robotd.grid.kernels.twins.counting import at_least, count_feasible, greatest
 from robotd.grid.kernels.twins.distances import squared_distances
 from robotd.grid.kernels.twins.drawing import draw_beams
+from robotd.grid.kernels.twins.erring import share_errors
 from robotd.grid.kernels.twins.fanning import count_fans
 from robotd.grid.kernels.twins.fitting import fit_poses, scan_poses
 from robotd.grid.kernels.twins.growing import grow_disk
@@ -27,6 +28,7 @@ __all__ = [
     "renew_planes",
     "scan_poses",
     "search_poses",
+    "share_errors",
     "skip_codes",
     "squared_distances",
     "wall_codes",
