@@ -45,6 +45,10 @@ exact: .venv/.dev  ## The exact algorithm measured, and the paper's figures of i
 faults: .venv/.dev  ## Everything that can go wrong on a serial line, in every state of the daemon: a table (two minutes)
 	@$(BIN)/python -m tests.faults.run $(if $(ONLY),--only $(ONLY))
 
+firmware-test: .venv/.dev  ## The boards' C against Python under the sanitizers: vectors, random frames, random lives
+	@$(BIN)/python -m pytest -q tests/firmware
+	@$(BIN)/python -m tests.firmware.run
+
 lint: .venv/.dev  ## Check format and style
 	@echo "robotd: ruff"
 	@$(BIN)/ruff format --check --quiet .

@@ -48,7 +48,7 @@ def build(program: Path, sources: Sequence[Path], flags: Sequence[str] = ()) -> 
     return program
 
 
-def run(program: Path, data: bytes) -> str:
+def run(program: Path, data: bytes, *arguments: str) -> str:
     """Return what a program makes of its input.
 
     Raises:
@@ -56,7 +56,7 @@ def run(program: Path, data: bytes) -> str:
     """
     # Nothing is ever allocated, and looking for leaks needs rights that not every machine gives.
     environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}
-    done = subprocess.run([str(program)], input=data, check=False, capture_output=True, env=environment)
+    done = subprocess.run([str(program), *arguments], input=data, check=False, capture_output=True, env=environment)
     if done.returncode:
         raise RuntimeError(done.stderr.decode(errors="replace"))
     return done.stdout.decode("ascii")

@@ -7,6 +7,7 @@ import pytest
 
 from tests.firmware.codec import build_codec
 from tests.firmware.compiling import compiler, run
+from tests.firmware.peer import build_peer
 
 Program = Callable[[bytes], str]
 
@@ -24,3 +25,9 @@ def codec(built: Path) -> Program:
     """What a C receiver tells of a stream."""
     program = build_codec(built)
     return lambda stream: run(program, stream)
+
+
+@pytest.fixture(scope="session")
+def peer(built: Path) -> Path:
+    """The program of a board on a scripted plant."""
+    return build_peer(built)

@@ -2,7 +2,7 @@
 
 import random
 
-from firmware_proto.framing import PAYLOAD_MAX, RawFrame, encode_frame
+from firmware_proto.framing import PAYLOAD_MAX, RawFrame, cobs_encode, crc16, encode_frame
 from firmware_proto.schema import payload_size
 from tests.firmware.codec import LAYOUTS
 
@@ -13,7 +13,14 @@ def random_frame(dice: random.Random) -> bytes:
     layout = LAYOUTS.get(code)
     size = payload_size(layout) if layout is not None and dice.random() < 0.9 else dice.randrange(PAYLOAD_MAX + 1)
     few = dice.choice([bytes(range(256)), b"\0\1\xff\x80", b"\0"])
-    return encode_frame(RawFrame(code, dice.randrange(1 << 16), bytes(dice.choices(few, k=size))))
+    frame = RawFrame(code, dice.randrange(1 << 16), bytes(dice.choices(few, k=size)))
+    return encode_frame(frame) if dice.random() < 0.97 else flagged(frame, dice.randrange(1, 256))
+
+
+def flagged(frame: RawFrame, flags: int) -> bytes:
+    """Return a frame of a later version of the protocol."""
+    body = bytes([frame.type, flags, *frame.seq.to_bytes(2, "little"), *frame.payload])
+    return b"\0" + cobs_encode(body + crc16(body).to_bytes(2, "big")) + b"\0"
 
 
 def damaged(dice: random.Random, wire: bytes) -> bytes:
