@@ -11,10 +11,10 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test bench bench-peers paper conservative exact lint types contracts check clean
+.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults firmware-test lint types contracts check clean
 
 help:  ## Say what can be made
-	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
 
 demo: .venv/.demo  ## Map a room, localize in it, serve the pose: simulated robot, real serial protocol, real daemon
 	@$(BIN)/robotctl demo room $(WORLD) --seed $(SEED) --out demo
