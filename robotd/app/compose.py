@@ -62,6 +62,7 @@ def compose(config: Config, connects: Mapping[str, Connect], compute: Compute, j
         lambda publish: MissionContext(robot, settings, noted, publish),
         lambda event, place: note_result(journal, event, place),
         lambda: None if journal.path is None or journal.error is not None else str(journal.path),
+        battery_min_v=config.drive.battery_min_v,
     )
     store = MapStore(Path(config.maps.dir), config.grid, keep=config.maps.keep)
     control = Control(

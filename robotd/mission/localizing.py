@@ -19,8 +19,8 @@ from robotd.mission.compute import cores
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import MissionPhase
 from robotd.mission.map_in_use import MapInUse
-from robotd.mission.motion import settle
 from robotd.mission.requests import LocalizeMission, PriorHeading
+from robotd.mission.stop_and_sweep import faults_text, standing
 
 _BATCH = 20
 """Readings between two estimates while the heading is known and readings are counted as they come."""
@@ -32,20 +32,20 @@ async def run_localizing(
     context: MissionContext, place: MapInUse, mission: LocalizeMission, report: Reporter, number: int
 ) -> PoseEstimate:
     """Carry out a :class:`LocalizeMission`: sweep, estimate, and tie odometry to the map if the answer is unique."""
-    here = await settle(context.robot.drive, context.settings.sweep.settle_s, context.settings.driving)
+    here = await standing(context.robot, context.settings.sweep.settle_s, context.settings.driving)
     headings_rad = _headings(context, place, mission, here)
     report.at(MissionPhase.SWEEPING)
     narrowing = await Narrowing.begin(context, place, mission, headings_rad)
     narrowed = asyncio.create_task(narrowing.run(), name="narrowing")
     try:
         sweep = await context.sweep(number, narrowing.offer)
-        report.at(MissionPhase.COMPUTING)
+        report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
         narrowing.end()
         estimate = await narrowed
     finally:
         narrowed.cancel()
         await asyncio.wait((narrowed,))
-    if mission.tie:
+    if mission.tie and context.robot.has_base:
         _learn(place, sweep.in_odom, estimate, context.settings.localization)
     return estimate
 

@@ -8,8 +8,10 @@ from robotd.core.errors import MissionError
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.driving import drive_to
 from robotd.mission.events import MissionPhase
+from robotd.mission.looking_again import looking_again
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.requests import MapMission
+from robotd.mission.stop_and_sweep import faults_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,11 +20,14 @@ class MappingResult:
 
     swept: int
     unreachable: tuple[str, ...]
+    faulty: tuple[str, ...]
+    """Stops at which the rangefinder failed, and how often."""
 
     def __str__(self) -> str:
         """Say it in a line."""
         missed = f"; not reached: {'; '.join(self.unreachable)}" if self.unreachable else ""
-        return f"{self.swept} stops swept{missed}"
+        failed = "".join(f"; {text}" for text in self.faulty)
+        return f"{self.swept} stops swept{missed}{failed}"
 
 
 async def run_mapping(
@@ -33,6 +38,7 @@ async def run_mapping(
     A stop that cannot be reached is said at once, left out, and named in the result.
     """
     unreachable: list[str] = []
+    faulty: list[str] = []
     for stop, (x_m, y_m) in enumerate(((mission.start.x_m, mission.start.y_m), *mission.stops_m)):
         if stop:
             report.at(MissionPhase.DRIVING, stop)
@@ -43,9 +49,10 @@ async def run_mapping(
                 report.at(MissionPhase.DRIVING, message=unreachable[-1])
                 continue
         report.at(MissionPhase.SWEEPING, stop)
-        sweep = await context.sweep(take_number())
-        report.at(MissionPhase.COMPUTING)
+        sweep = await looking_again(context, report, lambda: context.sweep(take_number()))
+        faulty += [f"stop {stop}: {text}" for text in [faults_text(sweep)] if text]
+        report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
         grid, cells = await context.compute.run("insert", place.grid_with, sweep)
         place.take(grid, cells)
         context.publish(place.changes(now_ns(), cells))
-    return MappingResult(1 + len(mission.stops_m) - len(unreachable), tuple(unreachable))
+    return MappingResult(1 + len(mission.stops_m) - len(unreachable), tuple(unreachable), tuple(faulty))

@@ -10,6 +10,7 @@ from robotd.localization.estimate import PoseEstimate
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.driving import run_driving
 from robotd.mission.localizing import pose_text, run_localizing
+from robotd.mission.looking_again import looking_again
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.mapping import run_mapping
 from robotd.mission.modes import Occasion
@@ -39,11 +40,12 @@ class Kind:
     name: str
     occasion: Occasion
     stops: Callable[[Any], int]
+    needs_base: bool = True
 
 
 KINDS: dict[type[Mission], Kind] = {
     MapMission: Kind("map", Occasion.START_MAPPING, lambda mission: 1 + len(mission.stops_m)),
-    LocalizeMission: Kind("localize", Occasion.START_LOCALIZING, lambda _: 1),
+    LocalizeMission: Kind("localize", Occasion.START_LOCALIZING, lambda _: 1, needs_base=False),
     DriveMission: Kind("drive", Occasion.START_DRIVING, lambda _: 1),
 }
 
@@ -61,7 +63,10 @@ async def carry_out(host: Host, context: MissionContext, mission: Mission, repor
             host.adopt(place)
             return str(await run_mapping(context, place, mission, report, host.take_sweep_number))
         case LocalizeMission():
-            estimate = await run_localizing(context, _place(host), mission, report, host.take_sweep_number())
+            place = _place(host)
+            estimate = await looking_again(
+                context, report, lambda: run_localizing(context, place, mission, report, host.take_sweep_number())
+            )
             return describe(estimate)
         case DriveMission():
             return await run_driving(context, _place(host), mission, report)

@@ -27,6 +27,11 @@ class Robot:
         return tuple(device.name for device in self.devices if device.status.link is not LinkState.READY)
 
     @property
+    def has_base(self) -> bool:
+        """Whether there is a base to talk to; without one the robot can still look round where it stands."""
+        return self.drive.status.link is LinkState.READY
+
+    @property
     def faults(self) -> tuple[str, ...]:
         """Latched faults as ``device: fault``."""
         return tuple(f"{device.name}: {fault}" for device in self.devices for fault in device.status.faults)

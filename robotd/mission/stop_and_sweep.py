@@ -9,14 +9,26 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from robotd.core.angles import wrap_rad
-from robotd.core.pose import Odometry
-from robotd.core.reading import RangeReading, Sweep
+from robotd.core.clock import now_ns
+from robotd.core.errors import MissionError
+from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
 from robotd.mission.motion import rotate_to, settle
 from robotd.mission.robot import Robot
 from robotd.mission.steering import DrivingSettings
 from robotd.mission.sweep_plan import SweepPart, plan_sweep
 
+FAILED = frozenset(
+    {
+        ReadingStatus.WEAK,
+        ReadingStatus.SATURATED,
+        ReadingStatus.AMBIENT,
+        ReadingStatus.TIMEOUT,
+        ReadingStatus.DEVICE_ERROR,
+    }
+)
+"""Readings that the rangefinder owes; a miss, and what it cannot see, are answers."""
 _LIMIT_MARGIN_RAD = 0.03  # the base turns only roughly as far as it should, and the head makes up for it
 
 
@@ -35,6 +47,11 @@ class SweepSettings:
     """Longest time one turn of the head may take."""
     shot_timeout_s: float = 1.0
     """Longest time one measurement may take."""
+    readings_min_share: float = 0.5
+    """Share of the readings that the rangefinder must answer: when more fail (too weak, too bright, silent), the sweep
+    is given up."""
+    resets: int = 2
+    """How often a head that lost steps is reset, and the sweep taken again, before the mission is given up."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be swept."""
@@ -43,6 +60,10 @@ class SweepSettings:
         for name in ("settle_s", "aim_timeout_s", "shot_timeout_s"):
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+        if not 0.0 <= self.readings_min_share <= 1.0:
+            raise ValueError(f"readings_min_share must be 0 to 1, got {self.readings_min_share}")
+        if not 0 <= self.resets <= 10:
+            raise ValueError(f"resets must be 0 to 10, got {self.resets}")
         if not -1.4 <= self.tilt_rad <= 1.4:
             raise ValueError(f"tilt_rad must be within +-1.4, got {self.tilt_rad}")
 
@@ -60,7 +81,10 @@ class Sweeper:
     async def sweep(self, number: int, on_reading: Callable[[RangeReading], None]) -> Sweep:
         """Take sweep ``number`` here; ``on_reading`` sees each reading as it is made.
 
+        Without a base only the directions are read that the head reaches by itself.
+
         Raises:
+            MissionError: too many readings failed; the robot stands, and the laser is off.
             DeviceError, LinkTimeout, TransportError: a device failed. The caller must stop the robot, which also
                 switches the laser off: a device that failed cannot be trusted to do it by itself.
         """
@@ -71,7 +95,9 @@ class Sweeper:
             min(limits.pan_max_rad - _LIMIT_MARGIN_RAD, math.pi),
             clockwise=number % 2 == 1,
         )
-        start = await settle(self.robot.drive, self.settings.settle_s, self.driving)
+        if not self.robot.has_base:
+            parts = parts[:1]
+        start = await standing(self.robot, self.settings.settle_s, self.driving)
         readings: list[RangeReading] = []
         await self.robot.rangefinder.switch_laser(on=True)
         for part in parts:
@@ -81,8 +107,18 @@ class Sweeper:
                 reading = await self._read(bearing_rad - turned_rad, start, here)
                 readings.append(reading)
                 on_reading(reading)
+                await self._check_enough(readings)
         await self.robot.rangefinder.switch_laser(on=False)
         return Sweep(number, start.in_odom, tuple(readings))
+
+    async def _check_enough(self, readings: list[RangeReading]) -> None:
+        failed = sum(reading.status in FAILED for reading in readings)
+        if self.settings.readings - failed >= self.settings.readings_min_share * self.settings.readings:
+            return
+        await self.robot.rangefinder.switch_laser(on=False)
+        raise MissionError(
+            f"the rangefinder failed at {failed} of {len(readings)} readings, the last was {readings[-1].status}"
+        )
 
     async def _turn_base(self, start: Odometry, part: SweepPart) -> Odometry:
         if part.base_turn_rad == 0.0:
@@ -94,3 +130,20 @@ class Sweeper:
         aim = await self.robot.pantilt.aim(pan_rad, self.settings.tilt_rad, timeout_s=self.settings.aim_timeout_s)
         shot = await self.robot.rangefinder.shoot(timeout_s=self.settings.shot_timeout_s)
         return reading_in_robot(self.mount, self.calibration, aim, shot, start.in_odom.inverse() @ here.in_odom)
+
+
+async def standing(robot: Robot, settle_s: float, driving: DrivingSettings) -> Odometry:
+    """Wait until the robot stands still, and return its odometry; without a base, the last that was known of it.
+
+    Raises:
+        LinkTimeout, DeviceError: as :func:`settle`.
+    """
+    if robot.has_base:
+        return await settle(robot.drive, settle_s, driving)
+    return robot.drive.odometry.latest or Odometry(now_ns(), IDENTITY, STANDSTILL)
+
+
+def faults_text(sweep: Sweep) -> str:
+    """Say how many readings of a sweep failed; empty if none did."""
+    failed = sum(reading.status in FAILED for reading in sweep.readings)
+    return f"{failed} of {len(sweep.readings)} readings failed" if failed else ""

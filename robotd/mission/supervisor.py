@@ -14,6 +14,7 @@ from robotd.core.errors import LinkTimeout, MissionError, RobotdError
 from robotd.core.pose import Odometry
 from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
 from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.battery import low_battery
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import Event, MissionPhase, Status
 from robotd.mission.lease import Lease
@@ -39,6 +40,8 @@ class Supervisor:
         make_context: Callable[[Callable[[Event], None]], MissionContext],
         note: Callable[[Event, MapInUse | None], None],
         recording: Callable[[], str | None] = lambda: None,
+        *,
+        battery_min_v: float = 0.0,
     ) -> None:
         """Prepare; nothing happens before :meth:`run`.
 
@@ -47,11 +50,13 @@ class Supervisor:
             make_context: makes what missions work with, given where to publish.
             note: told every event, and the map in use at that moment, before the world is.
             recording: says which file is being recorded to.
+            battery_min_v: below it, stop and latch a fault.
         """
         self.robot = robot
         self.events: Broadcast[Event] = Broadcast()
         self.place: MapInUse | None = None
         self._recording = recording
+        self._battery_min_v = battery_min_v
         self._context = make_context(self.publish)
         self._note = note
         self._mode = Mode.DISARMED
@@ -62,6 +67,8 @@ class Supervisor:
         self._lease: Lease | None = None
         self._predictor = Predictor()
         self._halts = 0
+        self._armed: tuple[Device, ...] = ()
+        """What the last arming was for: everything, or everything but the base."""
 
     @property
     def mode(self) -> Mode:
@@ -87,6 +94,11 @@ class Supervisor:
         )
 
     @property
+    def _faults(self) -> tuple[str, ...]:
+        low = low_battery(self.robot.drive, self._battery_min_v)
+        return self.robot.faults if low is None else (*self.robot.faults, low)
+
+    @property
     def _busy(self) -> bool:
         return self._mission is not None and not self._mission.done()
 
@@ -104,41 +116,50 @@ class Supervisor:
             async with asyncio.TaskGroup() as group:
                 for device in self.robot.devices:
                     group.create_task(self._watch(device))
+                group.create_task(self._watch_battery())
                 group.create_task(self._follow_odometry())
                 group.create_task(self._repeat_status())
         finally:
             self.halt(Occasion.STOP, "the daemon is ending")
 
     async def arm(self) -> None:
-        """Allow motion, on every device or on none.
+        """Allow motion, on every device or on none; without a base, on the others.
 
         Raises:
-            MissionError: a device is absent, a fault is latched, or a mission is under way.
+            MissionError: the head or the rangefinder is absent, a fault is latched, or a mission is under way.
             DeviceError, LinkTimeout, TransportError: a device will not; all are disarmed again.
         """
         self._require(Occasion.ARM)
-        if self.robot.absent:
-            raise MissionError(f"cannot arm: {', '.join(self.robot.absent)} absent")
-        if self.robot.faults:
-            raise MissionError(f"cannot arm: {'; '.join(self.robot.faults)}: clear first")
+        devices = self._to_arm()
+        if self._faults:
+            raise MissionError(f"cannot arm: {'; '.join(self._faults)}: clear first")
         try:
             async with asyncio.timeout(_DEVICE_TIMEOUT_S):
-                await self._arm_devices()
+                await self._arm_devices(devices)
         except TimeoutError:
             self.halt(Occasion.STOP, "arming took too long")
             raise LinkTimeout(f"arming took longer than {_DEVICE_TIMEOUT_S:g} s") from None
         except BaseException as error:
             self.halt(Occasion.STOP, f"arming failed: {str(error) or 'given up'}")
             raise
-        self._apply(Occasion.ARM, "armed")
+        self._armed = devices
+        self._apply(Occasion.ARM, "armed" if self.robot.drive in devices else "armed without a base: it can only look")
 
-    async def _arm_devices(self) -> None:
+    def _to_arm(self) -> tuple[Device, ...]:
+        """Return all devices; without a base the others, so that the robot can look round where it stands."""
+        absent = self.robot.absent
+        devices = self.robot.devices if self.robot.has_base else self.robot.devices[1:]
+        if any(device.name in absent for device in devices):
+            raise MissionError(f"cannot arm: {', '.join(absent)} absent")
+        return devices
+
+    async def _arm_devices(self, devices: tuple[Device, ...]) -> None:
         halts = self._halts
-        for device in self.robot.devices:
+        for device in devices:
             await device.arm()
             if self._halts != halts:
                 raise MissionError(f"stopped while arming: {self._reason}")
-        if not all(device.status.armed for device in self.robot.devices):
+        if not all(device.status.armed for device in devices):
             raise MissionError("a device was lost while the others were arming")
 
     async def stop(self, reason: str) -> None:
@@ -158,8 +179,8 @@ class Supervisor:
         for device in self.robot.devices:
             if device.status.link is LinkState.READY:
                 await device.clear_faults()
-        if self.robot.faults:
-            raise MissionError(f"faults remain: {'; '.join(self.robot.faults)}")
+        if self._faults:
+            raise MissionError(f"faults remain: {'; '.join(self._faults)}")
         self._apply(Occasion.CLEAR, "faults cleared")
 
     def start(self, mission: Mission, lease_s: float) -> int:
@@ -172,6 +193,8 @@ class Supervisor:
         if self._mode is Mode.DISARMED:
             raise MissionError(f"cannot {kind.name}: the robot is disarmed; arm it first")
         self._require(kind.occasion)
+        if kind.needs_base and self.robot.drive not in self._armed:
+            raise MissionError(f"cannot {kind.name}: the drive is not armed; it can only localize where it stands")
         self._mission_id += 1
         mission_id = self._mission_id
         report = Reporter(mission_id, kind.name, kind.stops(mission), self.publish)
@@ -279,12 +302,23 @@ class Supervisor:
             self.halt(Occasion.FAULT, f"{status.name}: {', '.join(status.faults)}")
         elif self._mode in {Mode.DISARMED, Mode.FAULT}:
             self.publish(self.status)
-        elif status.link is not LinkState.READY:
+        elif status.link is not LinkState.READY and not self._is_left_out(status):
             self.halt(Occasion.DEVICE_LOST, f"{status.name} is gone: {status.detail}")
-        elif not status.armed:
-            self.halt(Occasion.STOP, f"{status.name} is no longer armed")
+        elif status.link is LinkState.READY and not status.armed:
+            is_back = self._is_left_out(status)
+            self.halt(Occasion.STOP, f"{status.name} is {'there again: arm anew' if is_back else 'no longer armed'}")
         else:
             self.publish(self.status)
+
+    async def _watch_battery(self) -> None:
+        with self.robot.drive.readouts.subscribe() as readouts:
+            async for _ in readouts:
+                low = low_battery(self.robot.drive, self._battery_min_v)
+                if low is not None and self._mode is not Mode.FAULT:
+                    self.halt(Occasion.FAULT, low)
+
+    def _is_left_out(self, status: DeviceStatus) -> bool:
+        return status.name not in {device.name for device in self._armed}
 
     def _doubt(self) -> None:
         """Believe odometry no longer: nobody saw where the base went while its line was down."""

@@ -53,6 +53,9 @@ class BoardPanTilt(BoardDevice):
             self._tilt_rad(limits.tilt_max_tenth_mrad),
         )
 
+    async def reset(self) -> None:
+        """Do nothing: it measures where it points."""
+
     async def aim(self, pan_rad: float, tilt_rad: float, *, timeout_s: float) -> AimReadback:
         """Turn the head and return where it came to rest; see :meth:`robotd.hardware.devices.pantilt.PanTilt.aim`."""
         aim = proto.Aim(

@@ -51,6 +51,9 @@ class DynamixelPanTilt(BoughtDevice[Message]):
         zero_rad = self._mount.tilt_zero_rad
         return PanTiltLimits(-math.pi, math.pi, low_rad + zero_rad, high_rad + zero_rad)
 
+    async def reset(self) -> None:
+        """Do nothing: it measures where it points."""
+
     async def aim(self, pan_rad: float, tilt_rad: float, *, timeout_s: float) -> AimReadback:
         """Turn the head and return where it came to rest; see :meth:`robotd.hardware.devices.pantilt.PanTilt.aim`."""
         tilt_of_head_rad = tilt_rad - self._mount.tilt_zero_rad

@@ -5,6 +5,9 @@ from typing import Protocol
 
 from robotd.hardware.devices.device import Device
 
+LOST_STEPS = "lost_steps"
+"""Code of the DeviceError of a head that met a stop: it does not know where it points."""
+
 
 @dataclass(frozen=True, slots=True)
 class PanTiltLimits:
@@ -37,7 +40,14 @@ class PanTilt(Device, Protocol):
         """Turn the head and return where it came to rest.
 
         Raises:
-            DeviceError: outside the limits, not armed, or a fault.
+            DeviceError: outside the limits, not armed, or a fault; the code :data:`LOST_STEPS` if it does not know
+                where it points, until it was reset.
             LinkTimeout: still turning, or silent, after ``timeout_s``; the head was told to halt.
             TransportError: the device is absent.
+        """
+
+    async def reset(self) -> None:
+        """Find out anew where it points, after it lost steps; it may turn to its stops, and take half a minute.
+
+        A head that cannot lose steps does nothing. Same errors as :meth:`aim`.
         """

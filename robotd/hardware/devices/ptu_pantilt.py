@@ -1,8 +1,9 @@
 """A FLIR / Directed Perception pan/tilt unit.
 
 It turns open loop: what it reads back are the steps it commanded, so an axis that met its stop (``!P``, ``!T``) has
-lost steps and knows no longer where it points. That is latched as a fault, and only a reset, which turns both axes to
-their stops and takes up to half a minute, ends it: :meth:`PtuPanTilt.clear_faults` does it.
+lost steps and knows no longer where it points. It is halted, and refuses to aim until it is reset, which turns both
+axes to their stops and takes up to half a minute: a mission resets it and looks again, and so does
+:meth:`PtuPanTilt.clear_faults`.
 """
 
 import asyncio
@@ -13,7 +14,7 @@ from typing import NoReturn
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.hardware.devices.bought_device import BoughtDevice, is_a
-from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
+from robotd.hardware.devices.pantilt import LOST_STEPS, AimReadback, PanTiltLimits
 from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
@@ -49,6 +50,8 @@ class PtuPanTilt(BoughtDevice[Message]):
         self._mount = settings.mount
         self._axes: _Axes | None = None
         self._is_resetting = False
+        self._lost_steps = ""
+        """Which axis met its stop, in a sentence, and has not been reset since."""
         self._one_aim = asyncio.Lock()
 
     async def limits(self) -> PanTiltLimits:
@@ -67,6 +70,7 @@ class PtuPanTilt(BoughtDevice[Message]):
         """Turn the head and return where it came to rest; see :meth:`robotd.hardware.devices.pantilt.PanTilt.aim`."""
         async with self._one_aim:
             dialogue, axes = self._talk_armed(), self._known_axes()
+            self._check_steps()
             pan = round(self._pan_of_head(pan_rad) * axes.pan_steps_per_rad)
             tilt = round((tilt_rad - self._mount.tilt_zero_rad) * axes.tilt_steps_per_rad)
             try:
@@ -77,11 +81,19 @@ class PtuPanTilt(BoughtDevice[Message]):
             except TimeoutError:
                 self.stop_now()
                 raise LinkTimeout(f"{self.name}: still turning after {timeout_s:g} s") from None
+            except DeviceError:
+                self._check_steps()  # they are why it was stopped
+                raise
         return AimReadback(
             time_ns,
             pan / axes.pan_steps_per_rad + self._mount.pan_zero_rad,
             tilt / axes.tilt_steps_per_rad + self._mount.tilt_zero_rad,
         )
+
+    async def reset(self) -> None:
+        """Turn both axes to their stops; see :meth:`robotd.hardware.devices.pantilt.PanTilt.reset`."""
+        async with self._one_aim:
+            await self._find_stops(self._talk_armed())
 
     async def _arrived(self, dialogue: Dialogue[Message], pan: int, tilt: int) -> int:
         """Ask where the head is until it is there; return when that was said."""
@@ -89,6 +101,7 @@ class PtuPanTilt(BoughtDevice[Message]):
             at_pan = await self._order(dialogue, command("PP"))
             at_tilt = await self._order(dialogue, command("TP"))
             self._talk_armed()
+            self._check_steps()
             if (_whole(at_pan.message), _whole(at_tilt.message)) == (pan, tilt):
                 return at_tilt.time_ns
 
@@ -117,9 +130,11 @@ class PtuPanTilt(BoughtDevice[Message]):
                 )
 
     async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
-        """Reset, if steps were lost: both axes turn to their stops."""
-        if not self._health.faults:
-            return
+        """Reset, if it does not know where it points: both axes turn to their stops."""
+        if self._health.faults or self._lost_steps:
+            await self._find_stops(dialogue)
+
+    async def _find_stops(self, dialogue: Dialogue[Message]) -> None:
         self._is_resetting = True
         try:
             answer = (await dialogue.ask(command("R"), is_a(Done, Refused), timeout_s=RESET_S)).message
@@ -127,12 +142,20 @@ class PtuPanTilt(BoughtDevice[Message]):
                 raise DeviceError(self.name, "refused", f"to reset: {answer.text}")
         finally:
             self._is_resetting = False
+        self._lost_steps = ""
+        self._health.change(detail="")
+
+    def _check_steps(self) -> None:
+        if self._lost_steps:
+            raise DeviceError(self.name, LOST_STEPS, self._lost_steps)
 
     def _report(self, heard: Heard[Message]) -> None:
         message = heard.message
         if isinstance(message, LimitHit) and not self._is_resetting and self._dialogue is not None:
             axis = "pan" if message.axis == "P" else "tilt"
-            self._latch("lost_steps", f"the {axis} axis met its stop: it must be reset")
+            self._lost_steps = f"the {axis} axis met its stop: it must be reset"
+            self._dialogue.stop_now(STOP_BYTES)  # it is halted, not disarmed: a mission may reset it
+            self._health.change(detail=self._lost_steps)
         elif isinstance(message, Banner) and "PAN-TILT" in message.text.upper() and self._dialogue is not None:
             self._latch("restarted", "the unit was switched off and on, and found its stops anew")
 

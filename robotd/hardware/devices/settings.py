@@ -6,6 +6,7 @@ from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, Ran
 from robotd.hardware.transport.line_format import LineFormat
 
 _U16_MAX = 0xFFFF
+_BATTERY_MAX_V = 1000.0
 _SERVO_ID_MAX = 252
 
 
@@ -46,10 +47,14 @@ class DriveSettings(PortSettings):
     """Translation encoder counts per metre; negative if it counts backwards."""
     counts_per_rad: float = 4_096.0
     """Rotation encoder counts per radian counter-clockwise; negative if it counts clockwise."""
+    battery_min_v: float = 0.0
+    """Below this voltage, as measured in motion, the robot stops and a fault is latched; 0 for never."""
 
     def __post_init__(self) -> None:
         """Refuse what the port or the calibration refuses."""
         PortSettings.__post_init__(self)
+        if not 0.0 <= self.battery_min_v <= _BATTERY_MAX_V:
+            raise ValueError(f"battery_min_v must be 0 to {_BATTERY_MAX_V:g}, got {self.battery_min_v}")
         _ = self.calibration
 
     @property

@@ -98,6 +98,9 @@ class ScriptedHead(Scripted):
     async def limits(self) -> PanTiltLimits:
         return PanTiltLimits(-3.0, 3.0, -1.0, 1.0)
 
+    async def reset(self) -> None:
+        """It cannot lose steps."""
+
     async def aim(self, pan_rad: float, tilt_rad: float, *, timeout_s: float) -> AimReadback:
         await asyncio.sleep(timeout_s)
         raise LinkTimeout("pantilt: still turning")
@@ -152,12 +155,17 @@ class Rig:
 
 
 @asynccontextmanager
-async def rig(*, armed: bool = True, talking: bool = True) -> AsyncIterator[Rig]:
+async def rig(*, armed: bool = True, talking: bool = True, battery_min_v: float = 0.0) -> AsyncIterator[Rig]:
     drive, pantilt, rangefinder = ScriptedDrive(), ScriptedHead("pantilt"), ScriptedLaser("rangefinder")
     robot = Robot(drive, pantilt, rangefinder)
     compute = ThreadCompute()
     settings = MissionSettings(HeadMount(), RangefinderCalibration())
-    supervisor = Supervisor(robot, lambda say: MissionContext(robot, settings, compute, say), lambda event, place: None)
+    supervisor = Supervisor(
+        robot,
+        lambda say: MissionContext(robot, settings, compute, say),
+        lambda event, place: None,
+        battery_min_v=battery_min_v,
+    )
     with supervisor.events.subscribe(10_000) as events:
         tasks = [asyncio.create_task(supervisor.run())]
         if talking:
@@ -308,8 +316,58 @@ async def test_a_lost_device_stops_the_others(lost: int) -> None:
         assert r.mode is Mode.DISARMED
         assert r.reason == f"{r.devices[lost].name} is gone: the line was cut"
         assert all(device.stops for device in r.devices)
-        with pytest.raises(MissionError, match="absent"):
-            await r.supervisor.arm()
+        if lost:
+            with pytest.raises(MissionError, match=f"cannot arm: {r.devices[lost].name} absent"):
+                await r.supervisor.arm()
+
+
+async def test_without_a_base_it_can_be_armed_to_look_but_not_to_move() -> None:
+    async with rig() as r:
+        r.use_map()
+        r.drive.change(**GONE)
+        await turns()
+        await r.supervisor.arm()
+        assert (r.mode, r.reason) == (Mode.IDLE, "armed without a base: it can only look")
+        assert [device.status.armed for device in r.devices] == [False, True, True]
+        for mission in (DriveMission(0.1, 0.0), MapMission("m", ())):
+            with pytest.raises(MissionError, match="the drive is not armed; it can only localize where it stands"):
+                r.supervisor.start(mission, 10.0)
+        r.drive.change(link=LinkState.CONNECTING, detail="line open")
+        await turns()
+        assert r.mode is Mode.IDLE
+        r.supervisor.start(LocalizeMission(heading_rad=0.0), 10.0)
+        assert r.mode.value == "localizing"
+
+
+async def test_a_base_that_comes_back_stops_what_went_on_without_it() -> None:
+    async with rig() as r:
+        r.drive.change(**GONE)
+        await turns()
+        await r.supervisor.arm()
+        r.drive.change(link=LinkState.READY, armed=False, detail="")
+        await turns()
+        assert (r.mode, r.reason) == (Mode.DISARMED, "drive is there again: arm anew")
+        await r.supervisor.arm()
+        assert all(device.status.armed for device in r.devices)
+
+
+async def test_a_low_battery_stops_the_robot_until_it_is_cleared_and_cannot_be_cleared_while_it_is_low() -> None:
+    async with rig(battery_min_v=22.0) as r:
+        r.drive.readouts.publish(DriveReadout(now_ns(), 0.0, ()))  # a base that has not measured it yet
+        r.drive.readouts.publish(DriveReadout(now_ns(), 22.0, ()))
+        await turns()
+        assert r.mode is Mode.IDLE
+        r.drive.readouts.publish(DriveReadout(now_ns(), 21.94, ()))
+        await turns()
+        assert (r.mode, r.reason) == (Mode.FAULT, "drive: the battery is at 21.9 V, below 22 V")
+        assert all(device.stops for device in r.devices)
+        with pytest.raises(MissionError, match=r"faults remain: drive: the battery is at 21\.9 V"):
+            await r.supervisor.clear()
+        r.drive.readouts.publish(DriveReadout(now_ns(), 25.0, ()))
+        await turns()
+        assert r.mode.value == "fault"
+        await r.supervisor.clear()
+        await r.supervisor.arm()
 
 
 async def test_a_device_that_disarms_by_itself_stops_the_others() -> None:

@@ -11,6 +11,7 @@ import pytest
 
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
 from robotd.hardware.devices.device import LinkState
+from robotd.hardware.devices.pantilt import LOST_STEPS
 from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
 from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
@@ -114,15 +115,39 @@ async def test_a_stop_halts_it_and_gives_the_aim_up() -> None:
         assert (await u.device.aim(0.0, 0.0, timeout_s=5.0)).pan_rad == 0.0
 
 
-async def test_lost_steps_are_a_fault_that_only_a_reset_ends() -> None:
+async def test_a_head_that_met_its_stop_refuses_to_aim_until_it_is_reset() -> None:
     async with unit() as u:
         u.emulator.hit_limit("P")
         u.emulator._end()
         await asyncio.sleep(1.5)  # it is heard with the next poll
-        assert u.device.status.faults == ("lost_steps",)
-        assert not u.device.status.armed
-        with pytest.raises(DeviceError, match="clear first"):
-            await u.device.arm()
+        assert u.device.status.detail == "the pan axis met its stop: it must be reset"
+        assert u.device.status.armed
+        for _ in range(2):
+            with pytest.raises(DeviceError, match="lost_steps: the pan axis met its stop"):
+                await u.device.aim(0.3, 0.0, timeout_s=5.0)
+        await u.device.reset()
+        assert u.device.status.detail == ""
+        assert (await u.device.aim(0.3, 0.0, timeout_s=5.0)).pan_rad == pytest.approx(0.3, abs=STEP_RAD)
+
+
+async def test_a_head_that_meets_its_stop_on_its_way_is_halted_there() -> None:
+    async with unit() as u:
+        aiming = asyncio.create_task(u.device.aim(2.5, 0.0, timeout_s=5.0))
+        await asyncio.sleep(0.1)
+        u.emulator.hit_limit("T")
+        with pytest.raises(DeviceError) as caught:
+            await aiming
+        assert caught.value.code == LOST_STEPS
+        await asyncio.sleep(1.0)
+        assert 0 < u.emulator._at("P") < round(2.0 / STEP_RAD)
+        await u.device.reset()
+        assert (await u.device.aim(0.3, 0.0, timeout_s=5.0)).pan_rad == pytest.approx(0.3, abs=STEP_RAD)
+
+
+async def test_clearing_resets_it_too() -> None:
+    async with unit() as u:
+        u.emulator.hit_limit("P")
+        await asyncio.sleep(1.5)
         await u.device.clear_faults()
         await u.device.arm()
         assert (await u.device.aim(0.3, 0.0, timeout_s=5.0)).pan_rad == pytest.approx(0.3, abs=STEP_RAD)
@@ -149,8 +174,10 @@ async def test_a_refused_reset_clears_nothing(monkeypatch: pytest.MonkeyPatch) -
     async with unit() as u:
         u.emulator.hit_limit("P")
         await asyncio.sleep(1.5)
-        assert u.device.status.faults == ("lost_steps",)
         monkeypatch.setattr(u.emulator, "_reset", lambda: u.emulator._refuse("R", "Illegal Command Entered"))
         with pytest.raises(DeviceError, match="refused: to reset"):
             await u.device.clear_faults()
-        assert u.device.status.faults == ("lost_steps",)
+        assert "must be reset" in u.device.status.detail
+        await u.device.arm()
+        with pytest.raises(DeviceError, match="lost_steps"):
+            await u.device.aim(0.0, 0.0, timeout_s=5.0)
