@@ -46,9 +46,9 @@ far less."""
 class SecondLookSettings:
     """What counts as one place, and how sure is sure."""
 
-    patch_m: float = 0.3
+    patch_m: float = 0.2
     """Readings that end nearer to each other than this say, by so much, the same."""
-    readings_max: int = 100
+    readings_max: int = 120
     """Of more readings than this so many are looked at, those that end farthest apart."""
     glance_readings_max: int = 40
     """The same for the first glance, at all places of the shortlist."""
