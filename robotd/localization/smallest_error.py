@@ -17,6 +17,9 @@ The two agree exactly because e is taken from the very cells that D and E are ma
 centre of the cell of the probe's head and the centres of obstacle cells, rounded up. The way to the first obstacle is
 the number of samples of the body before it; of all whole eps, the one is taken at which :mod:`robotd.grid.ray` draws no
 more samples than that. A pose whose own cell, or whose cell where the beam begins, is occupied is feasible at no eps.
+
+At 256 x 256, 300 readings, heading known (``make bench ONLY=erring``, other programs running): every cell in 51 ms on
+one thread, 8.7 s by floods in NumPy; the best cell alone, by search, 3.4 s.
 """
 
 import math
@@ -32,16 +35,13 @@ from robotd.grid.binary import BinaryMap
 from robotd.grid.directional_flood import directional_flood
 from robotd.grid.distance import distance_transform
 from robotd.grid.floods import UNREACHED
-from robotd.grid.kernels.layout import NO_HEAD, Bodies, PackedMap
-from robotd.grid.ray import ray_steps, sample_counts
+from robotd.grid.readings import numbers_of
 from robotd.grid.translation import translated
+from robotd.localization.bodies import RANGE_CELLS_MAX, draw_bodies, errors_by_samples, reach_cells
+from robotd.localization.error_map import NEVER, ErrorMap
 from robotd.localization.feasible import feasible_poses
 from robotd.localization.obstacles import Obstacles
 from robotd.localization.probe import Probe, probe_of
-
-_NEVER = int(np.iinfo(np.uint16).max)
-_RANGE_MAX_CELLS = 32_000
-"""Errors of longer readings do not fit into sixteen bits with room to spare."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,15 +112,24 @@ def errors_for_share(
     Raises:
         ValueError: there is no reading, one of them measured nothing, or the share is none.
     """
-    wanted = _readings_wanted(readings, share)
-    if max(_range_cells(reading, binary) for reading in readings) > _RANGE_MAX_CELLS:
+    if any(_range_cells(reading, binary) > RANGE_CELLS_MAX for reading in readings):
         return errors_for_share_reading_by_reading(binary, readings, heading_rad, share)
-    occupied = binary.occupied
-    packed = PackedMap.of(~occupied, occupied, occupied, outside_blocks=True, outside_ends=True, blocked_by=1)
-    distances = np.minimum(np.ceil(distance_transform(occupied, outside=True)), _NEVER - 1).astype(np.uint16)
-    shared = kernels.share_errors(packed, distances, 0, _bodies(binary, readings, heading_rad), wanted, threads=threads)
+    return errors_on(ErrorMap.of_binary(binary), readings, heading_rad, share, threads=threads)
+
+
+def errors_on(
+    the_map: ErrorMap, readings: Sequence[RangeReading], heading_rad: float, share: float = 1.0, *, threads: int = 1
+) -> NDArray[np.float32]:
+    """Return what :func:`errors_for_share` does, on a prepared map, however it reads unknown cells and grazing beams.
+
+    Raises:
+        ValueError: as there, or a reading is longer than 32 000 cells.
+    """
+    wanted = _readings_wanted(readings, share)
+    bodies = draw_bodies(numbers_of(readings), heading_rad, the_map.spec)
+    shared = kernels.share_errors(the_map.packed, the_map.distances, the_map.outside, bodies, wanted, threads=threads)
     errors = shared.astype(np.float32)
-    errors[shared == _NEVER] = np.inf
+    errors[shared == NEVER] = np.inf
     return errors
 
 
@@ -143,21 +152,23 @@ def errors_for_share_reading_by_reading(
 
 
 def errors_over_headings(
-    binary: BinaryMap,
+    the_map: ErrorMap,
     readings: Sequence[RangeReading],
     headings_rad: Sequence[float],
     share: float = 1.0,
     *,
     threads: int = 1,
 ) -> tuple[NDArray[np.float32], NDArray[np.intp]]:
-    """Return, for every cell, the least of :func:`errors_for_share` over theta slices, and the first slice with it.
+    """Return, for every cell, the least of :func:`errors_on` over theta slices, and the first slice with it.
 
-    [BrownDonald2000]_ sec. 2.2.3. Both ``[rows, cols]``; arguments as there, at least one heading.
+    [BrownDonald2000]_ sec. 2.2.3. Both ``[rows, cols]``; arguments as there, at least one heading. Every heading takes
+    as long as the first: where only the least eps of all matters, counting all poses
+    (:class:`~robotd.localization.rank.RankGrid`) at a few eps is faster.
     """
-    best = errors_for_share(binary, readings, headings_rad[0], share, threads=threads)
+    best = errors_on(the_map, readings, headings_rad[0], share, threads=threads)
     which = np.zeros(best.shape, np.intp)
     for number, heading_rad in enumerate(headings_rad[1:], start=1):
-        errors = errors_for_share(binary, readings, heading_rad, share, threads=threads)
+        errors = errors_on(the_map, readings, heading_rad, share, threads=threads)
         better = errors < best
         best[better], which[better] = errors[better], number
     return best, which
@@ -200,44 +211,10 @@ def _errors_for_body(binary: BinaryMap, reading: RangeReading, heading_rad: floa
     return np.where(first_hits == UNREACHED, 0.0, for_first_hit[first_hits])
 
 
-def _bodies(binary: BinaryMap, readings: Sequence[RangeReading], heading_rad: float) -> Bodies:
-    """Draw readings as long as they are, each cell with the eps that leaves it out."""
-    chains, lengths, bounds, end = [], [], [], 0
-    for reading in readings:
-        probe = _probe(reading, heading_rad, binary, 0)
-        for_first_hit = np.minimum(_errors_by_samples(reading, heading_rad, binary), _NEVER)
-        # The robot's own cell, where it stands before the beam's, is left out by no eps.
-        lead = np.full(len(probe.body) - len(for_first_hit), float(_NEVER))
-        chains.append(probe.body)
-        lengths += [lead, for_first_hit]
-        first, end = end, end + len(probe.body)
-        bounds.append((first, end, *(probe.head or (NO_HEAD, NO_HEAD))))
-    return Bodies(
-        np.ascontiguousarray(np.concatenate(chains), np.int32),
-        np.concatenate(lengths).astype(np.uint16),
-        np.array(bounds, np.int32),
-    )
-
-
 def _errors_by_samples(reading: RangeReading, heading_rad: float, binary: BinaryMap) -> NDArray[np.float64]:
     """Return the smallest whole eps that leaves a ray no more than 0, 1, 2, ... samples; no eps leaves it none."""
-    bearing = np.array([heading_rad + reading.bearing_rad])
-    range_cells, reach_cells = _range_cells(reading, binary), _reach_cells(binary)
-
-    def samples(error: NDArray[np.float64]) -> NDArray[np.float64]:
-        lengths = np.minimum(range_cells - error, reach_cells)
-        counts: NDArray[np.float64] = sample_counts(np.broadcast_to(bearing, lengths.shape), lengths)
-        return np.maximum(1.0, counts)
-
-    left = np.arange(int(samples(np.zeros(1))[0]))
-    sample_cells = float(np.hypot(*ray_steps(bearing)[0]))
-    # In exact arithmetic this is the answer; rounding may make it the one next to it.
-    errors: NDArray[np.float64] = np.ceil(range_cells - left * sample_cells) + 1.0
-    for _ in range(2):
-        fewer = np.maximum(0.0, errors - 1.0)
-        errors = np.where(samples(fewer) <= left, fewer, errors)
-    errors[0] = np.inf
-    return errors
+    bearing, range_cells = np.array([heading_rad + reading.bearing_rad]), np.array([_range_cells(reading, binary)])
+    return errors_by_samples(bearing, range_cells, reach_cells(binary.spec))[0]
 
 
 def _agreeing(
@@ -267,12 +244,8 @@ def _probe(reading: RangeReading, heading_rad: float, binary: BinaryMap, error_c
         heading_rad,
         resolution_m=binary.spec.resolution_m,
         error_radius_cells=error_cells,
-        reach_cells=_reach_cells(binary),
+        reach_cells=reach_cells(binary.spec),
     )
-
-
-def _reach_cells(binary: BinaryMap) -> int:
-    return 2 * max(binary.spec.shape)
 
 
 def _range_cells(reading: RangeReading, binary: BinaryMap) -> float:

@@ -13,13 +13,16 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.distance import distance_transform
 from robotd.grid.spec import GridSpec
+from robotd.grid.ternary import TernaryMap
+from robotd.localization.error_map import ErrorMap
 from robotd.localization.feasible import feasible_poses
-from robotd.localization.obstacles import Obstacles
+from robotd.localization.obstacles import Obstacles, UnknownCells
 from robotd.localization.probe import probe_of
 from robotd.localization.smallest_error import (
     errors_for_share,
     errors_for_share_reading_by_reading,
     errors_needed,
+    errors_on,
     errors_over_headings,
     smallest_error,
     smallest_error_by_search,
@@ -97,9 +100,49 @@ def test_tile_by_tile_is_reading_by_reading_and_the_best_slice_is_the_least_60_c
     binary: BinaryMap, several: list[RangeReading], headings_rad: list[float], share: float
 ) -> None:
     slow = [errors_for_share_reading_by_reading(binary, several, one, share) for one in headings_rad]
-    errors, which = errors_over_headings(binary, several, headings_rad, share, threads=2)
+    errors, which = errors_over_headings(ErrorMap.of_binary(binary), several, headings_rad, share, threads=2)
     assert np.array_equal(errors, np.min(slow, axis=0))
     assert np.array_equal(which, np.argmin(slow, axis=0))
+
+
+values = hnp.arrays(
+    np.int8, hnp.array_shapes(min_dims=2, max_dims=2, max_side=9), elements=st.sampled_from([0, 0, 0, 0, 1, 2])
+)
+
+
+@settings(max_examples=60)
+@given(
+    values,
+    st.sampled_from(UnknownCells),
+    st.integers(1, 2),
+    st.lists(near_readings, min_size=1, max_size=4),
+    bearings,
+    shares,
+)
+def test_maps_of_three_values_and_grazing_beams_need_what_they_need_60_cases(
+    cells: NDArray[np.int8],
+    unknown: UnknownCells,
+    blocked_by: int,
+    several: list[RangeReading],
+    heading_rad: float,
+    share: float,
+) -> None:
+    ternary = TernaryMap(GridSpec(RESOLUTION_M, 0.0, 0.0, cells.shape), cells == 1, cells == 0)
+    read = [Obstacles.of_map(ternary, unknown, float(error), blocked_by=blocked_by) for error in range(14)]
+    errors = errors_on(ErrorMap.of(read[0], ternary.spec), several, heading_rad, share)
+    reach_cells = 2 * max(cells.shape)
+    for error, obstacles in enumerate(read):
+        rank = np.zeros(cells.shape, int)
+        for reading in several:
+            probe = probe_of(
+                reading,
+                heading_rad,
+                resolution_m=RESOLUTION_M,
+                error_radius_cells=error,
+                reach_cells=reach_cells,
+            )
+            rank += feasible_poses(obstacles, probe)
+        assert np.array_equal(errors <= error, rank >= math.ceil(share * len(several) - 1e-9))
 
 
 def test_a_large_map_is_solved_in_every_tile() -> None:
@@ -151,6 +194,8 @@ def test_what_makes_no_sense_is_refused() -> None:
         smallest_error(ROOM, [], 0.0)
     with pytest.raises(ValueError, match="share"):
         smallest_error(ROOM, [measured(0, 2)], 0.0, 0.0)
+    with pytest.raises(ValueError, match="32000"):
+        errors_on(ErrorMap.of_binary(ROOM), [measured(0, 40_000)], 0.0)
     for find in (smallest_error, smallest_error_by_search):
         with pytest.raises(ValueError, match="weak"):
             find(ROOM, [weak], 0.0)
