@@ -18,7 +18,7 @@ struct drive_counts {
 struct drive_hal {
     void *context;
     void (*advance)(void *context, uint64_t now_us); /* time is now_us: run the ramps, read the encoders */
-    void (*command)(void *context, struct drive_velocity wanted); /* ramp towards these velocities (ramp.h) */
+    void (*command)(void *context, struct drive_velocity wanted); /* ramp towards these velocities: ramp.h can */
     void (*cut)(void *context);                      /* cut the motors: no ramp */
     struct drive_counts (*counts)(void *context);
     struct drive_velocity (*velocity)(void *context); /* as measured */

@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 from collections.abc import Callable, Coroutine
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import TransportError
@@ -30,6 +30,14 @@ class HostedBoard(Protocol):
 
     def take_output(self) -> bytes:
         """Return, once, the bytes that the board has for the host."""
+
+
+@runtime_checkable
+class OwnBoard(HostedBoard, Protocol):
+    """One of our own boards, whatever its firmware is written in."""
+
+    def reboot(self, boot_id: int) -> None:
+        """Lose power and come back: motors cut, everything forgotten, bytes under way lost."""
 
 
 async def serve(

@@ -15,6 +15,7 @@ from robotd.hardware.devices.device import LinkState
 from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.requests import LocalizeMission, MapMission
 from robotd.sim.emulators.catalogue import Dialects, Firmware
+from robotd.sim.faults.laid import cables
 from robotd.sim.host import HostedBoard
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
@@ -101,3 +102,14 @@ async def test_a_board_that_loses_power_is_noticed_and_stays_disarmed(live: Live
                     pass
         await until_ready(it.daemon)
         assert board.state == BoardState.CONFIGURED
+
+
+async def test_faults_can_take_the_power_of_boards_in_c_and_of_no_bought_device() -> None:
+    dialects = Dialects(pantilt="ptu", boards=Firmware.C)
+    async with cables(SimulatedRobot(load_world("office"), seed=2, dialects=dialects)) as laid:
+        assert {device: cable.can_reboot for device, cable in laid.items()} == {
+            "drive": True,
+            "pantilt": False,
+            "rangefinder": True,
+        }
+        laid["drive"].reboot()

@@ -10,9 +10,9 @@ from tempfile import TemporaryDirectory
 from robotd.core.errors import TransportError
 from robotd.hardware.transport.pty import PtyEnd, open_pty
 from robotd.hardware.transport.transport import Connect
-from robotd.sim.boards.board import Board
 from robotd.sim.faults.cable import Cable
 from robotd.sim.faults.plan import PlannedFault, carry_out
+from robotd.sim.host import OwnBoard
 from robotd.sim.robot import DEVICES, EmulatedRobot, SimulatedRobot
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
@@ -134,7 +134,7 @@ def _neighbour(device: str) -> str:
 
 def _reboot(robot: EmulatedRobot, device: str) -> Callable[[], None] | None:
     board = robot.boards[device]
-    if not isinstance(board, Board):
+    if not isinstance(board, OwnBoard):
         return None
     boot_ids = random.Random(f"{device}/reboots")
     return lambda: board.reboot(boot_ids.getrandbits(32))
