@@ -45,7 +45,7 @@ DIAGONAL = rational("1.41422")
 sides = st.integers(4, 9)
 maps = hnp.arrays(np.bool_, st.tuples(sides, sides), elements=st.sampled_from([True, False, False, False, False]))
 bearings = st.integers(0, 71).map(lambda number: math.tau * number / 72) | st.floats(-math.pi, math.pi)
-ranges = st.integers(2, 28).map(lambda quarters: Rational(quarters, 4))
+ranges = st.integers(2, 28).map(lambda quarters: rational(quarters) / 4)
 
 
 @st.composite
@@ -68,14 +68,14 @@ def exact(occupied: NDArray[np.bool_], blocking: PlanarSet, reading: Beam, eps: 
     feasible = arrange([ends, *parts]).select(is_feasible)
     belongs = np.zeros_like(occupied)
     for row, col in np.ndindex(occupied.shape):
-        belongs[row, col] = contains(feasible, Point(Rational(2 * col + 1, 2), Rational(2 * row + 1, 2)))
+        belongs[row, col] = contains(feasible, Point(rational(2 * col + 1) / 2, rational(2 * row + 1) / 2))
     return belongs
 
 
 def shrunk(occupied: NDArray[np.bool_]) -> PlanarSet:
     """Return the occupied cells less half a cell wherever they border on free ones, corners included."""
     halves = np.repeat(np.repeat(occupied, 2, axis=0), 2, axis=1)
-    return outlines(~dilate(~halves, np.ones((3, 3), np.bool_)), Rational(1, 2))
+    return outlines(~dilate(~halves, np.ones((3, 3), np.bool_)), rational("1/2"))
 
 
 @settings(max_examples=60, deadline=None)

@@ -9,41 +9,54 @@ from matplotlib.figure import Figure
 
 from robotd.cli.exact_pictures import box_of, draw_ranks
 from robotd.localization.exact.feasible import PolygonMap, ranked
-from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.rationals import rational
 from tests.exact.growth import STEP_M, Growth
-from tests.exact.scenes import POSE, readings
+from tests.exact.scenes import laboratory, readings
 
-_COLOURS = {"0": "#0b63ce", "0.05": "#d9822b"}
+_COLOURS = ("#0b63ce", "#d9822b", "#2e7d32")
+_STYLES = {"0": "o-", "0.05": "s:"}
 
 
 def draw_growth(file: Path, edges: Sequence[Growth], many: Sequence[Growth]) -> None:
-    """Draw time against edges and against readings, both axes logarithmic, with lines of slope 1."""
-    figure = Figure(figsize=(11.0, 4.6), dpi=120, facecolor="white", layout="constrained")
+    """Draw time and s against edges and against readings, both axes logarithmic, beside what the theorems allow."""
+    figure = Figure(figsize=(13.0, 8.4), dpi=110, facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
-    left, right = figure.subplots(1, 2)
-    _growth(left, edges, "one reading: time by edges n", "n")
-    _growth(right, many, "time by readings m", "m")
+    (time_by_n, time_by_m), (s_by_n, s_by_m) = figure.subplots(2, 2)
+    for eps, style in _STYLES.items():
+        own = [row for row in edges if row.eps == eps]
+        sizes = [row.edges for row in own]
+        _time(time_by_n, sizes, own, style, f"eps {eps} m")
+        s_by_n.plot(sizes, [row.crossings for row in own], style, color=_COLOURS[0], label=f"s, eps {eps} m")
+        for colour, n in zip(_COLOURS, sorted({row.edges for row in many}), strict=False):
+            own = [row for row in many if row.eps == eps and row.edges == n]
+            sizes = [row.readings for row in own]
+            _time(time_by_m, sizes, own, style, f"n {n}, eps {eps} m", colour)
+            s_by_m.plot(sizes, [row.crossings for row in own], style, color=colour, label=f"s, n {n}, eps {eps} m")
+    _finish(time_by_n, "one reading: time; dashed: (n + s) log n", "n", "s")
+    _finish(time_by_m, "many readings: time; dashed: (m n^2 + s) log m n, fitted to the first", "m", "s")
+    _finish(s_by_n, "one reading: s, the points where borders meet or cross", "n", "")
+    _finish(s_by_m, "many readings: s", "m", "")
     file.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(file)
 
 
-def _growth(axes: Axes, rows: Sequence[Growth], title: str, size: str) -> None:
-    for eps, colour in _COLOURS.items():
-        own = [row for row in rows if row.eps == eps]
-        sizes = [row.size for row in own]
-        axes.plot(sizes, [row.seconds for row in own], "o-", color=colour, label=f"time, eps {eps} m")
-        unit = own[-1].seconds / (own[-1].seconds / own[-1].constant)
-        work = [unit * row.seconds / row.constant for row in own]
-        axes.plot(sizes, work, ":", color=colour, label=f"(N + s) log N, eps {eps} m")
-        scale = own[0].seconds / own[0].bound
-        axes.plot(sizes, [scale * row.bound for row in own], "--", color=colour, alpha=0.4, label="the theorem's bound")
-    axes.set(title=title, xlabel=size, ylabel="s", xscale="log", yscale="log")
+def _time(
+    axes: Axes, sizes: Sequence[int], rows: Sequence[Growth], style: str, label: str, colour: str = _COLOURS[0]
+) -> None:
+    axes.plot(sizes, [row.seconds for row in rows], style, color=colour, label=label)
+    scale = rows[0].seconds / rows[0].promise
+    axes.plot(sizes, [scale * row.promise for row in rows], "--", color=colour, alpha=0.35)
+
+
+def _finish(axes: Axes, title: str, size: str, unit: str) -> None:
+    axes.set(xlabel=size, ylabel=unit, xscale="log", yscale="log")
+    axes.set_title(title, fontsize=10, loc="left")
     axes.legend(fontsize=8)
     axes.grid(alpha=0.3)
 
 
-def draw_laboratory(file: Path, walls: PlanarSet) -> None:
+def draw_laboratory(file: Path) -> None:
     """Draw the rank of 24 rounded readings everywhere in the laboratory, and where the robot really is."""
-    ranks = ranked(PolygonMap(walls, rational("0.1")), readings(walls, POSE, 24, step_m=STEP_M))
-    draw_ranks(file, "24 readings, eps 0.1 m", walls, ranks, box=box_of(walls), truth_m=POSE.floats)
+    walls, pose = laboratory()
+    ranks = ranked(PolygonMap(walls, rational("0.1")), readings(walls, pose, 24, step_m=STEP_M))
+    draw_ranks(file, "24 readings, eps 0.1 m", walls, ranks, box=box_of(walls), truth_m=pose.floats)

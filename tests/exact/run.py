@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from robotd.localization.exact.polygons import edge_count
-from robotd.localization.exact.rationals import ARITHMETIC
+from robotd.localization.exact.rationals import DEFAULT, name_of
 from tests.exact import growth
 from tests.exact.figures import FIGURES
 from tests.exact.growth import Growth
@@ -15,6 +15,13 @@ from tests.exact.scenes import laboratory
 
 ROOT = Path(__file__).parents[2]
 OUT = ROOT / "docs" / "exact"
+_RADII = ("0", "0.05")
+_NAMES = ("n", "m", "eps [m]", "N", "s", "predicates", "predicates / ((N + s) log N)", "time [s]", "us / promise")
+_READ = """*N* are the borders that the sweeps are given, *s* the points where borders of several sets meet or cross.
+Predicates are all comparisons of points, sides of curves, orders of curves and intersections that were asked, counted:
+over (N + s) log N they must not grow. The promise is the theorem's: (n + s) log n for one reading, (m n^2 + s) log m n
+for several; n^2 is what D and E of one reading may have at worst, and on maps of scattered obstacles they have far
+less, so time over it falls with n."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -44,16 +51,17 @@ def _measured(out: Path) -> list[str]:
         "Written by `make exact`. What it computes is told in `robotd/localization/exact/`, how to ask it in",
         "`robotctl exact --help`.",
         "",
-        f"Python {platform.python_version()}, numbers: {ARITHMETIC}; time of one processor, the least of two runs.",
+        f"Python {platform.python_version()}, arithmetic: {name_of(DEFAULT)}; time of one processor, the least of two",
+        "runs where they are short.",
     ]
     print("\n".join(lines))
     lines += _laboratory(out)
-    edges = [row for eps in ("0", "0.05") for row in growth.with_edges(eps)]
-    lines += _growth("One reading, more edges", "n", "theorems 3 and 4: (n + s) log n", edges)
-    many = [row for eps in ("0", "0.05") for row in growth.with_readings(eps)]
-    lines += _growth("More readings on one map", "m", "theorems 5 and 7: (m n^2 + s) log m n", many)
+    edges = [row for eps in _RADII for row in growth.with_edges(eps)]
+    lines += _table("One reading, more edges: theorems 3 and 4", _NAMES, (_row(row) for row in edges))
+    many = [row for n in (20, 100, 400) for eps in _RADII for row in growth.with_readings(n, eps)]
+    lines += _table("More readings: theorems 5 and 7", _NAMES, (_row(row) for row in many))
     draw_growth(out / "growth.png", edges, many)
-    lines += ["", "![Time against what it should be proportional to](growth.png)"]
+    lines += ["", _READ, "", "![Time and s, against what they should be proportional to](growth.png)"]
     pieces = ((n, count, f"{part:.4f}") for n, count, part in growth.lemma_2_pieces())
     lines += _table("Lemma 2 (i), fig. 12", ("n", "pieces of FP(M, z)", "pieces / n^2"), pieces)
     crossings = ((m, count, f"{part:.4f}") for m, count, part in growth.lemma_2_crossings())
@@ -61,27 +69,23 @@ def _measured(out: Path) -> list[str]:
 
 
 def _laboratory(out: Path) -> list[str]:
-    walls = laboratory()
+    walls, _ = laboratory()
     rows = [
         (row.eps, row.readings, row.best_rank, row.regions, f"{row.area_m2:.6f}", row.vertices, f"{row.seconds:.2f}")
         for row in growth.in_the_laboratory()
     ]
     names = ("eps [m]", "readings", "best rank", "regions", "area [m2]", "vertices", "time [s]")
-    draw_laboratory(out / "laboratory.png", walls)
+    draw_laboratory(out / "laboratory.png")
     lines = _table(f"In the laboratory, {edge_count(walls)} edges", names, rows)
+    speeds = ((name, f"{without:.2f}", f"{within:.2f}") for name, without, within in growth.by_arithmetic())
+    lines += _table("The same with every arithmetic", ("module", "time [s], eps 0", "time [s], eps 0.1"), speeds)
     return [*lines, "", "![Ranks of 24 readings in the laboratory](laboratory.png)"]
 
 
-def _growth(title: str, size: str, promise: str, rows: Iterable[Growth]) -> list[str]:
-    """Return the table of a growth: time over (N + s) log N must not grow, time over the promise neither."""
-    names = (size, "eps [m]", "borders N", "vertices", "time [s]", "us / ((N + s) log N)", f"us / ({promise})")
-    return _table(title, names, (_growth_row(row) for row in rows))
-
-
-def _growth_row(row: Growth) -> tuple[object, ...]:
-    promised = row.seconds / row.bound * 1e6
-    sizes = (row.size, row.eps, row.borders, row.vertices)
-    return (*sizes, f"{row.seconds:.3f}", f"{row.constant * 1e6:.1f}", f"{promised:.2f}")
+def _row(row: Growth) -> tuple[object, ...]:
+    sizes = (row.edges, row.readings, row.eps, row.borders, row.crossings, row.predicates)
+    promised = row.seconds / row.promise * 1e6
+    return (*sizes, f"{row.predicates / row.work:.2f}", f"{row.seconds:.3f}", f"{promised:.2f}")
 
 
 def _table(title: str, names: Sequence[str], rows: Iterable[Iterable[object]]) -> list[str]:

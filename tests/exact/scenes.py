@@ -2,7 +2,6 @@
 
 import math
 import random
-from fractions import Fraction
 from pathlib import Path
 
 from robotd.localization.exact.beams import Beam, beam
@@ -11,17 +10,17 @@ from robotd.localization.exact.formats import map_of_toml
 from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import Polygon, Ring, ring_of, solid
-from robotd.localization.exact.rationals import Rational, rational
+from robotd.localization.exact.rationals import DEFAULT, Arithmetic, Rational, rational
+from robotd.localization.exact.surds import Surd, arithmetic_of
 
-CUT_OFF_M = rational(4)
-POSE = Point(rational("2.35"), rational("5.55"))
-"""Where the robot really is, in the laboratory."""
-_FAR_M = rational(100)
+CUT_OFF_M = 4
+_FAR_M = 100
 
 
-def laboratory() -> PlanarSet:
-    """Return the map of ``laboratory.toml``."""
-    return map_of_toml(Path(__file__).with_name("laboratory.toml").read_text(encoding="utf-8"))
+def laboratory(arithmetic: Arithmetic = DEFAULT) -> tuple[PlanarSet, Point]:
+    """Return the map of ``laboratory.toml``, and where the robot really is."""
+    walls = map_of_toml(Path(__file__).with_name("laboratory.toml").read_text(encoding="utf-8"), arithmetic)
+    return walls, Point(rational("2.35", arithmetic), rational("5.55", arithmetic))
 
 
 def readings(obstacles: PlanarSet, pose: Point, count: int, *, step_m: Rational | None = None) -> list[Beam]:
@@ -30,11 +29,13 @@ def readings(obstacles: PlanarSet, pose: Point, count: int, *, step_m: Rational 
 
 
 def _reading(obstacles: PlanarSet, pose: Point, bearing_rad: float, step_m: Rational | None) -> Beam:
-    free = cast(obstacles, beam(bearing_rad, _FAR_M), rational(0), pose).free_length
-    assert isinstance(free, Rational), "a rational pose in a closed room"
+    arithmetic = arithmetic_of(pose.x)
+    free = cast(obstacles, beam(bearing_rad, arithmetic(_FAR_M)), arithmetic(0), pose).free_length
+    assert free is not None, "a closed room"
+    assert not isinstance(free, Surd), "a rational pose"
     if free > CUT_OFF_M:
-        return beam(bearing_rad, CUT_OFF_M, is_hit=False)
-    reach = free if step_m is None else Rational(round(Fraction(str(free / step_m)))) * step_m
+        return beam(bearing_rad, arithmetic(CUT_OFF_M), is_hit=False)
+    reach = free if step_m is None else round(float(free / step_m)) * step_m
     return beam(bearing_rad, reach)
 
 
@@ -53,12 +54,12 @@ def scattered(edges: int, seed: int) -> tuple[PlanarSet, Point]:
     chosen = rng.sample(places, max(1, (edges - 4) // 4))
     obstacles = [Polygon(_placed(rng.choice(_SHAPES), x, y)) for x, y in chosen]
     room = ring_of([(0, 0), (side, 0), (side, side), (0, side)])
-    middle = Rational(2 * (side // 2) + 1, 2)
+    middle = rational(2 * (side // 2) + 1) / 2
     return solid(obstacles, room=room), Point(middle, middle)
 
 
 def _placed(shape: list[tuple[int, int]], x: int, y: int) -> Ring:
-    return tuple(Point(x + Rational(dx, 10), y + Rational(dy, 10)) for dx, dy in shape)
+    return tuple(Point(x + rational(dx) / 10, y + rational(dy) / 10) for dx, dy in shape)
 
 
 def crossed_bars(bars: int) -> tuple[PlanarSet, Beam]:
@@ -78,7 +79,7 @@ def halving_readings(count: int) -> tuple[PlanarSet, list[Beam]]:
     Each is feasible on an angle of two segments, and every two angles cross.
     """
     room = ring_of([(0, 0), (4, 0), (4, 4), (0, 4)])
-    ends = [2 - Rational(1, 2**number) for number in range(count)]
+    ends = [2 - rational(1) / 2**number for number in range(count)]
     return solid([], room=room), [Beam(end, 3 - end) for end in ends]
 
 

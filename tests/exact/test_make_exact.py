@@ -1,14 +1,22 @@
 """``make exact`` draws all figures, and counts what the paper's lower bounds promise."""
 
+import math
 from itertools import islice
 from pathlib import Path
 
+import pytest
 from matplotlib.image import imread
 
+from robotd.localization.exact.feasible import PolygonMap
+from robotd.localization.exact.planar import PlanarSet, segment
+from robotd.localization.exact.points import Point
+from robotd.localization.exact.rationals import rational
+from robotd.localization.exact.sweep import arrange
 from tests.exact import growth
 from tests.exact.figures import FIGURES
+from tests.exact.operations import counted
 from tests.exact.run import main
-from tests.exact.scenes import POSE, laboratory, readings
+from tests.exact.scenes import laboratory, readings, scattered
 
 
 def test_every_figure_is_drawn(tmp_path: Path) -> None:
@@ -28,7 +36,40 @@ def test_feasible_poses_cross_in_of_the_order_of_m_squared_points() -> None:
 
 
 def test_the_laboratory_has_many_edges_and_readings_of_both_kinds() -> None:
-    walls = laboratory()
-    beams = readings(walls, POSE, 24)
+    walls, pose = laboratory()
+    beams = readings(walls, pose, 24)
     assert len(walls.borders) >= 60
     assert {beam.is_hit for beam in beams} == {True, False}
+
+
+@pytest.mark.parametrize("eps", ["0", "0.05"])
+def test_a_sweep_asks_of_the_order_of_n_plus_s_times_log_n_predicates(eps: str) -> None:
+    asked = []
+    for edges in (12, 48, 192):
+        walls, pose = scattered(edges, seed=edges)
+        row = growth.grown_by(PolygonMap(walls, rational(eps)), readings(walls, pose, 1), eps, overlay=False)
+        asked.append(row.predicates / row.work)
+    assert max(asked) < 5.0
+    assert asked[2] < 1.15 * asked[0], "a square would grow sixteenfold"
+
+
+def crossed(count: int) -> list[PlanarSet]:
+    """Return so many segments from west to east and from south to north, every two of which cross apart from others."""
+    sets = []
+    for number in range(count):
+        low, high = rational(number), count - 1 - number + rational(number) / 97
+        for ends in (((0, low), (count, high)), ((low, 0), (high, count))):
+            start, end = (Point(rational(x), rational(y)) for x, y in ends)
+            sets.append(PlanarSet((segment(start, end, on=True, left=False, right=False),)))
+    return sets
+
+
+def test_crossings_as_many_as_the_square_of_the_borders_are_paid_for_once_each() -> None:
+    asked = []
+    for count in (6, 12, 24):
+        with counted() as operations:
+            crossings = growth.crossings_of(arrange(crossed(count)))
+        assert crossings > count * count
+        asked.append(operations.all_of_them / ((2 * count + crossings) * math.log2(2 * count)))
+    assert max(asked) < 9.0
+    assert asked == sorted(asked, reverse=True)

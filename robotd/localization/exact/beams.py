@@ -3,11 +3,12 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 
-from robotd.localization.exact.rationals import Rational, rational
-from robotd.localization.exact.surds import Number, sign, sqrt
+from robotd.localization.exact.rationals import DEFAULT, Arithmetic, Rational, rational
+from robotd.localization.exact.surds import Number, arithmetic_of, sign, sqrt
 
-_NEAR = Rational(1, 2 * 10**9)
+_NEAR = Fraction(1, 2 * 10**9)
 """How far the half angle's tangent may be from what is asked for: directions are then within 1e-9 rad."""
 
 
@@ -33,15 +34,15 @@ class Beam:
     def body_share(self, eps: Rational) -> Number:
         """Return how much of it must be free: all but the last eps."""
         share = 1 - eps / self.length
-        return share if sign(share) > 0 else Rational(0)
+        return share if sign(share) > 0 else arithmetic_of(self.dx)(0)
 
-    def turned(self, by: tuple[Rational, Rational]) -> "Beam":
-        """Return it for a robot turned by an angle, given by its cosine and sine."""
-        cos, sin = by
+    def turned(self, by_rad: float) -> "Beam":
+        """Return it for a robot turned by an angle."""
+        cos, sin = direction(by_rad, arithmetic_of(self.dx))
         return Beam(cos * self.dx - sin * self.dy, sin * self.dx + cos * self.dy, self.is_hit)
 
 
-def direction(bearing_rad: float) -> tuple[Rational, Rational]:
+def direction(bearing_rad: float, arithmetic: Arithmetic = DEFAULT) -> tuple[Rational, Rational]:
     """Return the cosine and sine of an angle as a rational point of the unit circle, within 1e-9 of it.
 
     Quarter turns are exact.
@@ -50,32 +51,32 @@ def direction(bearing_rad: float) -> tuple[Rational, Rational]:
     0 1
     """
     quarters = round(bearing_rad / (math.pi / 2.0))
-    half = rational(math.tan((bearing_rad - quarters * math.pi / 2.0) / 2.0))
+    half = Fraction(math.tan((bearing_rad - quarters * math.pi / 2.0) / 2.0))
     tangent = _simplest(half - _NEAR, half + _NEAR)
     norm = 1 + tangent * tangent
     cos, sin = (1 - tangent * tangent) / norm, 2 * tangent / norm
     for _ in range(quarters % 4):
         cos, sin = -sin, cos
-    return cos, sin
+    return rational(cos, arithmetic), rational(sin, arithmetic)
 
 
 def beam(bearing_rad: float, reach: Rational, *, is_hit: bool = True) -> Beam:
     """Return a beam of exactly this length, in the rational direction next to a bearing."""
-    cos, sin = direction(bearing_rad)
+    cos, sin = direction(bearing_rad, arithmetic_of(reach))
     return Beam(cos * reach, sin * reach, is_hit)
 
 
 def theta_slices(beams: Iterable[Beam], headings_rad: Iterable[float]) -> list[tuple[Beam, ...]]:
     """Return the beams for each of some headings: for an unknown one, as many as the answer shall tell apart."""
     fixed = tuple(beams)
-    return [tuple(one.turned(turn) for one in fixed) for turn in map(direction, headings_rad)]
+    return [tuple(one.turned(heading_rad) for one in fixed) for heading_rad in headings_rad]
 
 
-def _simplest(low: Rational, high: Rational) -> Rational:
+def _simplest(low: Fraction, high: Fraction) -> Fraction:
     """Return the fraction of smallest denominator between two: short numbers make fast arithmetic."""
     if high < 0:
         return -_simplest(-high, -low)
-    whole = Rational(max(0, math.ceil(low)))
+    whole = Fraction(max(0, math.ceil(low)))
     if whole <= high:
         return whole
     return whole - 1 + 1 / _simplest(1 / (high - whole + 1), 1 / (low - whole + 1))

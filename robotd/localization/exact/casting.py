@@ -16,7 +16,7 @@ from robotd.localization.exact.planar import Border, PlanarSet, line_of
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import interior
 from robotd.localization.exact.rationals import Rational
-from robotd.localization.exact.surds import Number, compare, sign, sqrt
+from robotd.localization.exact.surds import Number, arithmetic_of, compare, sign, sqrt
 
 
 class Outcome(enum.StrEnum):
@@ -46,7 +46,7 @@ def cast(obstacles: PlanarSet, beam: Beam, eps: Rational, pose: Point) -> Verdic
     if entry is not None and compare(entry, beam.body_share(eps)) < 0:
         return Verdict(Outcome.BLOCKED, free_length=entry * beam.length)
     if contains(interior(obstacles), pose):  # a beam without body begins somewhere all the same
-        return Verdict(Outcome.BLOCKED, free_length=Rational(0))
+        return Verdict(Outcome.BLOCKED, free_length=arithmetic_of(beam.dx)(0))
     if beam.is_hit:
         end = pose.moved(beam.dx, beam.dy)
         square = distance_square(obstacles, end)
@@ -63,7 +63,7 @@ def rank_at(obstacles: PlanarSet, beams: Iterable[Beam], eps: Rational, pose: Po
 def distance_square(obstacles: PlanarSet, point: Point) -> Number:
     """Return the square of the distance from a point to the map."""
     if contains(obstacles, point):
-        return Rational(0)
+        return arithmetic_of(point.x)(0)
     squares = (_square(border, point) for border in obstacles.borders)
     return min(squares, key=cmp_to_key(compare))
 
@@ -73,7 +73,8 @@ def _entry(obstacles: PlanarSet, beam: Beam, pose: Point) -> Number | None:
     inside = interior(obstacles)
     met = [share for border in obstacles.borders for share in _meeting(border, beam, pose)]
     between = [share for share in met if sign(share) > 0 > compare(share, 1)]
-    shares = sorted([Rational(0), *between, Rational(1)], key=cmp_to_key(compare))
+    arithmetic = arithmetic_of(beam.dx)
+    shares = sorted([arithmetic(0), *between, arithmetic(1)], key=cmp_to_key(compare))
     for start, end in pairwise(shares):
         if compare(start, end) < 0 and contains(inside, _along(beam, (start + end) / 2, pose)):
             return start

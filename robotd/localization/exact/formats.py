@@ -7,28 +7,28 @@ simulation's worlds are read as well: the closed ``[[wall]]`` around the start i
 import json
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, Final
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, Final, Protocol
 
 from robotd.localization.exact.locate import contains
 from robotd.localization.exact.planar import PlanarSet, area_within
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import Polygon, Ring, ring_of, solid, turned
-from robotd.localization.exact.rationals import rational
+from robotd.localization.exact.rationals import DEFAULT, Arithmetic, rational
 
 _WORDS = re.compile(r"[A-Za-z]+|[(),;=]|[^\s(),;=]+")
 
 
-def map_of_geojson(text: str) -> PlanarSet:
+def map_of_geojson(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
     """Return the union of all polygons of a GeoJSON document, whatever features and collections they are in.
 
     Raises:
         ValueError: it is none, or has no polygons, or one has no area.
     """
-    return _solid(_of_geometry(json.loads(text, parse_float=str)))
+    return _solid(_of_geometry(json.loads(text, parse_float=str), arithmetic))
 
 
-def map_of_wkt(text: str) -> PlanarSet:
+def map_of_wkt(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
     """Return the union of all polygons of geometries in well-known text; other kinds are passed over.
 
     Raises:
@@ -40,11 +40,11 @@ def map_of_wkt(text: str) -> PlanarSet:
         kind = words.pop(0).upper()
         if kind in ("POLYGON", "MULTIPOLYGON") and words and words[0] == "(":
             nested = _nested(words)
-            found.extend(map(_polygon, [nested] if kind == "POLYGON" else nested))
+            found.extend(_polygon(rings, arithmetic) for rings in ([nested] if kind == "POLYGON" else nested))
     return _solid(found)
 
 
-def map_of_toml(text: str) -> PlanarSet:
+def map_of_toml(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
     """Return what is solid in a map or in a simulated world in TOML.
 
     Raises:
@@ -52,12 +52,21 @@ def map_of_toml(text: str) -> PlanarSet:
     """
     document = tomllib.loads(text, parse_float=str)
     if "wall" in document:
-        return _of_world(document)
-    found = [_polygon([item["points_m"], *item.get("holes_m", [])]) for item in document.get("obstacle", [])]
-    return _solid(found, ring_of(document["outline_m"]) if "outline_m" in document else None)
+        return _of_world(document, arithmetic)
+    found = [
+        _polygon([item["points_m"], *item.get("holes_m", [])], arithmetic) for item in document.get("obstacle", [])
+    ]
+    return _solid(found, ring_of(document["outline_m"], arithmetic) if "outline_m" in document else None)
 
 
-FORMATS: Final[dict[str, Callable[[str], PlanarSet]]] = {
+class Format(Protocol):
+    """What reads a map."""
+
+    def __call__(self, text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
+        """Return what is solid in it."""
+
+
+FORMATS: Final[dict[str, Format]] = {
     ".toml": map_of_toml,
     ".geojson": map_of_geojson,
     ".json": map_of_geojson,
@@ -73,25 +82,25 @@ def _solid(polygons: Iterable[Polygon], room: Ring | None = None) -> PlanarSet:
     return solid(found, room=room)
 
 
-def _polygon(rings: Sequence[Sequence[Sequence[Any]]]) -> Polygon:
-    outer, *holes = (ring_of(corner[:2] for corner in ring) for ring in rings)
+def _polygon(rings: Sequence[Sequence[Sequence[Any]]], arithmetic: Arithmetic) -> Polygon:
+    outer, *holes = (ring_of((corner[:2] for corner in ring), arithmetic) for ring in rings)
     return Polygon(outer, tuple(holes))
 
 
-def _of_geometry(item: dict[str, Any]) -> Iterator[Polygon]:
+def _of_geometry(item: dict[str, Any], arithmetic: Arithmetic) -> Iterator[Polygon]:
     match item.get("type"):
         case "FeatureCollection":
             for feature in item["features"]:
-                yield from _of_geometry(feature)
+                yield from _of_geometry(feature, arithmetic)
         case "Feature":
-            yield from _of_geometry(item["geometry"] or {})
+            yield from _of_geometry(item["geometry"] or {}, arithmetic)
         case "GeometryCollection":
             for geometry in item["geometries"]:
-                yield from _of_geometry(geometry)
+                yield from _of_geometry(geometry, arithmetic)
         case "Polygon":
-            yield _polygon(item["coordinates"])
+            yield _polygon(item["coordinates"], arithmetic)
         case "MultiPolygon":
-            yield from map(_polygon, item["coordinates"])
+            yield from (_polygon(rings, arithmetic) for rings in item["coordinates"])
 
 
 def _nested(words: list[str]) -> list[Any]:
@@ -115,15 +124,15 @@ def _nested(words: list[str]) -> list[Any]:
     raise ValueError("a parenthesis is not closed")
 
 
-def _of_world(document: dict[str, Any]) -> PlanarSet:
+def _of_world(document: dict[str, Any], arithmetic: Arithmetic) -> PlanarSet:
     start = document["start"]
-    at = Point(rational(start["x_m"]), rational(start["y_m"]))
+    at = Point(rational(start["x_m"], arithmetic), rational(start["y_m"], arithmetic))
     room: Ring | None = None
     obstacles: list[Polygon] = []
     for number, wall in enumerate(document["wall"], 1):
         if not wall.get("closed", True) or len(wall["points_m"]) < 3:
             raise ValueError(f"wall {number} encloses nothing: the exact algorithm takes areas")
-        ring = ring_of(wall["points_m"])
+        ring = ring_of(wall["points_m"], arithmetic)
         if room is None and _surrounds(ring, at):
             room = ring
         else:

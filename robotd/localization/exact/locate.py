@@ -7,7 +7,7 @@ from robotd.localization.exact.planar import Border, PlanarSet
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.rationals import rational
 from robotd.localization.exact.supports import Line, order_after
-from robotd.localization.exact.surds import Number, compare
+from robotd.localization.exact.surds import Number, arithmetic_of, compare
 
 
 def contains(planar: PlanarSet, point: Point) -> bool:
@@ -40,7 +40,7 @@ def middle(border: Border) -> Point:
 
 
 def _between(low: Number, high: Number) -> Number:
-    simple = rational((float(low) + float(high)) / 2.0)
+    simple = rational((float(low) + float(high)) / 2.0, arithmetic_of(low))
     return simple if compare(low, simple) < 0 < compare(high, simple) else (low + high) / 2
 
 

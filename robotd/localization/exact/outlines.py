@@ -15,15 +15,15 @@ def outlines(
     occupied: NDArray[np.bool_],
     cell: Rational,
     *,
-    x: Rational = Rational(0),  # noqa: B008  # a rational never changes
-    y: Rational = Rational(0),  # noqa: B008  # a rational never changes
+    x: Rational | int = 0,
+    y: Rational | int = 0,
     outside: bool = True,
 ) -> PlanarSet:
     """Return the union of all occupied cells, closed.
 
     Args:
         occupied: ``bool[rows, cols]``, row along +y, column along +x.
-        cell: side of one.
+        cell: side of one; its arithmetic is that of the outlines.
         x: lower left corner of cell ``(0, 0)``.
         y: the same.
         outside: whether what lies beyond the grid is solid, as it is for the rasterized algorithm.

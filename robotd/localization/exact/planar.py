@@ -107,10 +107,10 @@ def area_within(rings: Iterable[Sequence[Point]], *, closed: bool) -> PlanarSet:
     return PlanarSet(tuple(segment(*pair, on=closed, left=True, right=False) for pair in sides))
 
 
-def twice_area(ring: Sequence[Point]) -> Number:
+def twice_area(ring: Sequence[Point]) -> Number | int:
     """Return twice the area of a polygon, positive if it runs counter-clockwise."""
     pairs = zip(ring, (*ring[1:], ring[0]), strict=True)
-    return sum((one.x * other.y - other.x * one.y for one, other in pairs), Rational(0))
+    return sum(one.x * other.y - other.x * one.y for one, other in pairs)
 
 
 def length(dx: Number, dy: Number) -> Number:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from robotd.localization.exact.planar import Border, PlanarSet, area_within, twice_area
 from robotd.localization.exact.points import Point
-from robotd.localization.exact.rationals import rational
+from robotd.localization.exact.rationals import DEFAULT, Arithmetic, rational
 from robotd.localization.exact.surds import sign
 from robotd.localization.exact.sweep import arrange
 
@@ -26,13 +26,13 @@ class Polygon:
                 raise ValueError(f"a ring needs an area, got {ring}")
 
 
-def ring_of(corners: Iterable[Sequence[int | str | float]]) -> Ring:
+def ring_of(corners: Iterable[Sequence[int | str | float]], arithmetic: Arithmetic = DEFAULT) -> Ring:
     """Return a ring of ``(x, y)`` pairs; neither a corner said twice running nor the first said again at the end stays.
 
     Raises:
         ValueError: a coordinate is not a finite number.
     """
-    points = [Point(rational(x), rational(y)) for x, y in corners]
+    points = [Point(rational(x, arithmetic), rational(y, arithmetic)) for x, y in corners]
     return tuple(point for number, point in enumerate(points) if point != points[number - 1])
 
 

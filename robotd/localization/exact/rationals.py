@@ -1,24 +1,51 @@
-"""Exact rationals: the standard library's fractions, or gmpy2's where it is installed (extra ``exact``).
+"""Exact rationals, of whatever library: the arithmetic is a value that a caller passes where numbers are born.
 
-Both are numbers of one behaviour; nothing else in the package knows which is in use.
+That is where text, floats and directions become numbers. From there on every number knows what it is made of
+(:func:`robotd.localization.exact.surds.arithmetic_of`), and literals are plain integers. A map, its readings and its
+eps are to be of one arithmetic.
 """
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Final, SupportsFloat
+from importlib import import_module
+from typing import Final, Protocol, SupportsFloat
 
-if TYPE_CHECKING:
-    Rational = Fraction
-else:
-    try:
-        from gmpy2 import mpq as Rational  # noqa: N812  # it stands for a type of either library
-    except ImportError:  # what the extra `exact` installs is wanted for its speed only
-        Rational = Fraction
-
-ARITHMETIC: Final = f"{Rational.__module__.partition('.')[0]}.{Rational.__name__}"
-"""Which rationals are in use, for reports."""
+Rational = Fraction
+"""What any arithmetic's numbers are written as: they all do what a fraction does."""
 
 
-def rational(value: int | str | Fraction | SupportsFloat) -> Rational:
+class Arithmetic(Protocol):
+    """What makes a rational of a numerator and a denominator: the class of its numbers."""
+
+    def __call__(self, numerator: int, denominator: int = 1, /) -> Rational:
+        """Return the number."""
+
+
+_CLASSES = {"gmpy2": "mpq", "flint": "fmpq", "fractions": "Fraction"}
+"""Where each arithmetic lives, fastest first; all but the last are extras."""
+
+
+def _installed() -> dict[str, Arithmetic]:
+    found: dict[str, Arithmetic] = {}
+    for module, name in _CLASSES.items():
+        try:
+            found[module] = getattr(import_module(module), name)
+        except ImportError:  # it would be wanted for its speed only
+            continue
+    return found
+
+
+ARITHMETICS: Final = _installed()
+"""Every arithmetic that is installed, by the name of its module, fastest first."""
+DEFAULT: Final = next(iter(ARITHMETICS.values()))
+"""The fastest of them: what is used where nobody says otherwise."""
+
+
+def name_of(arithmetic: Arithmetic) -> str:
+    """Return the name of an installed arithmetic, for reports."""
+    return next(name for name, installed in ARITHMETICS.items() if installed is arithmetic)
+
+
+def rational(value: str | SupportsFloat, arithmetic: Arithmetic = DEFAULT) -> Rational:
     """Return a number exactly as it is written: text as a decimal, a float as the binary fraction that it is.
 
     >>> print(rational("0.1") * 10, rational(0.5))
@@ -28,14 +55,16 @@ def rational(value: int | str | Fraction | SupportsFloat) -> Rational:
         ValueError: it is not a finite number.
     """
     try:
-        exact = Fraction(value) if isinstance(value, int | str | Fraction) else _of_number(value)
+        exact = _fraction(value)
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise ValueError(f"not a finite number: {value!r}") from error
-    return Rational(exact.numerator, exact.denominator)
+    return arithmetic(exact.numerator, exact.denominator)
 
 
-def _of_number(value: SupportsFloat) -> Fraction:
-    """Return a float, a number of NumPy's or a rational of whatever kind as a fraction."""
-    if isinstance(value, Rational):
+def _fraction(value: str | SupportsFloat) -> Fraction:
+    """Return text, a float, an integer, or a rational of whatever arithmetic as a fraction."""
+    if isinstance(value, str):
+        return Fraction(value)
+    if hasattr(value, "numerator") and hasattr(value, "denominator"):
         return Fraction(int(value.numerator), int(value.denominator))
     return Fraction(float(value))

@@ -5,13 +5,13 @@ import math
 from collections.abc import Iterable
 
 from robotd.localization.exact.beams import Beam, beam
-from robotd.localization.exact.rationals import rational
+from robotd.localization.exact.rationals import DEFAULT, Arithmetic, rational
 
 _COLUMNS = {"bearing_deg", "range_m"}
 _STATUS = {"hit": True, "miss": False}
 
 
-def beams_of(lines: Iterable[str]) -> list[Beam]:
+def beams_of(lines: Iterable[str], arithmetic: Arithmetic = DEFAULT) -> list[Beam]:
     """Return the beams of a table for heading 0; a ``miss`` is an over-range reading, and no status is a hit.
 
     Ranges are exact decimals; a bearing is taken as the rational direction next to it.
@@ -23,15 +23,15 @@ def beams_of(lines: Iterable[str]) -> list[Beam]:
     missing = sorted(_COLUMNS - set(table.fieldnames or ()))
     if missing:
         raise ValueError(f"no column {', '.join(missing)}")
-    beams = [_beam(row, number) for number, row in enumerate(table, 1)]
+    beams = [_beam(row, number, arithmetic) for number, row in enumerate(table, 1)]
     if not beams:
         raise ValueError("no readings in it")
     return beams
 
 
-def _beam(row: dict[str, str], number: int) -> Beam:
+def _beam(row: dict[str, str], number: int, arithmetic: Arithmetic) -> Beam:
     status = (row.get("status") or "hit").strip()
-    reach = rational(row["range_m"])
+    reach = rational(row["range_m"], arithmetic)
     if status not in _STATUS:
         raise ValueError(f"reading {number}: the status is hit or miss, got {status}")
     if reach <= 0:

@@ -24,7 +24,7 @@ class Line:
     @classmethod
     def normalized(cls, a: Rational, b: Rational, c: Number) -> "Line":
         """Return the line ``a x + b y = c``."""
-        return cls(a / b, Rational(1), c / b) if b != 0 else cls(Rational(-1), b, -c / a)
+        return cls(a / b, b / b, c / b) if b != 0 else cls(-a / a, b, -c / a)
 
     @classmethod
     def through(cls, point: Point, dx: Rational, dy: Rational) -> "Line":
@@ -32,13 +32,13 @@ class Line:
         return cls.normalized(-dy, dx, point.y * dx - point.x * dy)
 
     @property
-    def bend(self) -> Rational:
+    def bend(self) -> Rational | int:
         """Its curvature, counter-clockwise positive, squared with its sign."""
-        return Rational(0)
+        return 0
 
     def direction(self, _: Point) -> tuple[Number, Number]:
         """Return the way it runs."""
-        return (Rational(1), -self.a) if self.b else (Rational(0), Rational(1))
+        return self.b, -self.a
 
     def side(self, point: Point) -> int:
         """Return 1 for a point above, 0 for one on it, -1 for one below."""

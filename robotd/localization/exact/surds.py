@@ -12,9 +12,8 @@ that comes a filter: an enclosure in floats, then one of 320 binary digits, tell
 
 import math
 from functools import total_ordering
-from typing import Union
 
-from robotd.localization.exact.rationals import Rational
+from robotd.localization.exact.rationals import ARITHMETICS, Arithmetic, Rational
 
 Key = tuple[int, ...]
 """What roots are ordered by: depth first, so that a radicand has only smaller roots."""
@@ -22,6 +21,7 @@ Key = tuple[int, ...]
 _COARSE_BITS = 96
 _SURE_BITS = 60
 _FINE_BITS = 320
+_RATIONALS: tuple[type[Rational], ...] = tuple(type(arithmetic(0)) for arithmetic in ARITHMETICS.values())
 _ROUNDING = 2.0**-51
 """More than the relative error of one float operation or conversion."""
 
@@ -83,7 +83,9 @@ class Surd:
         return -self + other
 
     def __truediv__(self, other: "Number | int") -> "Number":
-        return self * (other.inverse() if isinstance(other, Surd) else Rational(1) / other)
+        if isinstance(other, Surd):
+            return self * other.inverse()
+        return Surd(self.a / other, self.b / other, self.root)
 
     def __rtruediv__(self, other: Rational | int) -> "Number":
         return self.inverse() * other
@@ -102,10 +104,11 @@ class Surd:
             return _surd(self.a, -self.b, self.root) / norm
         if sign(self) == 0:
             raise ZeroDivisionError("division by a surd that is zero")
-        return Rational(1) / (self.a + self.a)  # then a = b root, though written differently
+        return 1 / (self.a + self.a)  # then a = b root, though written differently
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, int | Rational | Surd) and compare(self, other) == 0
+        is_number = isinstance(other, (int, Surd, *_RATIONALS))
+        return is_number and compare(self, other) == 0  # type: ignore[arg-type]  # what has just been asked
 
     def __lt__(self, other: "Number | int") -> bool:
         return compare(self, other) < 0
@@ -146,7 +149,14 @@ class Surd:
         return self.a * self.a - self.b * self.b * self.root.radicand
 
 
-Number = Union[Rational, Surd]  # noqa: UP007  # a rational is a name for one of two types, known at run time only
+Number = Rational | Surd
+
+
+def arithmetic_of(number: Number) -> Arithmetic:
+    """Return what the rationals are that a number is made of."""
+    while isinstance(number, Surd):
+        number = number.a
+    return type(number)
 
 
 def sign(number: Number | int) -> int:
@@ -179,14 +189,15 @@ def sqrt(number: Number) -> Number:
     """
     if sign(number) < 0:
         raise ValueError("no real root of a negative number")
+    arithmetic = arithmetic_of(number)
     if isinstance(number, Surd):
-        return Surd(Rational(0), Rational(1), Radical(number))
+        return Surd(arithmetic(0), arithmetic(1), Radical(number))
     factor, radicand = _without_squares(int(number.numerator) * int(number.denominator))
     whole = math.isqrt(radicand)
-    scale = Rational(factor, number.denominator)
+    scale = arithmetic(factor, int(number.denominator))
     if whole * whole == radicand:
         return scale * whole
-    return Surd(Rational(0), scale, Radical(Rational(radicand)))
+    return Surd(arithmetic(0), scale, Radical(arithmetic(radicand)))
 
 
 def approximation(number: Number | int) -> tuple[float, float]:

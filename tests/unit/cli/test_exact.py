@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from robotd.cli.exact import read_map
+from robotd.cli.exact_inputs import read_map
 from robotd.cli.main import main
 from robotd.core.errors import MapError
 from robotd.grid.occupancy import OccupancyGrid
@@ -71,7 +71,7 @@ def test_it_says_why_a_reading_does_not_hold(files: list[str], capsys: pytest.Ca
     assert "blocked after 2.0000 m" in said
     assert "ends in the open, 1.0000 m from the next obstacle" in said
     assert main(["exact", *files, "--at", "1", "3.5", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["rank"] == 2
+    assert json.loads(capsys.readouterr().out)["headings"][0]["rank"] == 2
 
 
 def test_it_finds_the_smallest_error(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:

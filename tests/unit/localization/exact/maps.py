@@ -5,8 +5,9 @@ from hypothesis import strategies as st
 from robotd.localization.exact.beams import Beam
 from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.points import Point
-from robotd.localization.exact.polygons import Polygon, ring_of, solid
-from robotd.localization.exact.rationals import rational
+from robotd.localization.exact.polygons import Polygon, Ring, ring_of, solid
+from robotd.localization.exact.rationals import Arithmetic
+from tests.unit.localization.exact.arithmetics import arithmetics, rationals
 
 SHAPES = [
     [(0, 0), (1, 0), (1, 1), (0, 1)],
@@ -24,20 +25,27 @@ def polygons(draw: st.DrawFn) -> Polygon:
     dx, dy = draw(st.integers(0, 5)), draw(st.integers(0, 5))
     flip = draw(st.booleans())
     shape = draw(st.sampled_from(SHAPES))
-    return Polygon(ring_of([(y + dx, x + dy) if flip else (x + dx, y + dy) for x, y in shape]))
+    return Polygon(ring_of([(y + dx, x + dy) if flip else (x + dx, y + dy) for x, y in shape], draw(arithmetics)))
 
 
-INSIDE = ring_of([(-1, -1), (7, -1), (7, 6), (6, 7), (-1, 7)])
-ROOM = Polygon(ring_of([(-2, -2), (8, -2), (8, 8), (-2, 8)]), (INSIDE,))
+def inside(arithmetic: Arithmetic) -> Ring:
+    return ring_of([(-1, -1), (7, -1), (7, 6), (6, 7), (-1, 7)], arithmetic)
+
+
+def room(arithmetic: Arithmetic) -> Polygon:
+    return Polygon(ring_of([(-2, -2), (8, -2), (8, 8), (-2, 8)], arithmetic), (inside(arithmetic),))
+
+
 obstacle_lists = st.lists(polygons(), min_size=1, max_size=3)
-solids = st.builds(lambda obstacles, room: solid(obstacles, room=room), obstacle_lists, st.sampled_from([None, INSIDE]))
+rooms = st.one_of(st.none(), st.builds(inside, arithmetics))
+solids = st.builds(lambda obstacles, around: solid(obstacles, room=around), obstacle_lists, rooms)
 
-lengths = st.integers(-4, 4).map(rational)
+lengths = rationals(st.integers(-4, 4))
 vectors = st.tuples(lengths, lengths).filter(any)
 beams = st.builds(
     lambda vector, is_hit: Beam(vector[0], vector[1], is_hit), vectors, st.sampled_from([True, True, False])
 )
-radii = st.sampled_from(["0", "1/2", "1", "5/4", "3"]).map(rational)
+radii = rationals(st.sampled_from(["0", "1/2", "1", "5/4", "3"]))
 
 
 def interesting(planar: PlanarSet) -> list[Point]:

@@ -6,6 +6,7 @@ from robotd.localization.exact.planar import PlanarSet, Spot, area_within, disk,
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.rationals import Rational, rational
 from robotd.localization.exact.surds import sign, sqrt
+from tests.unit.localization.exact.arithmetics import rationals
 
 
 def flipped(planar: PlanarSet) -> PlanarSet:
@@ -17,7 +18,7 @@ def flipped(planar: PlanarSet) -> PlanarSet:
     return PlanarSet(borders, (), not planar.far)
 
 
-coordinates = st.integers(0, 6).map(rational)
+coordinates = rationals(st.integers(0, 6))
 points = st.builds(Point, coordinates, coordinates)
 flags = st.booleans()
 
@@ -36,7 +37,7 @@ def rectangles(draw: st.DrawFn) -> PlanarSet:
     return area_within([ring], closed=draw(flags))
 
 
-disks = st.builds(disk, points, st.integers(1, 5).map(lambda n: sqrt(rational(n))), closed=flags)
+disks = st.builds(disk, points, rationals(st.integers(1, 5)).map(sqrt), closed=flags)
 
 
 @st.composite

@@ -7,15 +7,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robotd.localization.exact.beams import Beam, beam, direction, theta_slices
-from robotd.localization.exact.rationals import rational
+from robotd.localization.exact.rationals import Arithmetic, rational
 from robotd.localization.exact.surds import compare
+from tests.unit.localization.exact.arithmetics import arithmetics
 
 angles = st.floats(-10.0, 10.0) | st.floats(-1e-5, 1e-5)
 
 
-@given(angles)
-def test_a_direction_is_of_length_one_and_within_a_nanoradian(bearing_rad: float) -> None:
-    cos, sin = direction(bearing_rad)
+@given(angles, arithmetics)
+def test_a_direction_is_of_length_one_and_within_a_nanoradian(bearing_rad: float, arithmetic: Arithmetic) -> None:
+    cos, sin = direction(bearing_rad, arithmetic)
+    assert {type(cos), type(sin)} == {type(arithmetic(0))}
     assert cos * cos + sin * sin == 1
     assert math.hypot(float(cos) - math.cos(bearing_rad), float(sin) - math.sin(bearing_rad)) < 1.001e-9
 

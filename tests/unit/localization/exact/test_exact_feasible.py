@@ -10,7 +10,8 @@ from robotd.localization.exact.feasible import PolygonMap, feasible_arrangement,
 from robotd.localization.exact.locate import contains, middle
 from robotd.localization.exact.planar import Border, PlanarSet
 from robotd.localization.exact.points import Point
-from robotd.localization.exact.rationals import Rational, rational
+from robotd.localization.exact.rationals import Rational
+from tests.unit.localization.exact.arithmetics import rationals
 from tests.unit.localization.exact.maps import beams, radii, solids
 
 
@@ -35,12 +36,14 @@ def test_every_cell_is_what_casting_the_beam_says(
         assert is_feasible(arrangement.edges[edge].mask) == expected, at
 
 
+halves = rationals(st.integers(-8, 16)).map(lambda number: number / 2)
+
+
 @settings(max_examples=30, deadline=None)
-@given(solids, beams, radii, st.lists(st.tuples(st.integers(-8, 16), st.integers(-8, 16)), min_size=3, max_size=10))
+@given(solids, beams, radii, st.lists(st.builds(Point, halves, halves), min_size=3, max_size=10))
 def test_every_point_is_what_casting_the_beam_says(
-    obstacles: PlanarSet, beam: Beam, eps: Rational, halves: list[tuple[int, int]]
+    obstacles: PlanarSet, beam: Beam, eps: Rational, probes: list[Point]
 ) -> None:
     feasible = feasible_arrangement(PolygonMap(obstacles, eps), beam).select(is_feasible)
-    for x, y in halves:
-        at = Point(rational(x) / 2, rational(y) / 2)
+    for at in probes:
         assert contains(feasible, at) == (cast(obstacles, beam, eps, at).outcome is Outcome.HOLDS)

@@ -14,12 +14,13 @@ from robotd.localization.exact.minkowski import grown
 from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import Polygon, edge_count, ring_of, solid
-from robotd.localization.exact.rationals import Rational, rational
+from robotd.localization.exact.rationals import DEFAULT, Arithmetic, Rational, rational
 from robotd.localization.exact.regions import regions
 from robotd.localization.exact.smallest_error import smallest_error
-from robotd.localization.exact.surds import Number
+from robotd.localization.exact.surds import Number, Surd
 from robotd.localization.exact.sweep import arrange
-from tests.unit.localization.exact.maps import INSIDE, ROOM, beams, interesting, obstacle_lists, radii, solids
+from tests.unit.localization.exact.arithmetics import arithmetics, rationals
+from tests.unit.localization.exact.maps import beams, inside, interesting, obstacle_lists, radii, room, solids
 
 Linear = Callable[[Number, Number], tuple[Number, Number]]
 
@@ -43,8 +44,8 @@ def moved_polygon(polygon: Polygon, linear: Linear) -> Polygon:
 
 def moved_beam(beam: Beam, linear: Linear) -> Beam:
     dx, dy = linear(beam.dx, beam.dy)
-    assert isinstance(dx, Rational)
-    assert isinstance(dy, Rational)
+    assert not isinstance(dx, Surd)
+    assert not isinstance(dy, Surd)
     return Beam(dx, dy, beam.is_hit)
 
 
@@ -52,14 +53,21 @@ def moved_beam(beam: Beam, linear: Linear) -> Beam:
     ("linear", "scale", "errors"), [(rotated, "1", ["0", "1"]), (halved, "1/2", ["0", "1"]), (sheared, "1", ["0"])]
 )
 @settings(max_examples=12, deadline=None)
-@given(polygons=obstacle_lists, beam=beams, data=st.data())
+@given(polygons=obstacle_lists, beam=beams, arithmetic=arithmetics, data=st.data())
 def test_the_choice_of_axes_does_not_matter(
-    linear: Linear, scale: str, errors: list[str], polygons: list[Polygon], beam: Beam, data: st.DataObject
+    linear: Linear,
+    scale: str,
+    errors: list[str],
+    polygons: list[Polygon],
+    beam: Beam,
+    arithmetic: Arithmetic,
+    data: st.DataObject,
 ) -> None:
-    eps = rational(data.draw(st.sampled_from(errors)))
-    here = feasible_poses(PolygonMap(solid([*polygons, ROOM]), eps), beam)
-    walls = solid([moved_polygon(polygon, linear) for polygon in [*polygons, ROOM]])
-    there = feasible_poses(PolygonMap(walls, eps * rational(scale)), moved_beam(beam, linear))
+    eps = rational(data.draw(st.sampled_from(errors)), arithmetic)
+    all_of_them = [*polygons, room(arithmetic)]
+    here = feasible_poses(PolygonMap(solid(all_of_them), eps), beam)
+    walls = solid([moved_polygon(polygon, linear) for polygon in all_of_them])
+    there = feasible_poses(PolygonMap(walls, eps * rational(scale, arithmetic)), moved_beam(beam, linear))
     for point in interesting(here):
         assert contains(there, Point(*linear(point.x, point.y))) == contains(here, point)
     if eps == 0:
@@ -104,12 +112,14 @@ def test_the_rank_is_the_sum_of_single_answers(
             assert rank_at(obstacles, readings, eps, vertex.point) == sum(holding)
 
 
+quarters = rationals(st.integers(-10, 40)).map(lambda number: number / 4)
+
+
 @settings(max_examples=25, deadline=None)
-@given(solids, radii, st.lists(st.tuples(st.integers(-10, 40), st.integers(-10, 40)), min_size=4, max_size=12))
-def test_the_grown_map_is_what_is_near_it(obstacles: PlanarSet, eps: Rational, quarters: list[tuple[int, int]]) -> None:
+@given(solids, radii, st.lists(st.builds(Point, quarters, quarters), min_size=4, max_size=12))
+def test_the_grown_map_is_what_is_near_it(obstacles: PlanarSet, eps: Rational, places: list[Point]) -> None:
     whole = grown(obstacles, eps)
-    for x, y in quarters:
-        at = Point(rational(x) / 4, rational(y) / 4)
+    for at in places:
         assert contains(whole, at) == (distance_square(obstacles, at) <= eps * eps)
 
 
@@ -132,7 +142,7 @@ def test_a_ring_that_crosses_itself_is_refused() -> None:
 
 
 def test_in_a_corner_two_exact_readings_leave_one_point() -> None:
-    walls = solid([], room=INSIDE)
+    walls = solid([], room=inside(DEFAULT))
     readings = [Beam(rational(-2), rational(0)), Beam(rational(0), rational(-3)), Beam(rational(6), rational(0))]
     arrangement = ranked(PolygonMap(walls, rational(0)), readings)
     assert best_rank(arrangement) == 3
@@ -143,14 +153,14 @@ def test_in_a_corner_two_exact_readings_leave_one_point() -> None:
 
 
 def test_the_smallest_error_is_bracketed() -> None:
-    walls = solid([], room=INSIDE)
+    walls = solid([], room=inside(DEFAULT))
     # The room is 8 m wide, and the readings to the east and the west sum to 7.2 m.
     readings = [Beam(rational(5), rational(0)), Beam(rational("-2.2"), rational(0)), Beam(rational(0), rational(-3))]
-    bracket = smallest_error(walls, readings, share=rational(1), largest=rational(2), width=rational("1/32"))
+    bracket = smallest_error(walls, [readings], share=rational(1), largest=rational(2), width=rational("1/32"))
     assert bracket is not None
     assert bracket.low < rational("2/5") <= bracket.high
     assert bracket.high - bracket.low <= rational("1/32")
-    two_of_them = smallest_error(walls, readings, share=rational("2/3"), largest=rational(2), width=rational("1/32"))
+    two_of_them = smallest_error(walls, [readings], share=rational("2/3"), largest=rational(2), width=rational("1/32"))
     assert two_of_them is not None
     assert two_of_them.low == two_of_them.high == 0
 
@@ -158,7 +168,9 @@ def test_the_smallest_error_is_bracketed() -> None:
 def test_where_even_the_largest_error_is_too_small_there_is_no_bracket() -> None:
     beyond = [Beam(rational(60), rational(60))]
     assert (
-        smallest_error(solid([], room=INSIDE), beyond, share=rational(1), largest=rational(1), width=rational(1))
+        smallest_error(
+            solid([], room=inside(DEFAULT)), [beyond], share=rational(1), largest=rational(1), width=rational(1)
+        )
         is None
     )
 
@@ -167,8 +179,8 @@ def test_where_even_the_largest_error_is_too_small_there_is_no_bracket() -> None
 def test_an_impossible_search_is_refused(share: str, width: str) -> None:
     with pytest.raises(ValueError, match="cannot look for"):
         smallest_error(
-            solid([], room=INSIDE),
-            [Beam(rational(1), rational(0))],
+            solid([], room=inside(DEFAULT)),
+            [[Beam(rational(1), rational(0))]],
             share=rational(share),
             largest=rational(1),
             width=rational(width),

@@ -14,10 +14,11 @@ from robotd.localization.exact.measure import face_areas
 from robotd.localization.exact.planar import PlanarSet, Spot, area_within, disk, segment
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import ring_of
-from robotd.localization.exact.rationals import Rational, rational
+from robotd.localization.exact.rationals import rational
 from robotd.localization.exact.regions import of_rank, regions
 from robotd.localization.exact.surds import sqrt
 from robotd.localization.exact.sweep import arrange
+from tests.unit.localization.exact.arithmetics import rationals
 from tests.unit.localization.exact.shapes import planar_sets, point
 
 
@@ -67,8 +68,8 @@ def test_all_that_no_reading_denies_reaches_to_infinity() -> None:
     assert region.kind == "area"
 
 
-odd = st.integers(-50, 700).map(lambda number: 2 * number + 1)
-places = st.tuples(odd.map(lambda number: Rational(number, 194)), odd.map(lambda number: Rational(number, 178)))
+odd = rationals(st.integers(-50, 700)).map(lambda number: 2 * number + 1)
+places = st.builds(Point, odd.map(lambda number: number / 194), odd.map(lambda number: number / 178))
 """Points that are on no line and no circle of small whole numbers."""
 
 
@@ -82,13 +83,11 @@ def windings(planar: PlanarSet, x: float, y: float) -> int:
 
 @settings(max_examples=40, deadline=None)
 @given(st.lists(planar_sets, min_size=1, max_size=4), st.integers(1, 2), st.lists(places, min_size=2, max_size=6))
-def test_outlines_run_once_round_every_area(
-    sets: list[PlanarSet], least: int, somewhere: list[tuple[Rational, Rational]]
-) -> None:
+def test_outlines_run_once_round_every_area(sets: list[PlanarSet], least: int, somewhere: list[Point]) -> None:
     whole = arrange(sets).select(of_rank(least))
     corners = [corner for loop in outline_loops(whole) for corner in loop]
-    for x, y in somewhere:
-        if all(math.dist(corner, (x, y)) > 0.3 for corner in corners):  # arcs are drawn as polylines
-            assert windings(whole, float(x), float(y)) == contains(whole, Point(x, y)) - whole.far
+    for at in somewhere:
+        if all(math.dist(corner, at.floats) > 0.3 for corner in corners):  # arcs are drawn as polylines
+            assert windings(whole, *at.floats) == contains(whole, at) - whole.far
     assert len(list(single_points(whole))) == sum(spot.on for spot in whole.spots)
     assert all(len(line) >= 2 for line in single_lines(whole))

@@ -6,11 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.localization.exact.rationals import Rational, rational
+from robotd.localization.exact.rationals import rational
 from robotd.localization.exact.surds import Number, Surd, approximation, compare, enclosure, sign, sqrt
+from tests.unit.localization.exact.arithmetics import arithmetics
 
-rationals = st.fractions(-50, 50, max_denominator=40).map(rational)
-roots = st.integers(0, 60).map(lambda number: sqrt(rational(number)))
+rationals = st.builds(rational, st.fractions(-50, 50, max_denominator=40), arithmetics)
+roots = st.builds(rational, st.integers(0, 60), arithmetics).map(sqrt)
 
 
 @st.composite
@@ -101,7 +102,7 @@ def test_a_negative_number_has_no_root() -> None:
 
 
 def test_a_perfect_square_has_a_rational_root() -> None:
-    assert isinstance(sqrt(rational("0.0049")), Rational)
+    assert not isinstance(sqrt(rational("0.0049")), Surd)
     assert sqrt(rational("0.0049")) == rational("0.07")
 
 

@@ -1,0 +1,87 @@
+"""What ``robotctl exact`` is given: a map, a table of readings, and the headings to look at."""
+
+import argparse
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from robotd.core.errors import MapError, RobotdError
+from robotd.grid.binary import BinaryMap
+from robotd.localization.exact.beams import Beam, theta_slices
+from robotd.localization.exact.formats import FORMATS
+from robotd.localization.exact.outlines import outlines
+from robotd.localization.exact.planar import PlanarSet
+from robotd.localization.exact.rationals import DEFAULT, Arithmetic, rational
+from robotd.localization.exact.readings import beams_of
+from robotd.maps.store import MapStore
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A map, and the readings as they are for each heading."""
+
+    obstacles: PlanarSet
+    headings_deg: Sequence[float]
+    slices: Sequence[tuple[Beam, ...]]
+    arithmetic: Arithmetic
+
+
+def question(arguments: argparse.Namespace, arithmetic: Arithmetic) -> Question:
+    """Read what the command line names."""
+    obstacles, beams = read_map(arguments.map, arithmetic), read_beams(arguments.readings, arithmetic)
+    headings_deg = headings(arguments.heading_deg, arguments.headings, arguments.within_deg)
+    return Question(obstacles, headings_deg, theta_slices(beams, map(math.radians, headings_deg)), arithmetic)
+
+
+def headings(prior_deg: float, count: int, within_deg: float | None) -> list[float]:
+    """Return the headings to look at: evenly round, or from end to end of what lies near the prior.
+
+    >>> headings(90.0, 4, None), headings(90.0, 3, 2.0), headings(90.0, 1, 2.0)
+    ([90.0, 180.0, 270.0, 360.0], [88.0, 90.0, 92.0], [90.0])
+    """
+    if within_deg is None:
+        return [prior_deg + 360.0 * number / count for number in range(count)]
+    if count == 1:
+        return [prior_deg]
+    return [prior_deg + within_deg * (2.0 * number / (count - 1) - 1.0) for number in range(count)]
+
+
+def read_map(path: Path, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
+    """Return the obstacles of a file of polygons, or of a saved map of cells: a directory of the map store.
+
+    Raises:
+        MapError: it is neither, or damaged.
+    """
+    if path.is_dir():
+        return _read_cells(path, arithmetic)
+    if path.suffix not in FORMATS:
+        raise MapError(f"{path}: the ending must be one of {', '.join(FORMATS)}, or it must be a saved map's directory")
+    try:
+        return FORMATS[path.suffix](path.read_text(encoding="utf-8"), arithmetic)
+    except KeyError as error:
+        raise MapError(f"{path}: no {error.args[0]} where there must be one") from error
+    except (AttributeError, IndexError, TypeError) as error:
+        raise MapError(f"{path}: not built as such a file is ({error})") from error
+    except (ValueError, RecursionError) as error:
+        raise MapError(f"{path}: {error}") from error
+
+
+def _read_cells(path: Path, arithmetic: Arithmetic) -> PlanarSet:
+    grid, _ = MapStore(path.parent).load(path.name)
+    spec = grid.spec
+    x, y, cell = (rational(repr(size), arithmetic) for size in (spec.origin_x_m, spec.origin_y_m, spec.resolution_m))
+    return outlines(BinaryMap.from_grid(grid).occupied, cell, x=x, y=y)
+
+
+def read_beams(path: Path, arithmetic: Arithmetic = DEFAULT) -> list[Beam]:
+    """Return the readings of a table.
+
+    Raises:
+        RobotdError: something in it is impossible.
+    """
+    try:
+        with path.open(encoding="utf-8", newline="") as lines:
+            return beams_of(lines, arithmetic)
+    except ValueError as error:
+        raise RobotdError(f"{path}: {error}") from error
