@@ -65,7 +65,7 @@ def say_why(asked: Question, eps: Rational, pose: Point, *, as_json: bool) -> No
     rank, heading_deg, beams, verdicts = by_heading[0]
     if len(by_heading) > 1:
         print_table(("rank", "heading deg"), ((str(one[0]), f"{one[1]:.3f}") for one in by_heading))
-    print_pairs([("heading [deg]", f"{heading_deg:.3f}"), ("rank", f"{rank} of {len(beams)}")])
+    print_pairs([("heading", f"{heading_deg:.3f} deg"), ("rank", f"{rank} of {len(beams)}")])
     rows = zip(beams, verdicts, strict=True)
     print_table(("reading", "length m", "hit", "why"), (_reason(number, *row) for number, row in enumerate(rows)))
 
@@ -111,8 +111,8 @@ def say_smallest_error(asked: Question, share: Rational, *, as_json: bool) -> No
     exact = bracket.low == bracket.high
     lines = [
         ("readings needed", f"{bracket.needed} of {len(asked.slices[0])}"),
-        ("too small [m]", "nothing is" if exact else f"{low:.10f}, proved: nowhere do so many hold"),
-        ("enough [m]", f"{high:.10f}, proved: somewhere they do"),
-        ("at heading [deg]", ", ".join(f"{heading:.3f}" for heading in enough_deg)),
+        ("too small", "nothing is" if exact else f"{low:.10f} m, proved: nowhere do so many hold"),
+        ("enough", f"{high:.10f} m, proved: somewhere they do"),
+        ("at headings", ", ".join(f"{heading:.3f} deg" for heading in enough_deg)),
     ]
     print_pairs(lines)

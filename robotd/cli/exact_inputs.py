@@ -68,6 +68,7 @@ def read_map(path: Path, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
 
 
 def _read_cells(path: Path, arithmetic: Arithmetic) -> PlanarSet:
+    path = path.resolve()  # even "." has a name
     grid, _ = MapStore(path.parent).load(path.name)
     spec = grid.spec
     x, y, cell = (rational(repr(size), arithmetic) for size in (spec.origin_x_m, spec.origin_y_m, spec.resolution_m))

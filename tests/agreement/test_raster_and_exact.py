@@ -9,7 +9,10 @@ centre to centre at most eps. And the body's cells are those of points on the be
 one is occupied, the exact body, which is longer, runs through its inside.
 
 **Whatever is feasible in the raster at eps is exactly feasible at eps + delta, but for corners that the beam may
-clip.** The head is within eps of the centre of an occupied cell, so the end is within eps + delta / 2 of the obstacle.
+clip.** Without that exception the sentence is false, as a test here shows; so the bound in this direction is the
+exact answer at eps + delta with E of a map whose free space is half a cell wider.
+
+The head is within eps of the centre of an occupied cell, so the end is within eps + delta / 2 of the obstacle.
 The body of the raster is sampled once per cell of its dominant axis, at the middle, and its slope is at most 1: between
 two samples the beam may run through a cell that is not looked at, but it stays within half a cell of free ones. So E is
 that of the map shrunk by half a cell, in either axis. No smaller shrinking will do: a beam at 45 degrees clips half a
@@ -94,6 +97,17 @@ def test_what_is_feasible_in_the_raster_is_exactly_feasible_at_a_larger_error(
 ) -> None:
     truth = exact(occupied, shrunk(occupied), reading, eps + DIAGONAL)
     assert not (raster(occupied, reading, eps) & ~truth).any()
+
+
+def test_without_the_exception_for_corners_the_second_bound_would_be_false() -> None:
+    occupied = np.zeros((4, 5), np.bool_)
+    occupied[0, 1] = True
+    # From (0.5, 0.5) it runs through the upper left corner of that cell: at x = 1 it is at y = 0.92. The raster looks
+    # at x = 1.5, where it is in the row above.
+    reading = beam(math.radians(40.0), rational("3.75"), is_hit=False)
+    assert raster(occupied, reading, 0)[0, 0]
+    assert not exact(occupied, outlines(occupied, rational(1)), reading, DIAGONAL)[0, 0], "the plain statement fails"
+    assert exact(occupied, shrunk(occupied), reading, DIAGONAL)[0, 0], "the corrected one holds"
 
 
 def test_the_bounds_leave_something_to_agree_on() -> None:

@@ -55,12 +55,13 @@ class Growth:
     """s, the points where borders of several sets meet or cross."""
     predicates: int
     seconds: float
+    overlay: bool
 
     @property
     def promise(self) -> float:
-        """What the paper's theorem says, without its factor: 3 and 4 for one reading, 5 and 7 for many."""
+        """What the paper's theorem says, without its factor: 3 and 4 for one reading, 5 and 7 for an overlay of many."""
         n, m, s = self.edges, self.readings, self.crossings
-        return (n + s) * math.log2(n) if m == 1 else (m * n * n + s) * math.log2(m * n)
+        return (m * n * n + s) * math.log2(m * n) if self.overlay else (n + s) * math.log2(n)
 
     @property
     def work(self) -> float:
@@ -119,7 +120,7 @@ def with_edges(eps: str) -> Iterator[Growth]:
             for sizes in zip(*((one.borders, one.crossings, one.predicates) for one in single), strict=True)
         )
         seconds = statistics.mean(one.seconds for one in single)
-        yield Growth(single[0].edges, 1, eps, borders, crossings, predicates, seconds)
+        yield Growth(single[0].edges, 1, eps, borders, crossings, predicates, seconds, overlay=False)
 
 
 def with_readings(edges: int, eps: str) -> Iterator[Growth]:

@@ -83,6 +83,8 @@ def _solid(polygons: Iterable[Polygon], room: Ring | None = None) -> PlanarSet:
 
 
 def _polygon(rings: Sequence[Sequence[Sequence[Any]]], arithmetic: Arithmetic) -> Polygon:
+    if not rings:
+        raise ValueError("a polygon has no ring")
     outer, *holes = (ring_of((corner[:2] for corner in ring), arithmetic) for ring in rings)
     return Polygon(outer, tuple(holes))
 

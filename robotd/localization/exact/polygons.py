@@ -30,10 +30,16 @@ def ring_of(corners: Iterable[Sequence[int | str | float]], arithmetic: Arithmet
     """Return a ring of ``(x, y)`` pairs; neither a corner said twice running nor the first said again at the end stays.
 
     Raises:
-        ValueError: a coordinate is not a finite number.
+        ValueError: a corner has no two coordinates, or one is not a finite number.
     """
-    points = [Point(rational(x, arithmetic), rational(y, arithmetic)) for x, y in corners]
+    points = [_corner(corner, arithmetic) for corner in corners]
     return tuple(point for number, point in enumerate(points) if point != points[number - 1])
+
+
+def _corner(numbers: Sequence[int | str | float], arithmetic: Arithmetic) -> Point:
+    if len(numbers) != 2:
+        raise ValueError(f"a corner needs x and y, got {numbers}")
+    return Point(rational(numbers[0], arithmetic), rational(numbers[1], arithmetic))
 
 
 def turned(ring: Ring, *, counter_clockwise: bool) -> Ring:
@@ -53,7 +59,10 @@ def solid(polygons: Iterable[Polygon], *, room: Ring | None = None) -> PlanarSet
     if room is not None:
         outside = area_within([turned(room, counter_clockwise=False)], closed=True)
         sets.append(PlanarSet(outside.borders, far=True))
-    return arrange(sets).select(bool)
+    try:
+        return arrange(sets).select(bool)
+    except ValueError as error:
+        raise ValueError(f"{error}: a ring crosses or overlaps itself or another of its polygon") from error
 
 
 def edge_count(obstacles: PlanarSet) -> int:

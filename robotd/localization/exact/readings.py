@@ -30,10 +30,15 @@ def beams_of(lines: Iterable[str], arithmetic: Arithmetic = DEFAULT) -> list[Bea
 
 
 def _beam(row: dict[str, str], number: int, arithmetic: Arithmetic) -> Beam:
+    if None in row or None in (row["bearing_deg"], row["range_m"]):
+        raise ValueError(f"reading {number}: another number of columns than names")
     status = (row.get("status") or "hit").strip()
-    reach = rational(row["range_m"], arithmetic)
     if status not in _STATUS:
         raise ValueError(f"reading {number}: the status is hit or miss, got {status}")
+    try:
+        bearing, reach = rational(row["bearing_deg"]), rational(row["range_m"], arithmetic)
+    except ValueError as error:
+        raise ValueError(f"reading {number}: {error}") from error
     if reach <= 0:
         raise ValueError(f"reading {number}: range_m must be positive, got {row['range_m']}")
-    return beam(math.radians(float(row["bearing_deg"])), reach, is_hit=_STATUS[status])
+    return beam(math.radians(bearing), reach, is_hit=_STATUS[status])

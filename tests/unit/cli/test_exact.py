@@ -13,7 +13,7 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.spec import GridSpec
 from robotd.localization.exact.locate import contains
 from robotd.localization.exact.points import Point
-from robotd.localization.exact.rationals import rational
+from robotd.localization.exact.rationals import ARITHMETICS, rational
 from robotd.maps.store import MapStore
 
 MAP = """outline_m = [[0, 0], [8, 0], [8, 6], [0, 6]]
@@ -81,6 +81,47 @@ def test_it_finds_the_smallest_error(files: list[str], capsys: pytest.CaptureFix
     assert bracket["above_m"] < 0.1 <= bracket["at_most_m"] < bracket["above_m"] + 0.0011
 
 
+def test_headings_near_the_prior_share_the_questions(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    near = ["--heading-deg", "90", "--within-deg", "30", "--headings", "3", "--json"]
+    Path(files[1]).write_text("bearing_deg,range_m\n-90,7.1\n90,1.1\n0,4\n", encoding="utf-8")
+    assert main(["exact", *files, "--at", "1", "2", "--eps-m", "0.1", *near]) == 0
+    headings = json.loads(capsys.readouterr().out)["headings"]
+    assert (headings[0]["heading_deg"], headings[0]["rank"]) == (90.0, 3)
+    assert sorted(one["heading_deg"] for one in headings) == [60.0, 90.0, 120.0]
+    assert max(one["rank"] for one in headings[1:]) < 3
+    assert main(["exact", *files, "--smallest-error", "1", *near]) == 0
+    bracket = json.loads(capsys.readouterr().out)
+    assert bracket["headings_deg"] == [90.0]
+    assert bracket["above_m"] < 0.1 <= bracket["at_most_m"]
+    assert bracket["needed"] == 3
+
+
+def test_a_share_of_the_readings_is_rounded_up(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    Path(files[1]).write_text("bearing_deg,range_m\n0,7.1\n180,1.1\n90,4\n", encoding="utf-8")
+    assert main(["exact", *files, "--smallest-error", "0.5"]) == 0
+    said = capsys.readouterr().out
+    assert "2 of 3" in said
+    assert "nothing is" in said
+    assert main(["exact", *files, "--smallest-error", "0.7"]) == 0
+    said = capsys.readouterr().out
+    assert "3 of 3" in said
+    assert "0.0996093750 m, proved" in said
+    assert "0.1005859375 m, proved" in said
+
+
+@pytest.mark.parametrize("arithmetic", ARITHMETICS)
+def test_every_arithmetic_gives_the_same_answer(
+    arithmetic: str, files: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    answers = []
+    for name in ("fractions", arithmetic):
+        assert main(["exact", *files, "--eps-m", "0.1", "--arithmetic", name, "--json"]) == 0
+        answer = json.loads(capsys.readouterr().out)
+        assert answer.pop("arithmetic") == name
+        answers.append(answer)
+    assert answers[0] == answers[1]
+
+
 def test_a_saved_map_of_cells_is_a_map_of_polygons(tmp_path: Path) -> None:
     grid = OccupancyGrid(GridSpec(0.5, -1.0, 0.0, (4, 6)))
     grid.cells[:] = 0
@@ -93,7 +134,15 @@ def test_a_saved_map_of_cells_is_a_map_of_polygons(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "message"), [("map.txt", MAP, "the ending must be"), ("map.toml", "x = 1", "no polygons")]
+    ("name", "text", "message"),
+    [
+        ("map.txt", MAP, "the ending must be"),
+        ("map.toml", "x = 1", "no polygons"),
+        ("map.toml", "obstacle = 3", "not built as such a file is"),
+        ("map.toml", "[[obstacle]]", "no points_m"),
+        ("map.json", "[1, 2]", "not built as such a file is"),
+        ("map.json", "{", "Expecting"),
+    ],
 )
 def test_what_is_no_map_is_refused(tmp_path: Path, name: str, text: str, message: str) -> None:
     (tmp_path / name).write_text(text, encoding="utf-8")

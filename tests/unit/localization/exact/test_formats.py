@@ -51,6 +51,9 @@ def test_a_map_is_the_same_in_every_format(read, text: str) -> None:  # type: ig
         (map_of_geojson, '{"type": "Point", "coordinates": [1, 2]}', "no polygons"),
         (map_of_wkt, "POLYGON ((0 0, 1 0, 1 1", "not closed"),
         (map_of_wkt, "POLYGON ((0 0, 1 0, 2 0))", "an area"),
+        (map_of_wkt, "POLYGON ((0 0, 4 4, 4 0, 0 3))", "a ring crosses or overlaps itself"),
+        (map_of_geojson, '{"type": "Polygon", "coordinates": []}', "no ring"),
+        (map_of_geojson, '{"type": "Polygon", "coordinates": [[[0], [1, 0], [1, 1]]]}', "needs x and y"),
         (map_of_toml, "name = 'nothing'", "no polygons"),
         (map_of_toml, "start = {x_m = 0, y_m = 0}\n[[wall]]\npoints_m = [[1, 1], [2, 2]]", "encloses nothing"),
     ],
@@ -97,6 +100,10 @@ def test_readings_are_read_exactly() -> None:
         (["bearing_deg,range_m\n"], "no readings"),
         (["bearing_deg,range_m\n", "0,-1\n"], "must be positive"),
         (["bearing_deg,range_m,status\n", "0,1,fault\n"], "hit or miss"),
+        (["bearing_deg,range_m\n", "0,1\n", "0\n"], "reading 2: another number of columns"),
+        (["bearing_deg,range_m\n", "0,1,hit\n"], "reading 1: another number of columns"),
+        (["bearing_deg,range_m\n", "nan,1\n"], "reading 1: not a finite number: 'nan'"),
+        (["bearing_deg,range_m\n", "0,far\n"], "reading 1: not a finite number: 'far'"),
     ],
 )
 def test_impossible_readings_are_refused(lines: list[str], message: str) -> None:

@@ -165,6 +165,30 @@ def test_the_smallest_error_is_bracketed() -> None:
     assert two_of_them.low == two_of_them.high == 0
 
 
+@settings(max_examples=6, deadline=None)
+@given(solids, st.lists(beams, min_size=2, max_size=4), st.integers(1, 4), arithmetics)
+def test_both_ends_of_a_bracket_are_decided(
+    obstacles: PlanarSet, readings: list[Beam], quarters: int, arithmetic: Arithmetic
+) -> None:
+    share, width = rational(quarters, arithmetic) / 4, rational("1/4", arithmetic)
+    turned = [beam.turned(0.5) for beam in readings]
+    asked = (readings, turned)
+    bracket = smallest_error(obstacles, asked, share=share, largest=rational(4, arithmetic), width=width)
+
+    def best(eps: Rational) -> list[int]:
+        return [best_rank(ranked(PolygonMap(obstacles, eps), beams)) for beams in asked]
+
+    needed = share * len(readings)
+    if bracket is None:
+        assert max(best(rational(4, arithmetic))) < needed
+        return
+    assert needed <= bracket.needed < needed + 1
+    assert [number for number, rank in enumerate(best(bracket.high)) if rank >= needed] == list(bracket.slices)
+    if bracket.low != bracket.high:
+        assert bracket.high - bracket.low <= width
+        assert max(best(bracket.low)) < needed
+
+
 def test_where_even_the_largest_error_is_too_small_there_is_no_bracket() -> None:
     beyond = [Beam(rational(60), rational(60))]
     assert (

@@ -2,6 +2,7 @@
 
 from functools import partial
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -9,12 +10,13 @@ from robotd.localization.exact.arrangement import Arrangement
 from robotd.localization.exact.locate import contains
 from robotd.localization.exact.minkowski import grown
 from robotd.localization.exact.pairwise import Part, parts, parts_of, vertices
-from robotd.localization.exact.planar import PlanarSet
+from robotd.localization.exact.planar import PlanarSet, disk, segment
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import solid
+from robotd.localization.exact.rationals import rational
 from robotd.localization.exact.sweep import arrange
 from tests.unit.localization.exact.maps import polygons, radii
-from tests.unit.localization.exact.shapes import planar_sets, points
+from tests.unit.localization.exact.shapes import planar_sets, point, points
 
 
 def same(one: Part, other: Part) -> bool:
@@ -28,12 +30,44 @@ def test_it_agrees_with_brute_force(sets: list[PlanarSet]) -> None:
     expect_brute_force(sets)
 
 
+def circle(x: int, y: int, radius: int, *, closed: bool = True) -> PlanarSet:
+    return disk(point(x, y), rational(radius), closed=closed)
+
+
+def line(start: tuple[int, int], end: tuple[int, int]) -> PlanarSet:
+    return PlanarSet((segment(point(*start), point(*end), on=True, left=False, right=False),))
+
+
 grown_polygons = st.builds(lambda polygon, eps: grown(solid([polygon]), eps), polygons(), radii)
 
 
 @settings(max_examples=40, deadline=None)
 @given(st.lists(grown_polygons, min_size=2, max_size=2))
 def test_it_agrees_with_brute_force_where_there_are_roots_under_roots(sets: list[PlanarSet]) -> None:
+    expect_brute_force(sets)
+
+
+@pytest.mark.parametrize(
+    "sets",
+    [
+        [circle(0, 0, 2), circle(0, 0, 2)],
+        [circle(0, 0, 2), circle(1, 0, 1)],
+        [circle(0, 0, 2), circle(3, 0, 1), circle(0, 3, 1)],
+        [circle(0, 0, 2), line((-3, 2), (3, 2)), line((2, -3), (2, 3))],
+        [circle(0, 0, 2), circle(0, 0, 2, closed=False), circle(0, 2, 2), line((-2, 0), (2, 0)), line((-1, 0), (5, 0))],
+        [line((-2, y), (2, -y)) for y in (-2, -1, 0, 1, 2)]
+        + [line((0, -2), (0, 2)), circle(1, 0, 1), circle(-1, 0, 1)],
+    ],
+    ids=[
+        "coincident arcs",
+        "tangent within",
+        "tangent outside",
+        "tangent to lines",
+        "all of that",
+        "through one point",
+    ],
+)
+def test_degenerate_curves_are_cut_as_by_brute_force(sets: list[PlanarSet]) -> None:
     expect_brute_force(sets)
 
 
@@ -73,8 +107,8 @@ def test_a_selection_contains_what_its_condition_says(sets: list[PlanarSet], pro
     probes += [vertex.point for vertex in arrangement.vertices]
     for least in (1, len(sets)):
         selected = arrangement.select(partial(covered, least))
-        for point in probes:
-            assert contains(selected, point) == (sum(contains(planar, point) for planar in sets) >= least)
+        for at in probes:
+            assert contains(selected, at) == (sum(contains(planar, at) for planar in sets) >= least)
 
 
 @settings(max_examples=40, deadline=None)
