@@ -59,7 +59,7 @@ class Growth:
 
     @property
     def promise(self) -> float:
-        """What the paper's theorem says, without its factor: 3 and 4 for one reading, 5 and 7 for an overlay of many."""
+        """What the paper's theorem says, without its factor: 3 and 4 for one reading, 5 and 7 for an overlay."""
         n, m, s = self.edges, self.readings, self.crossings
         return (m * n * n + s) * math.log2(m * n) if self.overlay else (n + s) * math.log2(n)
 
@@ -144,7 +144,7 @@ def grown_by(polygon_map: PolygonMap, beams: Sequence[Beam], eps: str, *, overla
     found, seconds = timed(work)
     crossings = sum(map(crossings_of, found))
     n = edge_count(polygon_map.obstacles)
-    return Growth(n, len(beams), eps, borders, crossings, operations.all_of_them, seconds)
+    return Growth(n, len(beams), eps, borders, crossings, operations.all_of_them, seconds, overlay=overlay)
 
 
 def crossings_of(arrangement: Arrangement) -> int:

@@ -21,9 +21,8 @@ _READ = """*N* are the borders that the sweeps are given, *s* the points where b
 Predicates are all comparisons of points, sides of curves, orders of curves and intersections that were asked, counted:
 over (N + s) log N they must not grow. The promise is the theorem's: (n + s) log n for one reading, (m n^2 + s) log m n
 for an overlay of several; n^2 is what D and E of one reading may have at worst, and on maps of scattered obstacles they
-have far less, so time over it falls with n. Where most of the work is crossings of arcs and slanted parallels of several
-readings, a predicate costs more, for there are roots under roots: so with an error radius time grows faster with m than
-predicates do, by a factor and no power."""
+have far less, so time over it falls with n. The time of one predicate is not the same throughout: it rises by up to a
+half from the smallest sweeps to the largest."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
