@@ -235,7 +235,7 @@ async def test_the_zeros_of_the_mount_are_applied_both_ways() -> None:
         aim = await r.pantilt.aim(0.5, 0.0, timeout_s=5.0)
         assert (aim.pan_rad, aim.tilt_rad) == pytest.approx((0.5, 0.0), abs=0.001)
         board = own_board(r.robot, "pantilt")
-        assert board._angles() == pytest.approx((2_000, 1_000), abs=10)  # type: ignore[attr-defined]  # a PanTiltBoard
+        assert tenth_mrad(board._plant) == pytest.approx((2_000, 1_000), abs=10)  # type: ignore[attr-defined]  # a PanTiltBoard
 
 
 async def test_a_head_without_end_pans_all_round_whatever_its_zero() -> None:
