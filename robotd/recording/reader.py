@@ -4,6 +4,7 @@ Only chunks whose CRC is right are believed, and only as long as the count of th
 what comes out of a damaged file is an exact beginning of what went in.
 """
 
+import os
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,8 +12,8 @@ from pathlib import Path
 from typing import IO
 
 from mcap.exceptions import InvalidMagic, McapError
-from mcap.records import Channel, Message
-from mcap.stream_reader import StreamReader
+from mcap.records import Channel, Chunk, McapRecord, Message
+from mcap.stream_reader import StreamReader, breakup_chunk
 
 from robotd.core.errors import RecordingError
 from robotd.recording.encoding import HEADER_TOPIC, decode, decode_header
@@ -75,7 +76,7 @@ def _read_open(path: Path, file: "_BoundedFile") -> Recording:
         topic, first = next(messages, ("", None))
     except InvalidMagic as error:
         raise RecordingError(f"{path} is not a recording: it does not begin as an MCAP file") from error
-    except _DAMAGE as error:
+    except (*_DAMAGE, RecordingError) as error:
         raise RecordingError(f"{path} is damaged before its header ends: {_reason(error, file)}") from error
     if first is None or topic != HEADER_TOPIC:
         raise RecordingError(f"{path} is an MCAP file, but not a recording of robotd")
@@ -96,7 +97,7 @@ def _messages(file: "_BoundedFile") -> Iterator[tuple[str, Message]]:
     """Yield the messages with their topics; at the first sign of damage raise one of ``_DAMAGE`` or RecordingError."""
     topics: dict[int, str] = {}
     read_count = 0
-    for record in StreamReader(file, validate_crcs=True, record_size_limit=_RECORD_LIMIT_BYTES).records:  # type: ignore[arg-type]  # it only calls read
+    for record in _records(file):
         if isinstance(record, Channel):
             topics[record.id] = record.topic
         elif isinstance(record, Message):
@@ -106,21 +107,42 @@ def _messages(file: "_BoundedFile") -> Iterator[tuple[str, Message]]:
             yield topics[record.channel_id], record
 
 
+def _records(file: "_BoundedFile") -> Iterator[McapRecord]:
+    """Yield all records, those in chunks among them.
+
+    Recordings are never compressed. What says that it is was made by another program, or is damage that could ask for
+    any amount of memory.
+    """
+    for record in StreamReader(
+        file,  # type: ignore[arg-type]  # it only calls read
+        emit_chunks=True,
+        validate_crcs=True,
+        record_size_limit=_RECORD_LIMIT_BYTES,
+    ).records:
+        if not isinstance(record, Chunk):
+            yield record
+        elif record.compression:
+            raise RecordingError(f"a chunk is compressed ({record.compression[:20]!r}), and recordings are not")
+        else:
+            yield from breakup_chunk(record, validate_crc=True)
+
+
 def _reason(error: Exception, file: "_BoundedFile") -> str:
     return "the file is cut" if file.exhausted else str(error)
 
 
 class _BoundedFile:
-    """A file of which a damaged length field cannot ask for more than a record may have."""
+    """A file of which a damaged length field cannot ask for more memory than there are bytes."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file = file
+        self._size = os.fstat(file.fileno()).st_size
         self.position = 0
         self.exhausted = False
         """Whether more was asked for than there is."""
 
     def read(self, size: int) -> bytes:
-        data = self._file.read(min(size, _RECORD_LIMIT_BYTES))
+        data = self._file.read(min(size, self._size))  # a buffer for more would be made, though nothing fills it
         self.position += len(data)
         self.exhausted = len(data) < size
         return data

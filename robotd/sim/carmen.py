@@ -15,6 +15,7 @@ One record a line, metres and radians. What bites in these files, and what is do
 import bz2
 import gzip
 import math
+import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -214,7 +215,7 @@ def _opened(path: Path) -> Iterator[Iterable[str]]:
             magic = file.read(3)
         with _as_text(path, magic) as lines:
             yield lines
-    except (OSError, EOFError) as error:
+    except (OSError, EOFError, zlib.error) as error:
         raise RecordingError(f"{path}: {error}") from error
     except UnicodeDecodeError as error:
         raise RecordingError(f"{path}: not a text: byte {error.start} is {error.object[error.start]:#04x}") from error

@@ -5,6 +5,7 @@ That is where text, floats and directions become numbers. From there on every nu
 eps are to be of one arithmetic.
 """
 
+import re
 from fractions import Fraction
 from importlib import import_module
 from typing import Final, Protocol, SupportsFloat
@@ -22,6 +23,9 @@ class Arithmetic(Protocol):
 
 _CLASSES = {"gmpy2": "mpq", "flint": "fmpq", "fractions": "Fraction"}
 """Where each arithmetic lives, fastest first; all but the last are extras."""
+
+
+_HUGE_EXPONENT: Final = re.compile(r"[eE][+-]?[0-9_]{4,}")
 
 
 def _installed() -> dict[str, Arithmetic]:
@@ -52,7 +56,7 @@ def rational(value: str | SupportsFloat, arithmetic: Arithmetic = DEFAULT) -> Ra
     1 1/2
 
     Raises:
-        ValueError: it is not a finite number.
+        ValueError: it is not a finite number, or text of one that no float comes near.
     """
     try:
         exact = _fraction(value)
@@ -64,7 +68,11 @@ def rational(value: str | SupportsFloat, arithmetic: Arithmetic = DEFAULT) -> Ra
 def _fraction(value: str | SupportsFloat) -> Fraction:
     """Return text, a float, an integer, or a rational of whatever arithmetic as a fraction."""
     if isinstance(value, str):
-        return Fraction(value)
+        if _HUGE_EXPONENT.search(value):
+            raise ValueError("its digits alone would take for ever")
+        exact = Fraction(value)
+        float(exact)  # everybody looks at the float first; OverflowError if there is none
+        return exact
     if hasattr(value, "numerator") and hasattr(value, "denominator"):
         return Fraction(int(value.numerator), int(value.denominator))
     return Fraction(float(value))

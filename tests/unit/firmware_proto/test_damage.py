@@ -55,7 +55,7 @@ def _doubled(wire: bytes) -> Iterator[bytes]:
 
 def _inserted(wire: bytes) -> Iterator[bytes]:
     for at in range(len(wire) + 1):
-        for value in (0x00, 0x01, 0x02, 0x03, 0x11, 0x55, 0x80, 0xFE, 0xFF):
+        for value in range(256):
             yield wire[:at] + bytes([value]) + wire[at:]
 
 
@@ -78,6 +78,27 @@ def test_damage_is_noticed_or_harmless_and_the_next_frame_survives(wire: bytes, 
         *found, last = _accepted(damaged + STOP_WIRE)
         assert found in ([], [original]), damaged.hex(" ")
         assert last == STOP
+
+
+def test_every_type_of_frame_is_damaged_here() -> None:
+    assert {_accepted(wire)[0].type for wire in WIRES.values()} == set(SIZES)
+
+
+@each_frame
+def test_a_frame_in_two_or_three_pieces_is_the_same_frame(wire: bytes) -> None:
+    (original,) = _accepted(wire)
+    for first in range(len(wire) + 1):
+        for second in range(first, len(wire) + 1):
+            deframer = Deframer()
+            pieces = (wire[:first], wire[first:second], wire[second:])
+            assert [frame for piece in pieces for frame in deframer.feed(piece)] == [original]
+
+
+@each_frame
+def test_a_frame_said_twice_is_twice_the_same_frame_and_the_next_survives(wire: bytes) -> None:
+    (original,) = _accepted(wire)
+    assert _accepted(wire + wire + STOP_WIRE) == [original, original, STOP]
+    assert _accepted(wire[:-1] + wire + STOP_WIRE) == [original, original, STOP]
 
 
 @each_frame

@@ -9,6 +9,7 @@ from typing import IO, Any, Self
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from mcap.writer import CompressionType, Writer
 
 from robotd.core.errors import RecordingError
 from robotd.hardware.link.tap import Direction, Tap
@@ -332,3 +333,17 @@ def _entries_on_disk(path: Path) -> tuple[Entry, ...]:
         return read(path).entries
     except RecordingError:
         return ()
+
+
+@pytest.mark.parametrize("compression", [CompressionType.ZSTD, CompressionType.LZ4])
+def test_what_another_program_compressed_is_refused_for_its_size_is_anybodys_guess(
+    tmp_path: Path, compression: CompressionType
+) -> None:
+    path = tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file, compression=compression)
+        writer.start()
+        writer.add_message(writer.register_channel("header", "json", 0), 0, encoding.encode_header(HEADER), 0)
+        writer.finish()  # type: ignore[no-untyped-call]  # so it is
+    with pytest.raises(RecordingError, match=f"a chunk is compressed \\('{compression.name.lower()}'\\)"):
+        read(path)

@@ -206,3 +206,12 @@ def test_raw_odometry_chained_from_the_corrected_log_is_that_of_the_raw_log(lase
         found = chained.scans[index - 1].odometry.inverse() @ chained.scans[index].odometry
         assert found.distance_m(expected) < 0.002
         assert abs(math.remainder(found.heading_rad - expected.heading_rad, math.tau)) < 0.002
+
+
+def test_a_log_whose_compression_is_damaged_is_refused(tmp_path: Path) -> None:
+    packed = gzip.compress(flaser([1.0] * 4, Pose2(0.0, 0.0, 0.0)).encode())
+    path = tmp_path / "a.log"
+    for at in range(10, len(packed)):
+        path.write_bytes(packed[:at] + b"\xff" + packed[at + 1 :])
+        with pytest.raises(RecordingError):
+            read_carmen(path)

@@ -25,6 +25,7 @@ from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
+from robotd.sim.boards.pantilt import PanTiltBoard, tenth_mrad
 from robotd.sim.head import HeadSettings
 from robotd.sim.noise import NOISELESS
 from robotd.sim.robot import SimSettings, own_board
@@ -235,7 +236,8 @@ async def test_the_zeros_of_the_mount_are_applied_both_ways() -> None:
         aim = await r.pantilt.aim(0.5, 0.0, timeout_s=5.0)
         assert (aim.pan_rad, aim.tilt_rad) == pytest.approx((0.5, 0.0), abs=0.001)
         board = own_board(r.robot, "pantilt")
-        assert tenth_mrad(board._plant) == pytest.approx((2_000, 1_000), abs=10)  # type: ignore[attr-defined]  # a PanTiltBoard
+        assert isinstance(board, PanTiltBoard)
+        assert tenth_mrad(board._plant) == pytest.approx((2_000, 1_000), abs=10)
 
 
 async def test_a_head_without_end_pans_all_round_whatever_its_zero() -> None:

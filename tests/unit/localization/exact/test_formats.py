@@ -104,6 +104,8 @@ def test_readings_are_read_exactly() -> None:
         (["bearing_deg,range_m\n", "0,1,hit\n"], "reading 1: another number of columns"),
         (["bearing_deg,range_m\n", "nan,1\n"], "reading 1: not a finite number: 'nan'"),
         (["bearing_deg,range_m\n", "0,far\n"], "reading 1: not a finite number: 'far'"),
+        (["bearing_deg,range_m\n", "0,1e999\n"], "reading 1: not a finite number: '1e999'"),
+        (["bearing_deg,range_m\n", "0,1e-9999999999\n"], "reading 1: not a finite number: '1e-9999999999'"),
     ],
 )
 def test_impossible_readings_are_refused(lines: list[str], message: str) -> None:
