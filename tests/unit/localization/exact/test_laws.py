@@ -17,7 +17,7 @@ from robotd.localization.exact.polygons import Polygon, edge_count, ring_of, sol
 from robotd.localization.exact.rationals import DEFAULT, Arithmetic, Rational, rational
 from robotd.localization.exact.regions import regions
 from robotd.localization.exact.smallest_error import smallest_error
-from robotd.localization.exact.surds import Number, Surd
+from robotd.localization.exact.surds import Number, Surd, arithmetic_of
 from robotd.localization.exact.sweep import arrange
 from tests.unit.localization.exact.arithmetics import arithmetics, rationals
 from tests.unit.localization.exact.maps import beams, inside, interesting, obstacle_lists, radii, room, solids
@@ -209,3 +209,13 @@ def test_an_impossible_search_is_refused(share: str, width: str) -> None:
             largest=rational(1),
             width=rational(width),
         )
+
+
+@settings(max_examples=10, deadline=None)
+@given(solids, st.lists(beams, min_size=1, max_size=2), radii, arithmetics)
+def test_an_answer_is_of_the_arithmetic_that_was_asked_in(
+    obstacles: PlanarSet, readings: list[Beam], eps: Rational, arithmetic: Arithmetic
+) -> None:
+    arrangement = ranked(PolygonMap(obstacles, eps), readings)
+    numbers = [number for vertex in arrangement.vertices for number in (vertex.point.x, vertex.point.y)]
+    assert all(arithmetic_of(number) is arithmetic for number in numbers)
