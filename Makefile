@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults fuzz firmware-test lint types contracts check clean
+.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults fuzz safety firmware-test lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -51,6 +51,9 @@ firmware-test: .venv/.dev  ## The boards' C against Python under the sanitizers:
 
 fuzz: .venv/.dev  ## Strange bytes for every parser, a minute each: make fuzz FUZZ_SECONDS=5; keeps what it learns in tests/fuzz/corpus
 	@$(BIN)/python -m tests.fuzz.run $(if $(FUZZ_SECONDS),--seconds $(FUZZ_SECONDS)) $(if $(ONLY),--only $(ONLY))
+
+safety: .venv/.dev  ## How late stops are on the wires in real time, all processors busy (six minutes)
+	@$(BIN)/python -m tests.safety.run
 
 lint: .venv/.dev  ## Check format and style
 	@echo "robotd: ruff"

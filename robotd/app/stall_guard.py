@@ -8,6 +8,7 @@ ends a motion in its time even then; this is sooner, and it is all that a base w
 import asyncio
 import contextlib
 import logging
+import sys
 import threading
 from collections.abc import AsyncIterator, Callable
 from typing import NoReturn
@@ -15,6 +16,9 @@ from typing import NoReturn
 STALL_S = 0.2
 """So long without a turn of the loop is a stall."""
 _BEAT_EVERY_S = STALL_S / 4
+_SWITCH_S = 0.0005
+"""A loop that computes holds the interpreter's lock; the guard asks for it a dozen times on its way to three wires, and
+each time the loop may keep it for so long. Python's own 5 ms would add up to more than the stop may take."""
 
 log = logging.getLogger(__name__)
 
@@ -29,6 +33,8 @@ async def guarded(stop_past_loop: Callable[[], None], stalled: Callable[[], None
     """
     guard = _Guard(stop_past_loop)
     thread = threading.Thread(target=guard.watch, name="stall guard", daemon=True)
+    switch_s = sys.getswitchinterval()
+    sys.setswitchinterval(_SWITCH_S)
     thread.start()
     beating = asyncio.create_task(guard.beat(stalled), name="stall guard")
     try:
@@ -38,6 +44,7 @@ async def guarded(stop_past_loop: Callable[[], None], stalled: Callable[[], None
         await asyncio.wait({beating})
         guard.end()
         thread.join()
+        sys.setswitchinterval(switch_s)
 
 
 class _Guard:

@@ -63,12 +63,27 @@ async def run_faulty_on_ptys(
 ) -> None:
     """Serve the boards on pseudo-terminals until cancelled, and let go wrong what is planned.
 
+    Raises:
+        TransportError: the links cannot be made.
+        ConfigError: a board cannot do what the plan asks of it.
+    """
+    async with cables_on_ptys(robot, directory, truth_path=truth_path) as (laid, links):
+        announce(links)
+        await carry_out(plan, laid, seed, say)
+        await asyncio.get_running_loop().create_future()
+
+
+@contextlib.asynccontextmanager
+async def cables_on_ptys(
+    robot: EmulatedRobot, directory: Path | None = None, *, truth_path: Path | None = None
+) -> AsyncIterator[tuple[dict[str, Cable], dict[str, str]]]:
+    """Serve the boards on pseudo-terminals, each at the end of a cable; yield the cables, and what to open.
+
     The devices are reached by links, in ``directory`` or in one made for them, which come and go with the plugs, as the
     names under ``/dev/serial/by-id`` do.
 
     Raises:
         TransportError: the links cannot be made.
-        ConfigError: a board cannot do what the plan asks of it.
     """
     with contextlib.ExitStack() as stack:
         home = directory or Path(stack.enter_context(TemporaryDirectory(prefix="robotd-sim-")))
@@ -85,9 +100,7 @@ async def run_faulty_on_ptys(
         async with cables(robot, truth_path=truth_path, on_plug=on_plug) as laid:
             for device in laid:
                 on_plug(device, True)
-            announce({device: str(link) for device, link in links.items()})
-            await carry_out(plan, laid, seed, say)
-            await asyncio.get_running_loop().create_future()
+            yield laid, {device: str(link) for device, link in links.items()}
 
 
 @contextlib.contextmanager

@@ -62,3 +62,16 @@ async def test_what_was_handed_back_is_noted_by_name_and_number_and_what_was_not
     await compute.run("narrow", lambda: None)
     inner.close()
     assert noted == [("narrow", 0), ("insert", 0), ("narrow", 1), ("narrow", 2)]
+
+
+@pytest.mark.real_clock
+async def test_what_is_computed_has_no_precedence_over_the_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[int, int]] = []
+    monkeypatch.setattr("os.getpriority", lambda which, who: -15)
+    monkeypatch.setattr("os.setpriority", lambda which, who, nice: asked.append((who, nice)))
+    compute = ThreadCompute()
+    try:
+        assert asked == []
+        assert [(await compute.run("where", threading.get_native_id), 0)] == asked
+    finally:
+        compute.close()

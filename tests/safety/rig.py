@@ -1,0 +1,134 @@
+"""A real daemon on real pseudo-terminals and the real clock; stops are timed at the boards' end of the line."""
+
+import asyncio
+import contextlib
+import os
+import random
+import signal
+import sys
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from robotd.cli.emulated import config_text
+from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.errors import RobotdError
+from robotd.hardware.devices.device import LinkState
+from robotd.hardware.link.tap import Direction
+from robotd.hardware.transport.transport import Transport
+from robotd.hardware.wire.board import STOP_BYTES
+from robotd.server.async_client import AsyncClient
+from robotd.sim.faults.fault import Fault
+from robotd.sim.faults.laid import cables_on_ptys
+from robotd.sim.robot import SimulatedRobot
+from robotd.sim.world import load_world
+
+NICE = -15
+"""As systemd/robotd.service has it, where it is allowed."""
+DAEMON = ("-c", "import robotd.app; robotd.app.main()", "--log-level", "error", "--config")
+STALLING_DAEMON = ("-m", "tests.safety.stalling")
+_PATIENCE_S = 30.0
+_ROOT = Path(__file__).parents[2]
+
+
+class Watch(Fault):
+    """Harms nothing; notes when a stop arrives at the board."""
+
+    def __init__(self, device: str) -> None:
+        super().__init__(random.Random(0))
+        self.device = device
+        self.last_ns = 0
+        self.arrived = asyncio.Event()
+
+    async def pass_on(self, data: bytes, way: Direction, sink: Transport) -> None:
+        if way is Direction.TO_BOARD and STOP_BYTES in data:
+            self.last_ns = now_ns()
+            self.arrived.set()
+        await super().pass_on(data, way, sink)
+
+
+@dataclass(slots=True)
+class Rig:
+    """The boards, who watches them, and how to start daemons on them."""
+
+    robot: SimulatedRobot
+    watches: tuple[Watch, ...]
+    directory: Path
+
+    @property
+    def runtime_dir(self) -> Path:
+        return self.directory / "run"
+
+    @contextlib.asynccontextmanager
+    async def daemon(
+        self, program: tuple[str, ...] = DAEMON, config: str = "robotd.toml"
+    ) -> AsyncIterator[asyncio.subprocess.Process]:
+        """Start a daemon and wait until its devices are ready; kill it in the end if it still lives."""
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, *program, str(self.directory / config), stdout=asyncio.subprocess.PIPE, cwd=_ROOT
+        )
+        with contextlib.suppress(PermissionError):
+            os.setpriority(os.PRIO_PROCESS, process.pid, NICE)
+        try:
+            async with AsyncClient(self.runtime_dir) as client:
+                await until_ready(client)
+            yield process
+        finally:
+            if process.returncode is None:
+                process.send_signal(signal.SIGKILL)
+            await process.wait()
+
+    def expect_stops(self) -> None:
+        """Look out for stops from here on."""
+        for watch in self.watches:
+            watch.arrived.clear()
+
+    async def stopped_ns(self) -> int:
+        """Return when the first stop since then had arrived on every wire."""
+        async with asyncio.timeout(_PATIENCE_S):
+            for watch in self.watches:
+                await watch.arrived.wait()
+        return max(watch.last_ns for watch in self.watches)
+
+
+async def until_ready(client: AsyncClient) -> None:
+    """Wait until every device is there."""
+    async with asyncio.timeout(_PATIENCE_S):
+        while True:
+            with contextlib.suppress(RobotdError):
+                if all(device.link is LinkState.READY for device in (await client.status()).devices):
+                    return
+            await asyncio.sleep(0.05)
+
+
+async def armed(client: AsyncClient) -> None:
+    """Arm, clearing what the boards latched."""
+    with contextlib.suppress(RobotdError):
+        await client.arm()
+        return
+    await client.clear()
+    await client.arm()
+
+
+@contextlib.asynccontextmanager
+async def rig(directory: Path) -> AsyncIterator[Rig]:
+    """Put a robot's boards on pseudo-terminals, with a configuration to run a daemon on them."""
+    robot = SimulatedRobot(load_world("laboratory"), seed=4)
+    async with cables_on_ptys(robot, directory / "devices") as (laid, ports):
+        watches = tuple(Watch(device) for device in laid)
+        for watch in watches:
+            laid[watch.device].set_fault(watch)
+        text = config_text(ports)
+        for name, more in (("robotd.toml", ""), ("quick.toml", "\n[sweep]\nreadings = 4\n")):
+            (directory / name).write_text(text + more)
+        yield Rig(robot, watches, directory)
+
+
+def ms_since(began_ns: int, ended_ns: int) -> float:
+    return (ended_ns - began_ns) / NS_PER_S * 1000.0
+
+
+async def until(happens: Callable[[], object]) -> None:
+    """Look every millisecond whether something is so."""
+    while not happens():  # noqa: ASYNC110  # nobody tells: it is in another process, or in the physics
+        await asyncio.sleep(0.001)

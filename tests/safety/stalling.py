@@ -1,0 +1,29 @@
+"""The daemon, with one thing more: on SIGUSR1 its event loop stands still, and says since when on standard output."""
+
+import asyncio
+import signal
+import sys
+import time
+from pathlib import Path
+
+from robotd.app.daemon import run
+from robotd.config import load
+from robotd.core.clock import now_ns
+
+STALL_S = 0.4
+
+
+def _stand_still() -> None:
+    print(now_ns(), flush=True)
+    until_s = time.monotonic() + STALL_S
+    while time.monotonic() < until_s:
+        """Compute, and hold the interpreter's lock as computing does."""
+
+
+async def _main() -> None:
+    asyncio.get_running_loop().add_signal_handler(signal.SIGUSR1, _stand_still)
+    await run(load(Path(sys.argv[1])))
+
+
+if __name__ == "__main__":
+    asyncio.run(_main())
