@@ -5,9 +5,10 @@ import math
 from collections.abc import Callable
 
 from robotd.cli.connection import connect
-from robotd.cli.terminal import out, print_json, print_pairs, print_table
+from robotd.cli.terminal import err, out, print_json, print_pairs, print_table
 from robotd.cli.verb import OK, Verb
 from robotd.cli.wording import as_json
+from robotd.hardware.devices.device import DeviceStatus
 from robotd.mission.events import Status
 from robotd.server.client import Client
 
@@ -39,6 +40,11 @@ def _print_status(status: Status) -> None:
         for device in status.devices
     ]
     print_table(("device", "link", "motion", "faults", "detail"), rows)
+    print_table(("device", "counted on its line since start"), [(one.name, _counted(one)) for one in status.devices])
+
+
+def _counted(device: DeviceStatus) -> str:
+    return ", ".join(f"{name} {count}" for name, count in device.counters if count) or "nothing"
 
 
 def _telling(ask: Callable[[Client], None], words: str) -> Callable[[argparse.Namespace], int]:
@@ -56,13 +62,20 @@ def _telling(ask: Callable[[Client], None], words: str) -> Callable[[argparse.Na
     return run
 
 
+def _arm(client: Client) -> None:
+    client.arm()
+    absent = [device.name for device in client.status().devices if not device.armed]
+    if absent:
+        err().print(f"without {', '.join(absent)}: it can only look round where it stands", markup=False)
+
+
 VERBS = (
     Verb("status", "show the whole robot in one look", "robotctl status --json", _status, asks_daemon=True),
     Verb(
         "arm",
         "allow motion",
         "robotctl arm",
-        _telling(lambda client: client.arm(), "armed: it may move"),
+        _telling(_arm, "armed: it may move"),
         asks_daemon=True,
     ),
     Verb(

@@ -26,7 +26,7 @@ STATUS = Status(
     mode=Mode.IDLE,
     reason="armed by request",
     devices=(
-        DeviceStatus("drive", LinkState.READY, armed=True),
+        DeviceStatus("drive", LinkState.READY, armed=True, counters=(("frames", 1203), ("retries", 0))),
         DeviceStatus("pantilt", LinkState.ABSENT, armed=False),
     ),
     battery_v=24.5,

@@ -167,7 +167,7 @@ def test_the_timeout_and_the_directory_reach_the_client(monkeypatch: pytest.Monk
 def test_status_for_people_and_for_programs(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["status"]) == 0
     said = capsys.readouterr().out
-    for part in ("idle (armed by request)", "24.5 V", "pantilt", "absent"):
+    for part in ("idle (armed by request)", "24.5 V", "pantilt", "absent", "frames 1203", "nothing"):
         assert part in said
     assert main(["status", "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
