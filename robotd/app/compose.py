@@ -9,6 +9,7 @@ from typing import Any
 from robotd.config import Config, effective_text
 from robotd.core.clock import now_ns
 from robotd.hardware.devices.catalogue import drive, line_format, pantilt, rangefinder
+from robotd.hardware.devices.gaze import Gaze
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.address import connector
 from robotd.hardware.transport.transport import Connect
@@ -46,8 +47,9 @@ def serial_connectors(config: Config) -> dict[str, Connect]:
 def compose(config: Config, connects: Mapping[str, Connect], compute: Compute, journal: PrerollJournal) -> Daemon:
     """Build the daemon on these lines; nothing is opened yet."""
     # One stream of nonces per device: who connects first must not change what the others draw.
+    gaze = Gaze()
     wirings = {
-        name: Wiring(connect, journal, random.Random(f"{journal.header.session_seed}/{name}"))
+        name: Wiring(connect, journal, random.Random(f"{journal.header.session_seed}/{name}"), gaze)
         for name, connect in connects.items()
     }
     robot = Robot(

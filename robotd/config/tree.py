@@ -6,7 +6,7 @@ from robotd.config.environment import runtime_dir
 from robotd.config.sections import MapsSettings, RecordingSettings
 from robotd.core.errors import ConfigError
 from robotd.grid.occupancy import GridSettings
-from robotd.hardware.devices.catalogue import DIALECTS, line_format
+from robotd.hardware.devices.catalogue import DIALECTS, MOTORLESS, SCANNERS, line_format
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
 from robotd.hardware.transport.address import connector
 from robotd.localization.refinement import RefinementSettings
@@ -39,6 +39,7 @@ class Config:
         for device, settings in self.devices.items():
             _check_device(device, settings)
         _check_ports_differ(self.devices)
+        _check_head(self.pantilt, self.rangefinder)
         _check_motion(self.drive, self.driving)
 
     @property
@@ -63,6 +64,14 @@ def _check_ports_differ(devices: dict[str, PortSettings]) -> None:
         owner = owners.setdefault(settings.port, device)
         if owner != device:
             raise ValueError(f"{device}.port must not be the port of another device, got that of {owner}")
+
+
+def _check_head(pantilt: PanTiltSettings, rangefinder: RangefinderSettings) -> None:
+    if (pantilt.dialect == MOTORLESS) != (rangefinder.dialect in SCANNERS):
+        raise ValueError(
+            f'pantilt.dialect must be "{MOTORLESS}" if rangefinder.dialect is a scanner ({", ".join(SCANNERS)}),'
+            f' and only then; got "{pantilt.dialect}" and "{rangefinder.dialect}"'
+        )
 
 
 def _check_motion(drive: DriveSettings, driving: DrivingSettings) -> None:

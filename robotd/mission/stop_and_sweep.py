@@ -99,16 +99,16 @@ class Sweeper:
             parts = parts[:1]
         start = await standing(self.robot, self.settings.settle_s, self.driving)
         readings: list[RangeReading] = []
-        await self.robot.rangefinder.switch_laser(on=True)
         for part in parts:
             here = await self._turn_base(start, part)
+            await self.robot.rangefinder.switch_laser(on=True)
             turned_rad = wrap_rad(here.in_odom.heading_rad - start.in_odom.heading_rad)
             for bearing_rad in part.bearings_rad:
                 reading = await self._read(bearing_rad - turned_rad, start, here)
                 readings.append(reading)
                 on_reading(reading)
                 await self._check_enough(readings)
-        await self.robot.rangefinder.switch_laser(on=False)
+            await self.robot.rangefinder.switch_laser(on=False)
         return Sweep(number, start.in_odom, tuple(readings))
 
     async def _check_enough(self, readings: list[RangeReading]) -> None:

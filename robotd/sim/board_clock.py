@@ -7,7 +7,7 @@ adapters here stand between a board and its plant.
 from dataclasses import dataclass, replace
 
 from robotd.sim.noise import stream
-from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant, ShotAnswer
+from robotd.sim.plant import DrivePlant, HeadPlant, ScannerPlant, ShotAnswer
 
 _PPB = 10**9
 _OLDEST_BOOT_US = 600_000_000
@@ -112,7 +112,7 @@ class HeadOnClock:
 class LaserOnClock:
     """A laser plant as its board times it."""
 
-    def __init__(self, plant: LaserPlant, clock: BoardClock) -> None:
+    def __init__(self, plant: ScannerPlant, clock: BoardClock) -> None:
         self._plant = plant
         self._clock = clock
 
@@ -122,7 +122,13 @@ class LaserOnClock:
 
     def shoot(self, at_us: int) -> ShotAnswer:
         """Measure along the beam."""
+        return self._timed(at_us, self._plant.shoot(self._clock.true_us(at_us)))
+
+    def measure(self, at_us: int, pan_rad: float) -> ShotAnswer:
+        """Measure in a direction."""
+        return self._timed(at_us, self._plant.measure(self._clock.true_us(at_us), pan_rad))
+
+    def _timed(self, at_us: int, answer: ShotAnswer) -> ShotAnswer:
         at_true_us = self._clock.true_us(at_us)
-        answer = self._plant.shoot(at_true_us)
         done_us = self._clock.board_us(at_true_us + answer.takes_us)
         return replace(answer, takes_us=max(1, done_us - at_us))

@@ -77,9 +77,18 @@ class Laser:
         """Measure along the beam, from where body and head are at that moment."""
         if not self._on:
             return self._answer(ShotStatus.LASER_OFF)
-        self._body.advance(at_us)
         self._head.advance(at_us)
-        range_m = self._measured_m(self.true_range_m())
+        return self._answer_along(at_us, *self._head.true_angles_rad)
+
+    def measure(self, at_us: int, pan_rad: float) -> ShotAnswer:
+        """Measure level in a direction, wherever the head points."""
+        if not self._on:
+            return self._answer(ShotStatus.LASER_OFF)
+        return self._answer_along(at_us, pan_rad, 0.0)
+
+    def _answer_along(self, at_us: int, pan_rad: float, tilt_rad: float) -> ShotAnswer:
+        self._body.advance(at_us)
+        range_m = self._measured_m(self._true_range_m(pan_rad, tilt_rad))
         if range_m > self._settings.reach_m:
             return self._answer(ShotStatus.OVER_RANGE)
         if range_m < self._settings.range_min_m:
@@ -88,8 +97,10 @@ class Laser:
 
     def true_range_m(self) -> float:
         """Return the way of the light to the first wall or the floor; ``inf`` if there is neither."""
+        return self._true_range_m(*self._head.true_angles_rad)
+
+    def _true_range_m(self, pan_rad: float, tilt_rad: float) -> float:
         settings = self._settings
-        pan_rad, tilt_rad = self._head.true_angles_rad
         tilt_rad += settings.tilt_zero_rad
         world_from_beam = self._body.true_pose @ Pose2(
             settings.mount_x_m, settings.mount_y_m, pan_rad + settings.pan_zero_rad

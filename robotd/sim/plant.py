@@ -83,3 +83,10 @@ class LaserPlant(Protocol):
 
     def shoot(self, at_us: int) -> ShotAnswer:
         """Measure along the beam as the head points at that moment."""
+
+
+class ScannerPlant(LaserPlant, Protocol):
+    """A laser that a mirror of its own can turn, too."""
+
+    def measure(self, at_us: int, pan_rad: float) -> ShotAnswer:
+        """Measure level in a direction, counter-clockwise from the robot's heading, wherever the head points."""

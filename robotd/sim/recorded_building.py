@@ -131,19 +131,22 @@ class RecordedLaser:
 
     def shoot(self, at_us: int) -> ShotAnswer:
         """Answer from the scan of the stop."""
+        return self.measure(at_us, self._head.angles_rad[0])
+
+    def measure(self, at_us: int, pan_rad: float) -> ShotAnswer:
+        """Answer from the scan of the stop, wherever the head points."""
         self._place.body.advance(at_us)
         if not self._on:
             return ShotAnswer(ShotStatus.LASER_OFF, 0.0, 0, _SHOT_US)
-        range_m = self._recorded_m()
+        range_m = self._recorded_m(pan_rad)
         if range_m is None:
             return ShotAnswer(ShotStatus.NOT_MEASURED, 0.0, 0, _SHOT_US)
         if math.isinf(range_m):
             return ShotAnswer(ShotStatus.OVER_RANGE, 0.0, 0, _SHOT_US)
         return ShotAnswer(ShotStatus.OK, range_m, _STRENGTH, _SHOT_US)
 
-    def _recorded_m(self) -> float | None:
+    def _recorded_m(self, pan_rad: float) -> float | None:
         view = self._place.view()
-        pan_rad, _ = self._head.angles_rad
         beam = None if view is None else view.nearest(pan_rad)
         if view is None or beam is None:
             return None

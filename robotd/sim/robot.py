@@ -14,7 +14,7 @@ from robotd.sim.head import Head, HeadSettings
 from robotd.sim.host import HostedBoard
 from robotd.sim.laser import Laser, LaserSettings
 from robotd.sim.noise import NoiseSettings, stream
-from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant
+from robotd.sim.plant import DrivePlant, HeadPlant, ScannerPlant
 from robotd.sim.walls import Point, clearance_m
 from robotd.sim.world import World
 
@@ -111,7 +111,7 @@ def clocks_of_seed(seed: int, skew_ppm: float) -> dict[str, BoardClock]:
 def board_by_device(
     drive: DrivePlant,
     head: HeadPlant,
-    laser: LaserPlant,
+    laser: ScannerPlant,
     *,
     clocks: dict[str, BoardClock],
     seed: int,

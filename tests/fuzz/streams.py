@@ -18,6 +18,7 @@ from robotd.hardware.wire.lwnx import LwnxWire
 from robotd.hardware.wire.ptu import PtuWire
 from robotd.hardware.wire.rflex import RflexWire
 from robotd.hardware.wire.rwi_ascii import RwiWire
+from robotd.hardware.wire.scip import ScipWire, sum_of
 from robotd.hardware.wire.tfmini import TfminiWire
 from tests.fuzz.target import Target, of_stream
 
@@ -124,6 +125,16 @@ STREAMS = (
         _hex("AA 40 00 00 70 9F", "AA 40 01 2C D2 04 57 00 C5 02", "AA 81 00 32 00 B1 A4"),
         f"{_WIRES}/lwnx.py",
         tokens=(b"\xaa\x40\x00", b"\xaa\x40\x01"),
+    ),
+    of_stream(
+        "scip",
+        ScipWire,
+        lambda: [
+            b"PP\n00P\nMODL:URG-04LX(Hokuyo Automatic Co.,Ltd.);N\nDMIN:20;4\nDMAX:5600;_\nARES:1024;\\\nAMIN:44;7\n\n",
+            b"MD0000000200000\n99b\n0000`\n1Dh1Dh1Dh" + sum_of("1Dh1Dh1Dh").encode() + b"\n\n",
+        ],
+        f"{_WIRES}/scip.py",
+        tokens=(b"\n\n", b"00P\n", b"99b\n", b"PP\n"),
     ),
     Target(
         "dictionary",

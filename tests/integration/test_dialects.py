@@ -4,6 +4,7 @@ import pytest
 
 from robotd.cli.emulated import config_text
 from robotd.config import Config, loads
+from robotd.hardware.devices.catalogue import MOTORLESS, SCANNERS
 from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.requests import LocalizeMission, MapMission
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
@@ -13,8 +14,9 @@ from tests.integration.conftest import Live
 
 COMBINATIONS = [
     *(Dialects(drive=dialect) for dialect in DRIVES if dialect != OWN),
-    *(Dialects(pantilt=dialect) for dialect in PANTILTS if dialect != OWN),
-    *(Dialects(rangefinder=dialect) for dialect in RANGEFINDERS if dialect != OWN),
+    *(Dialects(pantilt=dialect) for dialect in PANTILTS if dialect not in {OWN, MOTORLESS}),
+    *(Dialects(rangefinder=dialect) for dialect in RANGEFINDERS if dialect not in {OWN, *SCANNERS}),
+    *(Dialects(pantilt=MOTORLESS, rangefinder=scanner) for scanner in SCANNERS),
 ]
 
 

@@ -11,6 +11,7 @@ from robotd.hardware.devices.board_rangefinder import BoardRangefinder
 from robotd.hardware.devices.dimetix_rangefinder import DimetixRangefinder
 from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.dynamixel_pantilt import DynamixelPanTilt
+from robotd.hardware.devices.fixed_pantilt import FixedPanTilt
 from robotd.hardware.devices.lw20_rangefinder import Lw20Rangefinder
 from robotd.hardware.devices.lwnx_rangefinder import LwnxRangefinder
 from robotd.hardware.devices.pantilt import PanTilt
@@ -18,6 +19,7 @@ from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.rflex_drive import RflexDrive
 from robotd.hardware.devices.rwi_drive import RwiDrive
+from robotd.hardware.devices.scip_rangefinder import ScipRangefinder
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
 from robotd.hardware.devices.tfmini_rangefinder import TfminiRangefinder
 from robotd.hardware.devices.wiring import Wiring
@@ -49,6 +51,7 @@ DRIVES: Mapping[str, Dialect[DriveSettings, Drive]] = {
 PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {
     "board": Dialect(BoardPanTilt, _OURS),
     "ptu": Dialect(PtuPanTilt, LineFormat(9_600)),
+    "fixed": Dialect(FixedPanTilt, LineFormat(9_600)),  # it has no line
     "dynamixel": Dialect(DynamixelPanTilt, LineFormat(57_600)),
 }
 RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {
@@ -57,8 +60,11 @@ RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {
     "disto": Dialect(DimetixRangefinder, LineFormat(9_600, 7, "E", 1)),
     "lw20": Dialect(Lw20Rangefinder, LineFormat(115_200)),
     "lwnx": Dialect(LwnxRangefinder, LineFormat(115_200)),
+    "scip": Dialect(ScipRangefinder, LineFormat(115_200)),
     **{model.value: Dialect(TfminiRangefinder, LineFormat(115_200)) for model in Model},
 }
+MOTORLESS, SCANNERS = "fixed", ("scip",)
+"""A head without a motor needs a rangefinder that looks all round by itself, and such a one needs it."""
 
 DIALECTS: Mapping[str, Mapping[str, Dialect[PortSettings, object]]] = {
     "drive": DRIVES,  # type: ignore[dict-item]  # whoever looks here makes no adapter

@@ -22,7 +22,10 @@ class Rangefinder(Device, Protocol):
     """A point-and-shoot laser."""
 
     async def switch_laser(self, *, on: bool) -> None:
-        """Switch the light; same errors as :meth:`Device.arm`."""
+        """Switch the light; same errors as :meth:`Device.arm`.
+
+        What was measured before counts no more: it must be done whenever the robot has moved.
+        """
 
     async def shoot(self, *, timeout_s: float) -> Shot:
         """Take one reading. A reading that failed is a result, with its status.

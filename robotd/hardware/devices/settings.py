@@ -1,5 +1,6 @@
 """Settings of the three devices, as they stand in the configuration: each is one flat table."""
 
+import math
 from dataclasses import dataclass
 
 from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, RangefinderCalibration
@@ -75,6 +76,10 @@ class PanTiltSettings(PortSettings):
     """Bus id of the pan servo, where the head is made of two."""
     tilt_id: int = 2
     """Bus id of the tilt servo, where the head is made of two."""
+    pan_min_rad: float = -math.pi
+    """Where a head without a motor is not asked to look: to the right of this, seen from the robot's heading."""
+    pan_max_rad: float = math.pi
+    """Where a head without a motor is not asked to look: to the left of this, seen from the robot's heading."""
     x_m: float = 0.0
     """Pan axis in the robot frame, ahead of the centre."""
     y_m: float = 0.0
@@ -92,6 +97,10 @@ class PanTiltSettings(PortSettings):
                 raise ValueError(f"{name} must be 0 to {_SERVO_ID_MAX}, got {getattr(self, name)}")
         if self.pan_id == self.tilt_id:
             raise ValueError(f"tilt_id must differ from pan_id, got {self.tilt_id} twice")
+        if not -math.pi <= self.pan_min_rad < self.pan_max_rad <= math.pi:
+            raise ValueError(
+                f"pan_min_rad, pan_max_rad must be in order within +-pi, got {self.pan_min_rad}, {self.pan_max_rad}"
+            )
         _ = self.mount
 
     @property

@@ -1,8 +1,9 @@
 """What a device is built into."""
 
 import random
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from robotd.hardware.devices.gaze import Gaze
 from robotd.hardware.link.tap import Tap
 from robotd.hardware.transport.transport import Connect
 
@@ -17,3 +18,5 @@ class Wiring:
     """Sees every byte."""
     rng: random.Random
     """Where the nonces of the handshakes come from."""
+    gaze: Gaze = field(default_factory=Gaze)
+    """Where a scanner looks; the same for all devices of a robot."""

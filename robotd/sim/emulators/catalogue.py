@@ -14,15 +14,17 @@ from robotd.sim.emulators import rflex, rwi
 from robotd.sim.emulators.dimetix import DimetixEmulator
 from robotd.sim.emulators.disto import DistoEmulator
 from robotd.sim.emulators.dynamixel import DynamixelEmulator
+from robotd.sim.emulators.fixed import FixedEmulator
 from robotd.sim.emulators.lw20 import Lw20Emulator
 from robotd.sim.emulators.lwnx import LwnxEmulator
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.ptu import PtuEmulator
 from robotd.sim.emulators.rflex import RflexEmulator
 from robotd.sim.emulators.rwi import RwiEmulator
+from robotd.sim.emulators.scip import ScipEmulator
 from robotd.sim.emulators.tfmini import TfminiEmulator
 from robotd.sim.host import HostedBoard
-from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant
+from robotd.sim.plant import DrivePlant, HeadPlant, ScannerPlant
 
 try:
     from robotd.sim.firmware import boards as firmware
@@ -55,16 +57,18 @@ DRIVES: Mapping[str, Emulator[DrivePlant]] = {
 }
 PANTILTS: Mapping[str, Emulator[HeadPlant]] = {
     "board": Emulator(lambda plant, boot_id: PanTiltBoard(plant, boot_id=boot_id)),
+    "fixed": Emulator(lambda plant, _: FixedEmulator(plant)),
     "dynamixel": Emulator(lambda plant, _: Paced(DynamixelEmulator(plant), LineFormat(57_600))),
     "ptu": Emulator(lambda plant, _: Paced(PtuEmulator(plant), LineFormat(9_600))),
 }
-RANGEFINDERS: Mapping[str, Emulator[LaserPlant]] = {
+RANGEFINDERS: Mapping[str, Emulator[ScannerPlant]] = {
     "board": Emulator(lambda plant, boot_id: RangefinderBoard(plant, boot_id=boot_id)),
     "tfmini-s": Emulator(lambda plant, _: Paced(TfminiEmulator(plant), LineFormat(115_200))),
     "dimetix": Emulator(lambda plant, _: Paced(DimetixEmulator(plant), LineFormat(19_200, 7, "E", 1))),
     "disto": Emulator(lambda plant, _: Paced(DistoEmulator(plant), LineFormat(9_600, 7, "E", 1))),
     "lw20": Emulator(lambda plant, _: Paced(Lw20Emulator(plant), LineFormat(115_200))),
     "lwnx": Emulator(lambda plant, _: Paced(LwnxEmulator(plant), LineFormat(115_200))),
+    "scip": Emulator(lambda plant, _: Paced(ScipEmulator(plant), LineFormat(115_200))),
 }
 OWN = "board"
 
@@ -91,6 +95,8 @@ class Dialects:
             dialect = getattr(self, device)
             if dialect not in table:
                 raise ConfigError(f"no emulated {device} speaks {dialect!r}; known: {', '.join(table)}", key=device)
+        if (self.pantilt == "fixed") != (self.rangefinder == "scip"):
+            raise ConfigError("a head that is fixed and a scanner (scip) need each other", key="pantilt")
         if self.boards is Firmware.C and firmware is None:
             raise ConfigError("there was no C compiler for the firmware when robotd was installed", key="boards")
 
@@ -104,7 +110,7 @@ class Dialects:
         in_c = self.boards is Firmware.C and self.pantilt == OWN
         return (firmware.pantilt_board if in_c else PANTILTS[self.pantilt].power_up)(plant, boot_id)
 
-    def rangefinder_on(self, plant: LaserPlant, boot_id: int) -> HostedBoard:
+    def rangefinder_on(self, plant: ScannerPlant, boot_id: int) -> HostedBoard:
         """Put a board on a rangefinder."""
         in_c = self.boards is Firmware.C and self.rangefinder == OWN
         return (firmware.rangefinder_board if in_c else RANGEFINDERS[self.rangefinder].power_up)(plant, boot_id)

@@ -59,8 +59,19 @@ def test_the_effective_text_loads_to_the_same(readings: int, tilt_rad: float, po
         ("[drive]\nport = ''", "r.toml:2: drive.port: must not be empty"),
         ("[drive]\nport = 'COM3'", 'r.toml:2: drive.port: must be a device path or tcp://host:port, got "COM3"'),
         (
+            "[pantilt]\ndialect = 'fixed'",
+            (
+                'r.toml:2: pantilt.dialect: must be "fixed" if rangefinder.dialect is a scanner (scip), and only then; '
+                'got "fixed" and "board"'
+            ),
+        ),
+        (
+            "[pantilt]\npan_min_rad = 1.0\npan_max_rad = 0.5",
+            "r.toml:2: pantilt.pan_min_rad: pan_min_rad, pan_max_rad must be in order within +-pi, got 1.0, 0.5",
+        ),
+        (
             "[pantilt]\ndialect = 'klingon'",
-            'r.toml:2: pantilt.dialect: must be one of board, ptu, dynamixel; got "klingon"',
+            'r.toml:2: pantilt.dialect: must be one of board, ptu, fixed, dynamixel; got "klingon"',
         ),
         (
             "[drive]\nport = '/dev/a'\n[pantilt]\nport = '/dev/a'",

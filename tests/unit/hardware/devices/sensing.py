@@ -36,6 +36,9 @@ class Wall:
         self.shots += 1
         return self.answer
 
+    def measure(self, at_us: int, pan_rad: float) -> ShotAnswer:
+        return self.shoot(at_us)
+
 
 @dataclass
 class Sensor:
