@@ -1,10 +1,10 @@
 """How likely are readings somewhere that is not on the map?
 
 Every place of a map explains something of any sweep: there are walls everywhere, and a wall is soon laid on another.
-So a place has to explain more than is known about rooms without a map: **walls go on straight**. Reading after reading
-by bearing, either the wall of the last two goes on, or something else stands there, at a rate as where nobody has
-looked, or the reading means nothing. What the map knows beyond that is where walls end and begin, and how far off
-they are: that is what its places are recognized by.
+So a place has to explain more than is known about rooms without a map: **walls go on straight**, and open space goes
+on, too. Reading after reading by bearing, either the wall of the last two goes on, or something else stands there, at
+a rate as where nobody has looked, or the reading means nothing. What the map knows beyond that is where walls end and
+begin, and how far off they are: that is what its places are recognized by.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ from robotd.localization.error_model import ErrorModel
 from robotd.localization.patches import heads_of
 
 _GOES_ON = 0.6
-"""Chance that the wall of the last two heads goes on to the next one, some decimetres away."""
+"""Chance that the wall of the last two heads goes on to the next one; or that a miss follows a miss."""
 _ROUGHNESS_M = 0.02
 """How far walls are from straight."""
 _FARTHEST = 4.0
@@ -35,7 +35,10 @@ def elsewhere(readings: NDArray[np.float64], model: ErrorModel) -> NDArray[np.fl
     Returns:
         ``float64[m]``: for hits the density [1/m], for misses the chance; without those that mean nothing.
     """
-    known = model.anywhere(readings[:, 1], readings[:, 4] == 0.0)
+    is_hit = readings[:, 4] == 0.0
+    known = model.anywhere(readings[:, 1], is_hit)
+    stays_open = np.flatnonzero(~is_hit[1:] & ~is_hit[:-1]) + 1
+    known[stays_open] = _GOES_ON + (1.0 - _GOES_ON) * known[stays_open]
     if len(readings) > 2:
         going_on, is_wall = _going_on(readings, model)
         known[2:] = np.where(is_wall, _GOES_ON * going_on + (1.0 - _GOES_ON) * known[2:], known[2:])

@@ -36,6 +36,14 @@ def test_a_miss_is_likely_by_its_range_alone() -> None:
     assert elsewhere(readings, MODEL)[4] == math.exp(-MODEL.unknown_per_m * readings[4, 1])
 
 
+def test_after_a_miss_another_is_no_surprise() -> None:
+    readings = along_a_wall(*[0.0] * 6)
+    readings[3:5, 4] = 1.0
+    likely = elsewhere(readings, MODEL)
+    assert likely[3] < likely[4]
+    assert 0.6 < likely[4] < 1.0
+
+
 def test_one_spot_seen_twice_and_no_readings_at_all_are_no_trouble() -> None:
     twice = np.tile(along_a_wall(0.0), (5, 1))
     assert np.isfinite(elsewhere(twice, MODEL)).all()
