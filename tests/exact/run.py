@@ -2,7 +2,8 @@
 
 import argparse
 import platform
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 
 from robotd.localization.exact.polygons import edge_count
@@ -57,10 +58,12 @@ def _measured(out: Path) -> list[str]:
     ]
     print("\n".join(lines))
     lines += _laboratory(out)
-    edges = [row for eps in _RADII for row in growth.with_edges(eps)]
-    lines += _table("One reading, more edges: theorems 3 and 4", _NAMES, (_row(row) for row in edges))
-    many = [row for n in (20, 100, 400) for eps in _RADII for row in growth.with_readings(n, eps)]
-    lines += _table("More readings: theorems 5 and 7", _NAMES, (_row(row) for row in many))
+    edges: list[Growth] = []
+    single = (growth.with_edges(eps) for eps in _RADII)
+    lines += _table("One reading, more edges: theorems 3 and 4", _NAMES, _rows(single, edges))
+    many: list[Growth] = []
+    overlays = (growth.with_readings(n, eps) for n in (20, 100, 400) for eps in _RADII)
+    lines += _table("More readings: theorems 5 and 7", _NAMES, _rows(overlays, many))
     draw_growth(out / "growth.png", edges, many)
     lines += ["", _READ, "", "![Time and s, against what they should be proportional to](growth.png)"]
     pieces = ((n, count, f"{part:.4f}") for n, count, part in growth.lemma_2_pieces())
@@ -81,6 +84,13 @@ def _laboratory(out: Path) -> list[str]:
     speeds = ((name, f"{without:.2f}", f"{within:.2f}") for name, without, within in growth.by_arithmetic())
     lines += _table("The same with every arithmetic", ("module", "time [s], eps 0", "time [s], eps 0.1"), speeds)
     return [*lines, "", "![Ranks of 24 readings in the laboratory](laboratory.png)"]
+
+
+def _rows(measured: Iterable[Iterable[Growth]], kept: list[Growth]) -> Iterator[tuple[object, ...]]:
+    """Yield a table's row for each thing that is measured, at once, and keep it for the picture."""
+    for row in chain.from_iterable(measured):
+        kept.append(row)
+        yield _row(row)
 
 
 def _row(row: Growth) -> tuple[object, ...]:
