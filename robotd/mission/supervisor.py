@@ -7,6 +7,7 @@ preformatted stop goes to every board before anything is cancelled, logged or pu
 import asyncio
 import logging
 from collections.abc import Callable
+from dataclasses import replace
 
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
@@ -293,7 +294,8 @@ class Supervisor:
     async def _watch(self, device: Device) -> None:
         with device.status_changes.subscribe() as changes:
             async for status in changes:
-                self._device_changed(status)
+                # It may have been armed since, knowing of this change: that is then no news.
+                self._device_changed(replace(status, armed=status.armed or device.status.armed))
 
     def _device_changed(self, status: DeviceStatus) -> None:
         if status.name == self.robot.drive.name and status.link is LinkState.ABSENT:

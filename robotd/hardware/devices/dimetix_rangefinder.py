@@ -89,7 +89,7 @@ class DimetixRangefinder(BoughtDevice[Message]):
         return Shot(heard.time_ns, _STATUS.get(code, ReadingStatus.DEVICE_ERROR), None, None)
 
     async def _greet(self, dialogue: Dialogue[Message]) -> None:
-        dialogue.post(self.STOP)
+        dialogue.stop_now(self.STOP)
         clear = await dialogue.ask(self._tongue.off, self._is(Ready), timeout_s=_ANSWER_S, tries=_TRIES)
         if isinstance(clear.message, Failed):
             raise RemoteProtocolError(f"{self.name}: refused to clear: error {clear.message.code}")
@@ -97,7 +97,7 @@ class DimetixRangefinder(BoughtDevice[Message]):
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
         """It speaks only when asked, so that it is still there must be asked: for its temperature."""
         while True:
-            await asyncio.sleep(_IDLE_POLL_S)
+            await dialogue.until_idle(_IDLE_POLL_S)
             await dialogue.ask(
                 self._tongue.temperature, self._is(Value), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
             )

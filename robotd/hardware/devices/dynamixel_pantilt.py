@@ -106,7 +106,7 @@ class DynamixelPanTilt(BoughtDevice[Message]):
         while True:
             for servo in (self._pan, self._tilt):
                 await self._read(dialogue, servo, dynamixel.PRESENT_POSITION, 4)
-            await asyncio.sleep(_IDLE_POLL_S)
+            await dialogue.until_idle(_IDLE_POLL_S)
 
     def _report(self, heard: Heard[Message]) -> None:
         """Let go by echoes and late answers."""

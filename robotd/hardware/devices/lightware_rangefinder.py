@@ -58,7 +58,7 @@ class LightwareRangefinder(BoughtDevice[M]):
     async def _attend(self, dialogue: Dialogue[M]) -> NoReturn:
         """It speaks only when asked, so that it is still there must be asked: for its name."""
         while True:
-            await asyncio.sleep(_IDLE_POLL_S)
+            await dialogue.until_idle(_IDLE_POLL_S)
             await self._product(dialogue)
 
     def _report(self, heard: Heard[M]) -> None:

@@ -25,7 +25,7 @@ class Lw20Rangefinder(LightwareRangefinder[Answer]):
 
     async def _greet(self, dialogue: Dialogue[Answer]) -> None:
         dialogue.post(lw20.WAKE)
-        dialogue.post(self.STOP)
+        dialogue.stop_now(self.STOP)
         await self._check_product(dialogue)
         await self._fire(dialogue, on=False)
         dialogue.post(lw20.FASTEST)

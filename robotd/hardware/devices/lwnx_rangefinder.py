@@ -23,7 +23,7 @@ class LwnxRangefinder(LightwareRangefinder[Packet]):
         super().__init__(LwnxWire(), settings, wiring)
 
     async def _greet(self, dialogue: Dialogue[Packet]) -> None:
-        dialogue.post(self.STOP)
+        dialogue.stop_now(self.STOP)
         await self._check_product(dialogue)  # asked until answered, for this also chooses the binary dialect
         await self._fire(dialogue, on=False)
         await self._write(dialogue, lwnx.STREAM, 0, 4)

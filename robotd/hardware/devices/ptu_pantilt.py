@@ -106,7 +106,7 @@ class PtuPanTilt(BoughtDevice[Message]):
                 return at_tilt.time_ns
 
     async def _greet(self, dialogue: Dialogue[Message]) -> None:
-        dialogue.post(STOP_BYTES)
+        dialogue.stop_now(STOP_BYTES)
         for mode in ("FT", "ED", "CI", "I", "LE"):
             await self._set_up(dialogue, mode)
         numbers = [await self._number(dialogue, query) for query in ("PR", "TR", "PN", "PX", "TN", "TX")]
@@ -123,7 +123,7 @@ class PtuPanTilt(BoughtDevice[Message]):
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
         """It speaks only when asked, so that it is still there must be asked."""
         while True:
-            await asyncio.sleep(_IDLE_POLL_S)
+            await dialogue.until_idle(_IDLE_POLL_S)
             if not self._is_resetting:
                 await dialogue.ask(
                     command("PP"), is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True

@@ -93,7 +93,7 @@ class ScipRangefinder(BoughtDevice[Reply]):
 
     async def _greet(self, dialogue: Dialogue[Reply]) -> None:
         self._scan = None
-        dialogue.post(self.STOP)
+        dialogue.stop_now(self.STOP)
         dialogue.post(scip.USE_SCIP2)  # older ones begin in SCIP 1.1; others do not know it, and say so
         reply = (await self._described(dialogue)).message
         parameters = Parameters.of(reply)
@@ -108,7 +108,7 @@ class ScipRangefinder(BoughtDevice[Reply]):
     async def _attend(self, dialogue: Dialogue[Reply]) -> NoReturn:
         """It speaks only when asked, so that it is still there must be asked."""
         while True:
-            await asyncio.sleep(_IDLE_POLL_S)
+            await dialogue.until_idle(_IDLE_POLL_S)
             await self._described(dialogue)
 
     def _report(self, heard: Heard[Reply]) -> None:

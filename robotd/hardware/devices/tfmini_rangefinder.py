@@ -91,7 +91,7 @@ class TfminiRangefinder(BoughtDevice[Message]):
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
         """It speaks only when asked, so that it is still there must be asked."""
         while True:
-            await asyncio.sleep(_IDLE_POLL_S)
+            await dialogue.until_idle(_IDLE_POLL_S)
             await dialogue.ask(VERSION, _is_version, timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True)
 
     def _report(self, heard: Heard[Message]) -> None:

@@ -4,16 +4,20 @@ Makers' protocols have no sequence numbers, so a reply is known by what it looks
 rules: one request is under way at a time; what does not settle it is handed on as a report; and once a request was
 given up (no answer in time, or a stop came between) its answer may still come, so the next request waits until the line
 has been quiet for a moment. So does the first one: a line just opened may bring answers to what somebody asked before.
-What happens is caused by messages; timers only bound silence.
+
+What happens is caused by messages; timers only bound silence. A replay has only recorded moments, and fires a timer at
+the first of them that is not before it: hence the wait for quiet is reckoned from messages and deadlines, never from
+when a timer happened to fire, and a poll is sent only when nothing was answered for a while.
 """
 
 import asyncio
+import contextlib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Generic, NoReturn, Protocol, Self, TypeVar
 
-from robotd.core.clock import now_ns
+from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RobotdError, TransportError
 from robotd.hardware.link.tapped import TappedLine
 
@@ -94,9 +98,11 @@ class Dialogue(Generic[M]):
         self._quiet_s = quiet_s
         self._one_at_a_time = asyncio.Lock()
         self._request: _Request[M] | None = None
-        self._is_unsettled = True
         self._stops = 0
         self._heard_ns = now_ns()
+        self._answered_ns = self._heard_ns
+        self._unsettled_ns: int | None = self._heard_ns
+        """When something was given up whose answer may still come; None if all is settled."""
         self._lost: RobotdError | None = None
         self._silence_s: float | None = None
         self._bytes_came = asyncio.Event()
@@ -150,14 +156,15 @@ class Dialogue(Generic[M]):
                 self._check(self._stops if despite_stops else stops)
                 self._counters.retries += attempt > 0
                 request = self._request = _Request(settles, despite_stops)
+                given_up_ns = now_ns() + round(timeout_s * NS_PER_S)
                 try:
                     self._line.write(data)
                     async with asyncio.timeout(timeout_s):
                         return await request.answer
                 except TimeoutError:
-                    self._is_unsettled = True
+                    self._unsettled_ns = given_up_ns
                 except asyncio.CancelledError:
-                    self._is_unsettled = True
+                    self._unsettled_ns = now_ns()
                     raise
                 finally:
                     self._request = None
@@ -175,7 +182,7 @@ class Dialogue(Generic[M]):
         Never raises.
         """
         self._stops += 1
-        self._is_unsettled = True
+        self._unsettled_ns = now_ns()
         request = self._request
         if request is not None and not request.despite_stops and not request.answer.done():
             request.answer.set_exception(self._stopped())
@@ -211,19 +218,31 @@ class Dialogue(Generic[M]):
         self._reader.result()
         raise AssertionError("the reader only ends with an error")
 
+    async def until_idle(self, seconds: float) -> None:
+        """Wait until nothing is being asked, and nothing was answered for so long: time to ask whether it is there.
+
+        Bytes that answer nothing are no sign of life: a stuck line may pour them in.
+        """
+        while True:
+            async with self._one_at_a_time:
+                missing_s = seconds - (now_ns() - self._answered_ns) / NS_PER_S
+            if missing_s <= 0.0:
+                return
+            await asyncio.sleep(missing_s)
+
     async def _settle_down(self) -> None:
         """Let late answers to what was given up go by, as reports; what never falls silent is not waited for."""
         for _ in range(_PIECES_MAX):
-            if not self._is_unsettled or self._lost is not None:
+            if self._unsettled_ns is None or self._lost is not None:
                 return
-            stops = self._stops
+            missing_s = self._quiet_s - (now_ns() - max(self._unsettled_ns, self._heard_ns)) / NS_PER_S
+            if missing_s <= 0.0:
+                break
             self._bytes_came.clear()
-            try:
-                async with asyncio.timeout(self._quiet_s):
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(missing_s):
                     await self._bytes_came.wait()
-            except TimeoutError:
-                self._is_unsettled = self._stops != stops
-        self._is_unsettled = False
+        self._unsettled_ns = None
 
     async def _read(self) -> NoReturn:
         try:
@@ -242,6 +261,7 @@ class Dialogue(Generic[M]):
     def _take(self, heard: Heard[M]) -> None:
         request = self._request
         if request is not None and not request.answer.done() and request.settles(heard.message):
+            self._answered_ns = heard.time_ns
             request.answer.set_result(heard)
             return
         self._on_report(heard)

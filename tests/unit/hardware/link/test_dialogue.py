@@ -325,3 +325,21 @@ async def test_a_message_carries_the_time_of_its_last_byte() -> None:
         at_ns = now_ns()
         assert (await heard).time_ns == at_ns
         assert t.dialogue.heard_ns == at_ns
+
+
+async def test_a_poll_is_due_when_nothing_was_answered_for_a_while_however_much_is_said() -> None:
+    async with talk() as it:
+        began_ns = now_ns()
+        await asyncio.sleep(0.3)
+        await it.ask("one")
+        polls = asyncio.create_task(it.dialogue.until_idle(1.0))
+        for _ in range(40):
+            await asyncio.sleep(0.05)
+            it.far.write(b"noise\n")
+        assert polls.done()
+        await it.dialogue.until_idle(1.0)  # it is overdue: at once
+        assert (now_ns() - began_ns) / NS_PER_S < 2.5
+        await it.ask("two")
+        answered_ns = now_ns()
+        await it.dialogue.until_idle(1.0)
+        assert (now_ns() - answered_ns) / NS_PER_S == pytest.approx(1.0, abs=0.02)
