@@ -1,5 +1,6 @@
 """What a sweep stops at: ends of borders, spots, crossings; all that happens at one point is one event."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -7,6 +8,7 @@ from robotd.localization.exact.arrangement import Mask
 from robotd.localization.exact.planar import Border, PlanarSet
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.supports import HalfCircle
+from robotd.localization.exact.surds import approximation
 
 _MARGIN = 1e-9
 """Relative slack of the heights that say early that two edges cannot meet; far above the rounding of a float."""
@@ -24,12 +26,14 @@ class Piece:
     @classmethod
     def of(cls, border: Border, bit: Mask) -> "Piece":
         """Measure a border."""
-        heights = [border.start.y_float, border.end.y_float]
+        lows = [end.y_float - end.y_error for end in (border.start, border.end)]
+        highs = [end.y_float + end.y_error for end in (border.start, border.end)]
         if isinstance(border.support, HalfCircle):
-            radius = float(border.support.r2) ** 0.5
-            heights.append(float(border.support.y) + (radius if border.support.upper else -radius))
-        slack = _MARGIN * (1.0 + max(map(abs, heights)))
-        return cls(border, bit, min(heights) - slack, max(heights) + slack)
+            (y, y_error), reach = approximation(border.support.y), math.sqrt(sum(approximation(border.support.r2)))
+            lows.append(y - y_error - (0.0 if border.support.upper else reach))
+            highs.append(y + y_error + (reach if border.support.upper else 0.0))
+        slack = _MARGIN * (1.0 + max(*map(abs, lows), *map(abs, highs)))
+        return cls(border, bit, min(lows) - slack, max(highs) + slack)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

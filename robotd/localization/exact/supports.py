@@ -19,7 +19,7 @@ class Line:
 
     def __init__(self, a: Rational, b: Rational, c: Number) -> None:
         self.a, self.b, self.c = a, b, c
-        self._floats = (float(a), *approximation(c))
+        self._floats = (*approximation(a), *approximation(c))
 
     @classmethod
     def normalized(cls, a: Rational, b: Rational, c: Number) -> "Line":
@@ -42,10 +42,11 @@ class Line:
 
     def side(self, point: Point) -> int:
         """Return 1 for a point above, 0 for one on it, -1 for one below."""
-        a, c, c_error = self._floats
+        a, a_error, c, c_error = self._floats
         of_x, of_y = a * point.x_float, point.y_float if self.b else 0.0
         value = of_x + of_y - c
-        error = abs(a) * point.x_error + point.y_error + c_error + _ROUNDING * (abs(of_x) + abs(of_y) + abs(c))
+        error = abs(a) * point.x_error + a_error * (abs(point.x_float) + point.x_error) + point.y_error + c_error
+        error += _ROUNDING * (abs(of_x) + abs(of_y) + abs(c))
         if abs(value) > error:
             return 1 if value > 0.0 else -1
         return sign(self.a * point.x + self.b * point.y - self.c)
@@ -66,7 +67,7 @@ class HalfCircle:
 
     def __init__(self, x: Rational, y: Rational, r2: Rational, *, upper: bool) -> None:
         self.x, self.y, self.r2, self.upper = x, y, r2, upper
-        self._floats = float(x), float(y), float(r2)
+        self._floats = (*approximation(x), *approximation(y), *approximation(r2))
 
     @property
     def bend(self) -> Rational:
@@ -87,12 +88,12 @@ class HalfCircle:
 
     def outside(self, point: Point) -> int:
         """Return 1 for a point outside the circle, 0 for one on it, -1 for one within."""
-        x, y, r2 = self._floats
+        x, x_error, y, y_error, r2, r2_error = self._floats
         dx, dy = point.x_float - x, point.y_float - y
         value = dx * dx + dy * dy - r2
-        dx_error = point.x_error + _ROUNDING * (abs(x) + abs(dx))
-        dy_error = point.y_error + _ROUNDING * (abs(y) + abs(dy))
-        error = (2.0 * abs(dx) + dx_error) * dx_error + (2.0 * abs(dy) + dy_error) * dy_error
+        dx_error = point.x_error + x_error + _ROUNDING * abs(dx)
+        dy_error = point.y_error + y_error + _ROUNDING * abs(dy)
+        error = (2.0 * abs(dx) + dx_error) * dx_error + (2.0 * abs(dy) + dy_error) * dy_error + r2_error
         if abs(value) > error + _ROUNDING * (dx * dx + dy * dy + r2):
             return 1 if value > 0.0 else -1
         exact_dx, exact_dy = point.x - self.x, point.y - self.y

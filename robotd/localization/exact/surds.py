@@ -24,6 +24,8 @@ _FINE_BITS = 320
 _RATIONALS: tuple[type[Rational], ...] = tuple(type(arithmetic(0)) for arithmetic in ARITHMETICS.values())
 _ROUNDING = 2.0**-51
 """More than the relative error of one float operation or conversion."""
+_LEAST, _MOST = 2.0**-300, 2.0**300
+"""Floats between these can be multiplied, squared and subtracted in a predicate: nothing vanishes or overflows."""
 
 
 class Radical:
@@ -114,12 +116,16 @@ class Surd:
         return compare(self, other) < 0
 
     def __float__(self) -> float:
-        return self.approximation()[0]
+        return self._approximated()[0]
 
     def approximation(self) -> tuple[float, float]:
         """Return the number as a float, and a bound on its error."""
         if self._approximation is None:
-            self._approximation = self._approximated()
+            try:
+                value, error = self._approximated()
+            except OverflowError:
+                value, error = math.inf, math.inf
+            self._approximation = (value, error) if _LEAST < abs(value) < _MOST else _beyond_floats(value, error)
         return self._approximation
 
     def _approximated(self) -> tuple[float, float]:
@@ -187,9 +193,11 @@ def sqrt(number: Number) -> Number:
     Raises:
         ValueError: the number is negative.
     """
-    if sign(number) < 0:
+    sense, arithmetic = sign(number), arithmetic_of(number)
+    if sense < 0:
         raise ValueError("no real root of a negative number")
-    arithmetic = arithmetic_of(number)
+    if sense == 0:
+        return arithmetic(0)
     if isinstance(number, Surd):
         return Surd(arithmetic(0), arithmetic(1), Radical(number))
     factor, radicand = _without_squares(int(number.numerator) * int(number.denominator))
@@ -201,11 +209,22 @@ def sqrt(number: Number) -> Number:
 
 
 def approximation(number: Number | int) -> tuple[float, float]:
-    """Return a number as a float, and a bound on its error."""
+    """Return a number as a float, and a bound on its error: infinite, with no float at all, if it is very large."""
     if isinstance(number, Surd):
         return number.approximation()
-    value = float(number)
-    return value, abs(value) * _ROUNDING
+    try:
+        value = float(number)
+    except OverflowError:
+        value = math.inf
+    size = abs(value)
+    if _LEAST < size < _MOST or number == 0:
+        return value, size * _ROUNDING
+    return _beyond_floats(value, 0.0)
+
+
+def _beyond_floats(value: float, error: float) -> tuple[float, float]:
+    """Return what is known of a number that vanishes or overflows when floats are multiplied."""
+    return 0.0, (error + _LEAST if abs(value) <= _LEAST else math.inf)
 
 
 def enclosure(number: Number, bits: int) -> tuple[int, int]:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.localization.exact.rationals import rational
+from robotd.localization.exact.rationals import ARITHMETICS, Arithmetic, rational
 from robotd.localization.exact.surds import Number, Surd, approximation, compare, enclosure, sign, sqrt
 from tests.unit.localization.exact.arithmetics import arithmetics
 
@@ -81,6 +81,19 @@ def test_an_approximation_is_near_though_large_parts_cancel() -> None:
     assert error < 1e-12
 
 
+@pytest.mark.parametrize("arithmetic", ARITHMETICS.values(), ids=ARITHMETICS)
+@pytest.mark.parametrize("digits", [89, 91, 170, 340])
+def test_numbers_that_no_float_comes_near_are_compared_all_the_same(arithmetic: Arithmetic, digits: int) -> None:
+    huge, tiny = arithmetic(10**digits), arithmetic(1, 10**digits)
+    for number in (huge, tiny, huge * sqrt(arithmetic(2)), tiny * sqrt(arithmetic(2))):
+        half = number / 2
+        assert 0 < half < number == half + half
+        assert -number < -half < 0
+        assert compare(number * number, half * number) == 1
+        assert sign(number - half - half) == 0
+    assert tiny < 1 < huge
+
+
 def test_roots_that_are_sums_of_others_are_recognized() -> None:
     two, three, six = (sqrt(rational(number)) for number in (2, 3, 6))
     assert two * three == six
@@ -89,9 +102,19 @@ def test_roots_that_are_sums_of_others_are_recognized() -> None:
     assert sign(sqrt(5 + 2 * six) - two - three - rational("1e-60")) == -1
 
 
-def test_a_surd_that_is_zero_divides_nothing() -> None:
+def hidden_zero() -> Surd:
     zero = sqrt(rational(2)) * sqrt(rational(3)) - sqrt(rational(6))
     assert isinstance(zero, Surd)
+    return zero
+
+
+def test_the_root_of_a_surd_that_is_zero_is_zero() -> None:
+    assert sign(sqrt(hidden_zero())) == 0
+    assert sign(1 + sqrt(hidden_zero()) - 1) == 0
+
+
+def test_a_surd_that_is_zero_divides_nothing() -> None:
+    zero = hidden_zero()
     with pytest.raises(ZeroDivisionError):
         rational(1) / zero
 
