@@ -31,8 +31,9 @@ def say_where(summary: dict[str, Any], found: Sequence[Place], *, as_json: bool)
 
 def _row(heading_deg: float, region: Region) -> tuple[str, ...]:
     west, south, east, north = region.box_m
-    sizes = (region.area_m2, region.length_m, *region.centre_m, east - west, north - south)
-    return (str(region.best_rank), f"{heading_deg:.3f}", region.kind, *(f"{size:.4f}" for size in sizes))
+    sizes = (region.length_m, *region.centre_m, east - west, north - south)
+    texts = (f"{size:.4f}" if math.isfinite(size) else "-" for size in sizes)
+    return (str(region.best_rank), f"{heading_deg:.3f}", region.kind, f"{region.area_m2:.6f}", *texts)
 
 
 def _document(heading_deg: float, region: Region) -> dict[str, Any]:

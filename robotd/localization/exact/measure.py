@@ -6,15 +6,31 @@ from robotd.localization.exact.arrangement import Arrangement, Edge
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.supports import HalfCircle, Support
 
+Place = tuple[float, float]
+"""A point in floats."""
+Box = tuple[float, float, float, float]
+"""``(west, south, east, north)``."""
+
 
 def face_areas(arrangement: Arrangement) -> list[float]:
     """Return the area of every face; infinite for the far one."""
     twice = [0.0] * len(arrangement.faces)
+    corners: dict[int, Place] = {}
     for edge in arrangement.edges:
-        swept = _twice_swept(edge, *ends_of(arrangement, edge))
-        twice[edge.left] += swept
-        twice[edge.right] -= swept
+        start, end = ends_of(arrangement, edge)
+        for face, sense in ((edge.left, 1.0), (edge.right, -1.0)):
+            twice[face] += sense * _twice_swept(edge.support, start, end, corners.setdefault(face, start))
     return [math.inf, *(area / 2.0 for area in twice[1:])]
+
+
+def extent(support: Support, start: Place, end: Place) -> Box:
+    """Return the box around a piece of a support."""
+    (x, y), (end_x, end_y) = start, end
+    south, north = min(y, end_y), max(y, end_y)
+    if isinstance(support, HalfCircle) and x < float(support.x) < end_x:
+        middle, radius = float(support.y), math.sqrt(support.r2)
+        south, north = (south, middle + radius) if support.upper else (middle - radius, north)
+    return min(x, end_x), south, max(x, end_x), north
 
 
 def edge_length(arrangement: Arrangement, edge: Edge) -> float:
@@ -44,7 +60,7 @@ def angle_at(half: HalfCircle, x: float, y: float) -> float:
     return angle if half.upper else -angle
 
 
-def ends_of(arrangement: Arrangement, edge: Edge) -> tuple[tuple[float, float], tuple[float, float]]:
+def ends_of(arrangement: Arrangement, edge: Edge) -> tuple[Place, Place]:
     """Return the ends of an edge, nearly."""
     return arrangement.vertices[edge.start].point.floats, arrangement.vertices[edge.end].point.floats
 
@@ -53,11 +69,13 @@ def _turn(half: HalfCircle, x: float, y: float, end_x: float, end_y: float) -> f
     return angle_at(half, end_x, end_y) - angle_at(half, x, y)
 
 
-def _twice_swept(edge: Edge, start: tuple[float, float], end: tuple[float, float]) -> float:
-    """Return twice the area that a ray from the origin sweeps along an edge (Green's theorem)."""
-    (x, y), (end_x, end_y) = start, end
-    if not isinstance(edge.support, HalfCircle):
-        return x * end_y - end_x * y
-    half = edge.support
-    chord = float(half.x) * (end_y - y) - float(half.y) * (end_x - x)
-    return chord + float(half.r2) * _turn(half, x, y, end_x, end_y)
+def _twice_swept(support: Support, start: Place, end: Place, origin: Place) -> float:
+    """Return twice the area that a ray from an origin sweeps along an edge (Green's theorem).
+
+    An origin nearby keeps the digits that one far away would cost.
+    """
+    (x, y), (end_x, end_y), (origin_x, origin_y) = start, end, origin
+    if not isinstance(support, HalfCircle):
+        return (x - origin_x) * (end_y - origin_y) - (end_x - origin_x) * (y - origin_y)
+    chord = (float(support.x) - origin_x) * (end_y - y) - (float(support.y) - origin_y) * (end_x - x)
+    return chord + float(support.r2) * _turn(support, x, y, end_x, end_y)

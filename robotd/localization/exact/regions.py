@@ -7,9 +7,10 @@ they are areas; without, segments and single points.
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 from robotd.localization.exact.arrangement import Arrangement, Mask
-from robotd.localization.exact.measure import edge_length, ends_of, face_areas
+from robotd.localization.exact.measure import Box, edge_length, ends_of, extent, face_areas
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,12 +19,14 @@ class Region:
 
     best_rank: int
     """How many readings hold in the best of its cells."""
+    kind: Literal["area", "segment", "point"]
+    """What its largest cells are."""
     area_m2: float
     """Infinite if it reaches to infinity."""
     length_m: float
     """Of its edges that do not just surround or cut its areas."""
-    box_m: tuple[float, float, float, float]
-    """``(west, south, east, north)``."""
+    box_m: Box
+    """Infinite if it reaches to infinity."""
     readings: Mask
     """Which readings hold in the best of its cells."""
 
@@ -33,21 +36,14 @@ class Region:
         west, south, east, north = self.box_m
         return (west + east) / 2.0, (south + north) / 2.0
 
-    @property
-    def kind(self) -> str:
-        """``area``, ``segment`` or ``point``."""
-        if self.area_m2 > 0.0:
-            return "area"
-        return "segment" if self.length_m > 0.0 else "point"
-
 
 def regions(arrangement: Arrangement, belongs: Callable[[Mask], bool]) -> list[Region]:
     """Return the connected regions of all cells whose masks belong: best rank first, then largest, then from the west.
 
     Two cells are connected where one lies on the border of the other and both belong.
     """
-    areas = face_areas(arrangement)
-    found = [_region(arrangement, areas, cells) for cells in _components(arrangement, belongs)]
+    areas, around = face_areas(arrangement), _borders_of_faces(arrangement)
+    found = [_region(arrangement, areas, around, cells) for cells in _components(arrangement, belongs)]
     return sorted(found, key=lambda region: (-region.best_rank, -region.area_m2, -region.length_m, region.box_m))
 
 
@@ -106,7 +102,16 @@ def _touching(arrangement: Arrangement, first_edge: int, first_vertex: int) -> I
         yield vertex.face, number
 
 
-def _region(arrangement: Arrangement, areas: list[float], cells: _Cells) -> Region:
+def _borders_of_faces(arrangement: Arrangement) -> list[list[int]]:
+    """Return the edges on the border of every face."""
+    around: list[list[int]] = [[] for _ in arrangement.faces]
+    for number, edge in enumerate(arrangement.edges):
+        around[edge.left].append(number)
+        around[edge.right].append(number)
+    return around
+
+
+def _region(arrangement: Arrangement, areas: list[float], around: list[list[int]], cells: _Cells) -> Region:
     faces = set(cells.faces)
     edges = [arrangement.edges[number] for number in cells.edges]
     lines = [edge for edge in edges if edge.left not in faces and edge.right not in faces]
@@ -115,23 +120,20 @@ def _region(arrangement: Arrangement, areas: list[float], cells: _Cells) -> Regi
     best = max(masks, key=int.bit_count)
     return Region(
         best.bit_count(),
+        "area" if faces else "segment" if lines else "point",
         sum(areas[face] for face in cells.faces),
         sum(edge_length(arrangement, edge) for edge in lines),
-        _box(arrangement, cells),
+        _box(arrangement, around, cells),
         best,
     )
 
 
-def _box(arrangement: Arrangement, cells: _Cells) -> tuple[float, float, float, float]:
-    faces = set(cells.faces)
-    ends = [arrangement.vertices[number].point.floats for number in cells.vertices]
-    ends += [end for number in cells.edges for end in ends_of(arrangement, arrangement.edges[number])]
-    around = (edge for edge in arrangement.edges if edge.left in faces or edge.right in faces)
-    ends += [end for edge in around for end in ends_of(arrangement, edge)]
-    xs, ys = [x for x, _ in ends], [y for _, y in ends]
-    return (
-        min(xs, default=-math.inf),
-        min(ys, default=-math.inf),
-        max(xs, default=math.inf),
-        max(ys, default=math.inf),
-    )
+def _box(arrangement: Arrangement, around: list[list[int]], cells: _Cells) -> Box:
+    if 0 in cells.faces:
+        return -math.inf, -math.inf, math.inf, math.inf
+    numbers = {*cells.edges, *(number for face in cells.faces for number in around[face])}
+    edges = (arrangement.edges[number] for number in numbers)
+    boxes = [extent(edge.support, *ends_of(arrangement, edge)) for edge in edges]
+    boxes += [arrangement.vertices[number].point.floats * 2 for number in cells.vertices]
+    wests, souths, easts, norths = zip(*boxes, strict=True)
+    return min(wests), min(souths), max(easts), max(norths)

@@ -19,7 +19,7 @@ from robotd.localization.exact.regions import of_rank, regions
 from robotd.localization.exact.surds import sqrt
 from robotd.localization.exact.sweep import arrange
 from tests.unit.localization.exact.arithmetics import rationals
-from tests.unit.localization.exact.shapes import planar_sets, point
+from tests.unit.localization.exact.shapes import flipped, planar_sets, point
 
 
 def square(x: int, y: int, side: int, *, closed: bool = True) -> PlanarSet:
@@ -66,6 +66,38 @@ def test_all_that_no_reading_denies_reaches_to_infinity() -> None:
     (region,) = regions(everywhere, of_rank(1))
     assert region.area_m2 == math.inf
     assert region.kind == "area"
+
+
+def test_all_but_a_hole_reaches_to_infinity_on_every_side() -> None:
+    (region,) = regions(arrange([flipped(square(2, 2, 1))]), of_rank(1))
+    assert region.area_m2 == math.inf
+    assert region.box_m == (-math.inf, -math.inf, math.inf, math.inf)
+
+
+def test_a_box_holds_the_arcs_that_bulge_beyond_their_ends() -> None:
+    (whole,) = regions(arrange([disk(point(3, -2), sqrt(rational(4)), closed=True)]), of_rank(1))
+    assert whole.box_m == pytest.approx((1.0, -4.0, 5.0, 0.0))
+    above = arrange([disk(point(0, 0), rational(5), closed=True), square(-9, 3, 18)])
+    (cap,) = regions(above, lambda mask: mask == 0b11)
+    assert cap.box_m == pytest.approx((-4.0, 3.0, 4.0, 5.0))
+    side = arrange([disk(point(0, 0), rational(5), closed=True), square(3, -9, 18)])
+    (cap,) = regions(side, lambda mask: mask == 0b11)
+    assert cap.box_m == pytest.approx((3.0, -4.0, 5.0, 4.0))
+
+
+@pytest.mark.parametrize(("east", "north"), [("0", "0"), ("500000.1", "5600000.1"), ("-1e15", "1e15")])
+def test_a_small_area_is_an_area_wherever_it_lies(east: str, north: str) -> None:
+    ring = [point(east, north).moved(rational(dx), rational(dy)) for dx, dy in ((0, 0), ("0.001", 0), (0, "0.001"))]
+    (region,) = regions(arrange([area_within([ring], closed=True)]), of_rank(1))
+    assert region.kind == "area"
+
+
+def test_areas_far_from_the_origin_are_as_large_as_near_it() -> None:
+    x, y = rational("500000.1"), rational("5600000.1")
+    far = [square(0, 0, 1).moved(x, y), disk(point(0, 0), rational("0.1"), closed=True).moved(x, y)]
+    found = {region.readings: region.area_m2 for region in regions(arrange(far), lambda mask: mask in (1, 2))}
+    assert found[0b01] == pytest.approx(1.0 - 0.0025 * math.pi, abs=1e-8)
+    assert found[0b10] == pytest.approx(0.0075 * math.pi, abs=1e-8)
 
 
 odd = rationals(st.integers(-50, 700)).map(lambda number: 2 * number + 1)
