@@ -39,7 +39,7 @@ def fill(axes: Axes, planar: PlanarSet, colour: str, *, alpha: float = 1.0, zord
     lines = LineCollection(single_lines(planar), colors=colour, linewidths=2.0, alpha=alpha, zorder=zorder)
     axes.add_collection(lines, autolim=False)
     for x_m, y_m in single_points(planar):
-        axes.plot(x_m, y_m, "o", markersize=5.0, color=colour, zorder=zorder)
+        axes.plot(x_m, y_m, "o", markersize=5.0, color=colour, alpha=alpha, markeredgewidth=0.0, zorder=zorder)
 
 
 def outline(axes: Axes, planar: PlanarSet, colour: str, *, zorder: float = 2.0, width: float = 1.0) -> None:

@@ -138,26 +138,27 @@ def draw_5(file: Path) -> None:
     draw_panels(file, MAP_5, panels, 2, margin=1.3)
 
 
-# Figs. 7-11: three readings with an error radius among black squares.
+# Figs. 7-11: three readings with an error radius among three squares.
 MAP_7 = solid([Polygon(ring_of([(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)])) for x, y in ((0, 3), (4, 3), (2, 0))])
 EPS_7 = rational("0.35")
 READINGS_7 = (
-    Beam(rational("-1.6"), rational("1.2")),
-    Beam(rational("1.6"), rational("1.2")),
-    Beam(rational(0), rational("-1.3")),
+    Beam(rational("-1.4"), rational("1.2")),
+    Beam(rational("1.4"), rational("1.2")),
+    Beam(rational(0), rational("-0.8")),
 )
-_ROBOT_7 = (2.5, 2.25)
+_ROBOT_7 = (2.5, 1.8)
 
 
 def draw_7(file: Path) -> None:
     """Draw the map, the readings and their uncertain ends."""
 
     def draw(axes: Axes) -> None:
-        fill(axes, MAP_7, _INK)
-        for beam in READINGS_7:
-            _arrow(axes, _ROBOT_7, beam)
+        fill(axes, MAP_7, _MAP)
+        for number, beam in enumerate(READINGS_7, 1):
             end = _ROBOT_7[0] + float(beam.dx), _ROBOT_7[1] + float(beam.dy)
-            axes.add_patch(Circle(end, float(EPS_7), facecolor="none", edgecolor=_FEASIBLE, zorder=4.0))
+            axes.add_patch(Circle(end, float(EPS_7), facecolor="white", edgecolor=_FEASIBLE, alpha=0.6, zorder=2.0))
+            _arrow(axes, _ROBOT_7, beam)
+            axes.text(end[0] + 0.4, end[1], f"z{number}", color=_FEASIBLE, ha="left", va="center")
 
     draw_panels(file, MAP_7, [("M, z1 to z3 and their error radius", draw)], 1, margin=1.0)
 
@@ -166,13 +167,15 @@ def draw_one_of_7(number: int, file: Path) -> None:
     """Draw D_eps and E_eps of one of the readings: figs. 8 to 10."""
     polygon_map = PolygonMap(MAP_7, EPS_7)
     beam = READINGS_7[number]
+    red, blue = polygon_map.endpoint_set(beam), blocked_set(polygon_map, beam)
 
     def draw(axes: Axes) -> None:
-        fill(axes, MAP_7, _MAP)
-        fill(axes, polygon_map.endpoint_set(beam), _RED, alpha=0.8, zorder=2.0)
-        fill(axes, blocked_set(polygon_map, beam), _BLUE, alpha=0.8, zorder=3.0)
+        fill(axes, red, _RED, alpha=0.8, zorder=2.0)
+        fill(axes, blue, _BLUE, alpha=0.8, zorder=3.0)
+        outline(axes, MAP_7, _INK, zorder=4.0, width=0.8)
 
-    draw_panels(file, MAP_7, [(f"D (orange) and E (blue) of z{number + 1}", draw)], 1, margin=2.2)
+    title = f"D (orange) and E (blue) of z{number + 1}; outlined: M"
+    draw_panels(file, MAP_7, [(title, draw)], 1, margin=2.0)
 
 
 def draw_11(file: Path) -> None:
@@ -181,13 +184,14 @@ def draw_11(file: Path) -> None:
     common = of_rank(ranked(polygon_map, READINGS_7), 3)
 
     def draw(axes: Axes) -> None:
-        fill(axes, MAP_7, _INK)
+        fill(axes, MAP_7, _MAP)
         for beam in READINGS_7:
             fill(axes, feasible_poses(polygon_map, beam), _RED, alpha=0.45, zorder=2.0)
         fill(axes, common, "white", zorder=3.0)
         outline(axes, common, _FEASIBLE, zorder=4.0, width=1.5)
+        axes.plot(*_ROBOT_7, ".", color=_INK, zorder=5.0)
 
-    draw_panels(file, MAP_7, [("FP(M, {z1, z2, z3}), white", draw)], 1, margin=1.5)
+    draw_panels(file, MAP_7, [("white: FP(M, {z1, z2, z3}); dot: the robot", draw)], 1, margin=1.5)
 
 
 def draw_12(file: Path) -> None:

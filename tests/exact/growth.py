@@ -10,14 +10,28 @@ from typing import TypeVar
 
 from robotd.localization.exact.arrangement import Arrangement
 from robotd.localization.exact.beams import Beam
-from robotd.localization.exact.feasible import PolygonMap, best_rank, feasible_arrangement, is_feasible, ranked
+from robotd.localization.exact.feasible import (
+    PolygonMap,
+    best_rank,
+    feasible_arrangement,
+    feasible_poses,
+    is_feasible,
+    ranked,
+)
 from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.polygons import edge_count
 from robotd.localization.exact.rationals import ARITHMETICS, rational
 from robotd.localization.exact.regions import of_rank, regions
 from robotd.localization.exact.sweep import arrange
 from tests.exact.operations import counted
-from tests.exact.scenes import crossed_bars, halving_readings, laboratory, readings, scattered
+from tests.exact.scenes import (
+    crossed_bars,
+    crossed_bars_and_readings,
+    halving_readings,
+    laboratory,
+    readings,
+    scattered,
+)
 
 STEP_M = rational("0.01")
 """What ranges are rounded to when there is an error radius."""
@@ -172,3 +186,14 @@ def lemma_2_crossings() -> Iterator[tuple[int, int, float]]:
         overlay = ranked(PolygonMap(walls, rational(0)), beams)
         crossings = sum(len(vertex.into) == len(vertex.out) == 2 for vertex in overlay.vertices)
         yield count, crossings, crossings / count**2
+
+
+def lemma_2() -> Iterator[tuple[int, int, int, float, int, float]]:
+    """Yield n, m, the borders of all FP(M, z) and those over m n^2, their crossings and those over (m n)^2."""
+    for bars, count in ((2, 2), (2, 4), (2, 8), (4, 8), (8, 8), (8, 16)):
+        walls, beams = crossed_bars_and_readings(bars, count)
+        polygon_map = PolygonMap(walls, rational(0))
+        sets = [feasible_poses(polygon_map, beam) for beam in beams]
+        borders, n = sum(len(one.borders) for one in sets), 8 * bars
+        crossings = sum(len(vertex.into) == len(vertex.out) == 2 for vertex in arrange(sets).vertices)
+        yield n, count, borders, borders / (count * n**2), crossings, crossings / (count * n) ** 2

@@ -3,9 +3,11 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 from robotd.cli.exact_pictures import box_of, draw_ranks
 from robotd.localization.exact.feasible import PolygonMap, ranked
@@ -49,7 +51,10 @@ def _time(
 
 
 def _finish(axes: Axes, title: str, size: str, unit: str) -> None:
+    sizes = sorted({float(x) for line in axes.get_lines() for x in np.asarray(line.get_xdata())})
     axes.set(xlabel=size, ylabel=unit, xscale="log", yscale="log")
+    axes.set_xticks(sizes, [f"{x:g}" for x in sizes])
+    axes.xaxis.set_minor_locator(NullLocator())
     axes.set_title(title, fontsize=10, loc="left")
     axes.legend(fontsize=8)
     axes.grid(alpha=0.3)

@@ -69,7 +69,10 @@ def _measured(out: Path) -> list[str]:
     pieces = ((n, count, f"{part:.4f}") for n, count, part in growth.lemma_2_pieces())
     lines += _table("Lemma 2 (i), fig. 12", ("n", "pieces of FP(M, z)", "pieces / n^2"), pieces)
     crossings = ((m, count, f"{part:.4f}") for m, count, part in growth.lemma_2_crossings())
-    return lines + _table("Lemma 2 (ii), fig. 13", ("m", "crossings", "crossings / m^2"), crossings)
+    lines += _table("Lemma 2 (ii), fig. 13", ("m", "crossings", "crossings / m^2"), crossings)
+    names = ("n", "m", "borders of all FP(M, z)", "borders / m n^2", "crossings", "crossings / m^2 n^2")
+    both = ((*row[:3], f"{row[3]:.4f}", row[4], f"{row[5]:.5f}") for row in growth.lemma_2())
+    return lines + _table("Lemma 2, fig. 13's readings on fig. 12's map", names, both)
 
 
 def _laboratory(out: Path) -> list[str]:

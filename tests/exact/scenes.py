@@ -83,5 +83,12 @@ def halving_readings(count: int) -> tuple[PlanarSet, list[Beam]]:
     return solid([], room=room), [Beam(end, 3 - end) for end in ends]
 
 
+def crossed_bars_and_readings(bars: int, count: int) -> tuple[PlanarSet, list[Beam]]:
+    """Return fig. 12's map and fig. 13's readings, so short that they end on the walls of one gap."""
+    walls, _ = crossed_bars(bars)
+    _, long = halving_readings(count)
+    return walls, [Beam(beam.dx / 4, beam.dy / 4) for beam in long]
+
+
 def _box(x: int, y: int, width: int, height: int) -> Ring:
     return ring_of([(x, y), (x + width, y), (x + width, y + height), (x, y + height)])

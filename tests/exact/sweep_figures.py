@@ -36,6 +36,8 @@ POLYGONS = {
     "E": ring_of([("0.5", "2.5"), (3, "2.5"), (3, 5), ("0.5", 5)]),
 }
 _RED_ONES = "ACD"
+_NAMES = {"A": (1.9, 1.1), "B": (3.3, 1.15), "C": (4.0, 4.6), "D": (7.4, 2.1), "E": (0.7, 4.7)}
+"""Where their names stand."""
 
 
 def draw_sweep(file: Path) -> None:
@@ -48,10 +50,11 @@ def draw_sweep(file: Path) -> None:
         axes.text(float(x) - 0.2, float(y), name, color=_INK)
     for number in _SHOWN:
         at = arrangement.vertices[number].point
-        axes.axvline(at.x_float, color=_LINE, linewidth=1.0)
+        axes.plot([at.x_float] * 2, [-0.2, 5.0], color=_LINE, linewidth=1.0)
         axes.plot(*at.floats, "o", color=_LINE)
-        axes.text(at.x_float, 5.5, _met(arrangement, number), ha="center", va="bottom", color=_LINE)
-    axes.set(xlim=(-0.6, 7.6), ylim=(-0.2, 6.3))
+        axes.text(at.x_float, 5.1, "\n".join(_met(arrangement, number)), ha="center", va="bottom", color=_LINE)
+    axes.set(xlim=(-0.6, 7.6), ylim=(-0.2, 6.6))
+    axes.set_title("at three events: the sweep line, and what it goes on with, topmost first", fontsize=10, loc="left")
     _save(figure, file)
 
 
@@ -60,13 +63,13 @@ def _segment(start: Sequence[str], end: Sequence[str]) -> PlanarSet:
     return PlanarSet((segment(ends[0], ends[1], on=True, left=False, right=False),))
 
 
-def _met(arrangement: Arrangement, number: int) -> str:
+def _met(arrangement: Arrangement, number: int) -> list[str]:
     """Return the segments that the line meets just right of an event, topmost first."""
     crossing = [edge for edge in arrangement.edges if edge.start <= number < edge.end]
     at = arrangement.vertices[number].point
     crossing.sort(key=lambda edge: float(edge.support.height(at.x)), reverse=True)
     names = list(SEGMENTS)
-    return " ".join(names[edge.mask.bit_length() - 1] for edge in crossing)
+    return [names[edge.mask.bit_length() - 1] for edge in crossing]
 
 
 def draw_depths(file: Path) -> None:
@@ -77,14 +80,14 @@ def draw_depths(file: Path) -> None:
     FigureCanvasAgg(figure)
     left, right = figure.subplots(1, 2)
     _shade(left, arrangement, ~0, _INK)
-    left.set_title("depth of coverage", fontsize=10, loc="left")
+    left.set_title("depth of coverage: the darker the deeper", fontsize=10, loc="left")
     _shade(right, arrangement, red, _RED)
     _shade(right, arrangement, ~red, _BLUE)
     right.set_title("A, C, D red, B, E blue: a depth for each colour", fontsize=10, loc="left")
     for axes in (left, right):
         for name, ring in POLYGONS.items():
             outline(axes, area_within([ring], closed=True), _INK)
-            axes.text(*ring[0].floats, name, color=_INK, fontweight="bold")
+            axes.text(*_NAMES[name], name, color=_INK, fontweight="bold", ha="center", va="center")
         axes.set(xlim=(-0.5, 8.5), ylim=(-0.5, 5.5), xticks=[], yticks=[], aspect="equal")
     _save(figure, file)
 

@@ -35,6 +35,14 @@ def test_feasible_poses_cross_in_of_the_order_of_m_squared_points() -> None:
     assert [count for _, count, _ in islice(growth.lemma_2_crossings(), 3)] == [1, 6, 28]
 
 
+def test_both_together_grow_with_the_square_of_both() -> None:
+    few, _, more_readings, more_edges = islice(growth.lemma_2(), 4)
+    # b bars each way leave (b + 1)^2 gaps, in all but one of which every two of m readings cross.
+    assert [row[4] for row in (few, more_readings, more_edges)] == [8 * 1, 8 * 28, 24 * 28]
+    assert more_readings[2] == 4 * few[2]
+    assert more_edges[2] > 2.5 * more_readings[2]
+
+
 def test_the_laboratory_has_many_edges_and_readings_of_both_kinds() -> None:
     walls, pose = laboratory()
     beams = readings(walls, pose, 24)
