@@ -11,14 +11,16 @@ from robotd.localization.exact.arrangement import Arrangement
 from robotd.localization.exact.locate import contains
 from robotd.localization.exact.loops import outline_loops, single_lines, single_points
 from robotd.localization.exact.measure import face_areas
+from robotd.localization.exact.minkowski import grown
 from robotd.localization.exact.planar import PlanarSet, Spot, area_within, disk, segment
 from robotd.localization.exact.points import Point
-from robotd.localization.exact.polygons import ring_of
-from robotd.localization.exact.rationals import rational
+from robotd.localization.exact.polygons import Polygon, ring_of, solid
+from robotd.localization.exact.rationals import Rational, rational
 from robotd.localization.exact.regions import of_rank, regions
 from robotd.localization.exact.surds import sqrt
 from robotd.localization.exact.sweep import arrange
 from tests.unit.localization.exact.arithmetics import rationals
+from tests.unit.localization.exact.maps import polygons, radii
 from tests.unit.localization.exact.shapes import flipped, planar_sets, point
 
 
@@ -98,6 +100,16 @@ def test_areas_far_from_the_origin_are_as_large_as_near_it() -> None:
     found = {region.readings: region.area_m2 for region in regions(arrange(far), lambda mask: mask in (1, 2))}
     assert found[0b01] == pytest.approx(1.0 - 0.0025 * math.pi, abs=1e-8)
     assert found[0b10] == pytest.approx(0.0075 * math.pi, abs=1e-8)
+
+
+@settings(max_examples=20, deadline=None)
+@given(polygons(), radii)
+def test_a_convex_polygon_grows_by_its_edges_and_a_whole_disk(polygon: Polygon, eps: Rational) -> None:
+    hull = polygon.outer[:3]  # three corners of whatever shape: a triangle
+    walls = solid([Polygon(hull)])
+    edges = sum(math.dist(one.floats, other.floats) for one, other in pairwise((*hull, hull[0])))
+    steiner = area_of(arrange([walls])) + edges * float(eps) + math.pi * float(eps) ** 2
+    assert area_of(arrange([grown(walls, eps)])) == pytest.approx(steiner)
 
 
 odd = rationals(st.integers(-50, 700)).map(lambda number: 2 * number + 1)
