@@ -87,6 +87,7 @@ def mission_settings(config: Config) -> MissionSettings:
         driving=config.driving,
         grid=config.grid,
         localization=config.localization,
-        refinement=config.refinement,
+        judgement=config.judgement,
+        error_model=config.error_model,
         planning=config.planning,
     )

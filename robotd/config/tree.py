@@ -9,7 +9,10 @@ from robotd.grid.occupancy import GridSettings
 from robotd.hardware.devices.catalogue import DIALECTS, MOTORLESS, SCANNERS, line_format
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
 from robotd.hardware.transport.address import connector
+from robotd.localization.error_model import ErrorModel
+from robotd.localization.judgement import Judgement
 from robotd.localization.refinement import RefinementSettings
+from robotd.localization.second_look import SecondLookSettings
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.steering import DrivingSettings
 from robotd.mission.stop_and_sweep import SweepSettings
@@ -30,6 +33,8 @@ class Config:
     grid: GridSettings = field(default_factory=GridSettings)
     localization: LocalizationSettings = field(default_factory=LocalizationSettings)
     refinement: RefinementSettings = field(default_factory=RefinementSettings)
+    second_look: SecondLookSettings = field(default_factory=SecondLookSettings)
+    error_model: ErrorModel = field(default_factory=ErrorModel)
     planning: PlanningSettings = field(default_factory=PlanningSettings)
     maps: MapsSettings = field(default_factory=MapsSettings)
     recording: RecordingSettings = field(default_factory=RecordingSettings)
@@ -41,6 +46,11 @@ class Config:
         _check_ports_differ(self.devices)
         _check_head(self.pantilt, self.rangefinder)
         _check_motion(self.drive, self.driving)
+
+    @property
+    def judgement(self) -> Judgement:
+        """How poses of high rank are judged."""
+        return Judgement(self.refinement, self.second_look)
 
     @property
     def devices(self) -> dict[str, PortSettings]:

@@ -16,6 +16,9 @@ class ErrorModel:
     """How far walls lie from where the map has them, one standard deviation, along a beam and across it."""
     map_sigma_rad: float = 0.004
     """How far the map-maker's headings were off: walls far away lie aside."""
+    map_sharpness_sigma: float = 0.11
+    """How much likelier a place may seem only because the map happens to show it more sharply: standard deviation of
+    the logarithm, for each independent reading; so it was between simulated rooms that are alike."""
     removed_share: float = 0.1
     """Chance that an obstacle of which the map is sure stands there no more, or lets a beam pass."""
     unmapped_per_m: float = 0.02
@@ -32,7 +35,7 @@ class ErrorModel:
         for name in ("range_sigma_m", "outlier_span_m", "unmapped_per_m", "unknown_per_m"):
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
-        for name in ("map_sigma_m", "map_sigma_rad"):
+        for name in ("map_sigma_m", "map_sigma_rad", "map_sharpness_sigma"):
             if not getattr(self, name) >= 0.0:
                 raise ValueError(f"{name} must not be negative, got {getattr(self, name)}")
         for name in ("removed_share", "outlier_share"):

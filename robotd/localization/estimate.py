@@ -10,11 +10,11 @@ class PoseState(enum.StrEnum):
     """How much the estimate can be trusted."""
 
     LOST = "lost"
-    """No pose explains enough of the readings."""
+    """No pose explains enough of the readings, or they are rather those of somewhere else."""
     AMBIGUOUS = "ambiguous"
-    """Several separate regions explain them about as well, or one that is too wide to be called a place."""
+    """Several places explain them about as well, or one that nothing holds at its place."""
     LOCALIZED = "localized"
-    """One region only."""
+    """One place, and hardly a doubt about it."""
     PREDICTED = "predicted"
     """Carried forward by odometry since it was last localized."""
 
@@ -61,6 +61,8 @@ Covariance = tuple[Row, Row, Row]
 class Region:
     """A connected set of poses, all of high rank: one answer to *where*."""
 
+    belief: float
+    """Share of the belief that the second look gives to what lies in it."""
     pose: Pose2
     """Where in it the readings fit best, below the size of a cell, map frame."""
     covariance: Covariance
@@ -93,7 +95,7 @@ class PoseEstimate:
     best: Pose2 | None
     """The pose, map frame; only when it is unique (``localized`` or ``predicted``)."""
     regions: tuple[Region, ...]
-    """The best, best first; empty when ``lost`` or ``predicted``."""
+    """The answers that remain, best first; one when ``localized``, none when ``lost`` or ``predicted``."""
     best_rank: int
     """Readings explained at the best cells (the paper's kappa)."""
     readings: int
@@ -104,6 +106,12 @@ class PoseEstimate:
     """Which map it speaks of."""
     regions_left_out: int = 0
     """Further regions, none better than those listed."""
+    belief_aside: float = 0.0
+    """Share of what lies a little aside of the best place, where nothing holds the pose, as along a corridor."""
+    belief_nowhere: float = 0.0
+    """Share of being nowhere on this map."""
+    contrast: float | None = None
+    """Least contrast of the best place with any elsewhere on the map, in standard errors; None if there is no other."""
     bearings_rad: tuple[float, ...] = ()
     """Directions of the readings it is built from, robot frame, in the order in which they were made."""
 

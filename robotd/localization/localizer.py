@@ -1,41 +1,48 @@
-"""From readings to a pose estimate: feasible poses counted, the best regions found, their uniqueness judged.
+"""From readings to a pose estimate: feasible poses counted, connected, looked at once more, and refined.
 
 The consistent reading method of [BrownDonald2000]_ sec. 2.2.1: look for the poses that explain the most readings. It
 bears bad readings and obstacles that are not on the map (fig. 6), and it does not hide that several places look alike.
+Which of these it is, and whether that is sure, is for the second look (:mod:`.second_look`) to say.
 """
 
 import math
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading
 from robotd.grid.readings import numbers_of
 from robotd.localization.area import Area
 from robotd.localization.counting import NOTHING, Count, Found
-from robotd.localization.described import Situation, described
+from robotd.localization.described import Answer, Situation, described
 from robotd.localization.estimate import PoseEstimate, PoseState, Region
+from robotd.localization.judgement import Judgement
 from robotd.localization.ready_map import ReadyMap
-from robotd.localization.refinement import RefinementSettings
 from robotd.localization.regions import pieces_of
+from robotd.localization.second_look import SecondLook, second_look
+
+_ALIKE_M, _ALIKE_RAD = 0.1, 0.03
+"""So much aside and so much turned are as far from a place."""
 
 
 class Localizer:
     """Localizes on one map, stop after stop; an estimate may be asked for after any reading."""
 
-    def __init__(
-        self, the_map: ReadyMap, map_id: str, *, refinement: RefinementSettings | None = None, threads: int = 1
-    ) -> None:
+    def __init__(self, the_map: ReadyMap, map_id: str, judgement: Judgement | None = None, *, threads: int = 1) -> None:
         """Begin with no readings, heading 0.
 
         Args:
-            the_map: the map, and what counts as an answer.
+            the_map: the map, and what counts as explained.
             map_id: what estimates call the map.
-            refinement: how poses are refined.
+            judgement: what counts as an answer.
             threads: how many threads may share the work when it is much; no estimate depends on it.
         """
         self._threads = threads
         self._map = the_map
         self._settings = the_map.settings
-        self._refinement = refinement or RefinementSettings()
+        self._judgement = judgement or Judgement()
         self._map_id = map_id
         self.begin((0.0,))
 
@@ -63,9 +70,11 @@ class Localizer:
             time_ns: when the robot was there.
             final: whether the sweep is whole.
         """
-        found = self._find()
-        regions, left_out = self._regions(found)
-        state = self._judge(regions, left_out, is_all=found.is_all)
+        found, numbers = self._find(), numbers_of(self._count.readings)
+        poses = self._in_metres(found.poses)
+        look = second_look(self._map.likelihood, numbers, poses, found.ranks, self._judgement.second_look)
+        state = look.state if found.is_all else PoseState.AMBIGUOUS
+        regions, left_out = self._regions(found, poses, look, state, numbers)
         return PoseEstimate(
             time_ns=time_ns,
             state=state,
@@ -76,6 +85,9 @@ class Localizer:
             final=final,
             map_id=self._map_id,
             regions_left_out=left_out,
+            belief_aside=look.aside,
+            belief_nowhere=look.nowhere,
+            contrast=look.contrast if math.isfinite(look.contrast) and len(look.poses) else None,
             bearings_rad=tuple(reading.bearing_rad for reading in self._count.readings),
         )
 
@@ -86,26 +98,46 @@ class Localizer:
         slack, least_rank = settings.rival_share * readings, settings.localized_share * readings
         return self._count.best(math.ceil(slack), math.ceil(least_rank))
 
-    def _regions(self, found: Found) -> tuple[tuple[Region, ...], int]:
-        """Return the regions that explain enough of the readings, and how many more there are."""
-        headings_rad = self._count.headings_rad
-        pieces = pieces_of(found.poses, found.ranks, headings_rad, self._settings.regions_max)
-        situation = Situation(self._map, headings_rad, numbers_of(self._count.readings), self._refinement)
-        return described(pieces.best, situation), pieces.left_out
+    def _in_metres(self, poses: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Return poses ``(heading, row, col)`` as x, y [m] and heading [rad]."""
+        spec = self._map.ternary.spec
+        cells = poses[:, 1:] + 0.5
+        x_m, y_m = spec.origin_x_m + cells[:, 1] * spec.resolution_m, spec.origin_y_m + cells[:, 0] * spec.resolution_m
+        return np.stack((x_m, y_m, np.array(self._count.headings_rad)[poses[:, 0]]), axis=1)
 
-    def _judge(self, regions: tuple[Region, ...], left_out: int, *, is_all: bool) -> PoseState:
-        if not regions:
-            return PoseState.LOST if is_all else PoseState.AMBIGUOUS
-        spread_m = max(_farthest_m(region, regions[0]) for region in regions)
-        is_one_place = is_all and left_out == 0 and spread_m <= self._settings.unique_within_m
-        return PoseState.LOCALIZED if is_one_place else PoseState.AMBIGUOUS
+    def _regions(
+        self,
+        found: Found,
+        poses: NDArray[np.float64],
+        look: SecondLook,
+        state: PoseState,
+        numbers: NDArray[np.float64],
+    ) -> tuple[tuple[Region, ...], int]:
+        """Return the answers that remain, and how many more there are."""
+        if state is PoseState.LOST or len(poses) == 0:
+            return (), 0
+        settings, headings_rad = self._settings, self._count.headings_rad
+        nearest = np.array([_nearest(poses, place) for place in look.poses], np.intp)
+        pieces = pieces_of(found.poses, found.ranks, headings_rad, settings.regions_max, nearest)
+        answers = [Answer(piece) for piece in pieces.best]
+        for place, number, belief in zip(look.poses, nearest, look.beliefs, strict=True):
+            _give(answers, found.poses[number], Pose2(*place.tolist()), float(belief))
+        if state is PoseState.LOCALIZED:
+            answers = answers[:1]
+        situation = Situation(self._map, headings_rad, numbers, self._judgement.refinement)
+        return described(answers, situation), 0 if state is PoseState.LOCALIZED else pieces.left_out
 
 
-def _farthest_m(region: Region, best: Region) -> float:
-    """Return how far the box round a region reaches from the centre of the best one."""
-    x_m, y_m = best.centre.x_m, best.centre.y_m
-    extent = region.extent
-    return math.hypot(
-        max(extent.x_max_m - x_m, x_m - extent.x_min_m),
-        max(extent.y_max_m - y_m, y_m - extent.y_min_m),
-    )
+def _nearest(poses: NDArray[np.float64], place: NDArray[np.float64]) -> int:
+    """Return which of the poses a place is nearest to."""
+    off = poses - place
+    turned_rad = (off[:, 2] + math.pi) % math.tau - math.pi
+    return int(np.hypot(np.hypot(off[:, 0], off[:, 1]) / _ALIKE_M, turned_rad / _ALIKE_RAD).argmin())
+
+
+def _give(answers: list[Answer], pose: NDArray[np.intp], place: Pose2, belief: float) -> None:
+    """Give the region that holds a pose the belief in the place it is nearest to; the first to come is the best."""
+    for number, answer in enumerate(answers):
+        if (answer.piece.poses == pose).all(axis=1).any():
+            answers[number] = Answer(answer.piece, answer.belief + belief, answer.begin or place)
+            return

@@ -6,6 +6,8 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
+from robotd.localization.error_model import ErrorModel
+from robotd.localization.likelihood import Likelihood
 from robotd.localization.obstacles import Obstacles, UnknownCells
 from robotd.localization.prepared import PreparedMap
 from robotd.localization.search import SearchMap
@@ -25,16 +27,22 @@ class ReadyMap:
     """For the search."""
     walls: WallField
     """For refinement."""
+    likelihood: Likelihood
+    """For the second look."""
 
     @classmethod
-    def of(cls, ternary: TernaryMap, settings: LocalizationSettings) -> "ReadyMap":
+    def of(
+        cls, grid: OccupancyGrid, settings: LocalizationSettings, error_model: ErrorModel | None = None
+    ) -> "ReadyMap":
         """Make a map ready. O(cells)."""
+        ternary = TernaryMap.from_grid(grid)
         unknown, error_radius_cells = settings.unknown, settings.range_error_m / ternary.spec.resolution_m
         obstacles = Obstacles.of_map(ternary, unknown, error_radius_cells, blocked_by=settings.blocked_by)
         prepared = PreparedMap.of(obstacles, ternary.spec, error_radius_cells)
         searched = SearchMap.of(obstacles, ternary.spec, error_radius_cells)
         walls = WallField.of(ternary.spec, ternary.occupied, obstacles.blocking)
-        return cls(ternary, settings, prepared, searched, walls)
+        likelihood = Likelihood.of(grid.spec, grid.cells, error_model or ErrorModel())
+        return cls(ternary, settings, prepared, searched, walls, likelihood)
 
     def updated(self, grid: OccupancyGrid, changed: CellWindow) -> "ReadyMap":
         """Return the map of a grid that differs from the one this is of in a window alone.
@@ -49,7 +57,8 @@ class ReadyMap:
         walls = self.walls.updated(ternary.occupied, prepared.obstacles.blocking, changed)
         radius_cells = int(self.prepared.error_radius_cells)
         searched = self.searched.updated(prepared.obstacles, changed.grown(radius_cells, ternary.spec.shape).slices)
-        return ReadyMap(ternary, self.settings, prepared, searched, walls)
+        likelihood = Likelihood.of(grid.spec, grid.cells, self.likelihood.model)
+        return ReadyMap(ternary, self.settings, prepared, searched, walls, likelihood)
 
     def _prepared(self, ternary: TernaryMap, unknown: UnknownCells, changed: CellWindow) -> PreparedMap:
         radius_cells = self.prepared.error_radius_cells

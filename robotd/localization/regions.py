@@ -37,7 +37,13 @@ class Pieces:
     left_out: int
 
 
-def pieces_of(poses: NDArray[np.intp], ranks: NDArray[np.uint16], headings_rad: tuple[float, ...], most: int) -> Pieces:
+def pieces_of(
+    poses: NDArray[np.intp],
+    ranks: NDArray[np.uint16],
+    headings_rad: tuple[float, ...],
+    most: int,
+    first: NDArray[np.intp] | None = None,
+) -> Pieces:
     """Part poses into connected regions.
 
     Args:
@@ -45,9 +51,10 @@ def pieces_of(poses: NDArray[np.intp], ranks: NDArray[np.uint16], headings_rad: 
         ranks: their ranks, ``uint16[n]``.
         headings_rad: the headings, ascending; the first is next to the last if they go all round.
         most: how many regions to return.
+        first: ``intp[k]``, poses whose regions come before all others, in this order.
 
     Returns:
-        Those of greatest rank, then of most poses, then of the first place.
+        Those, and those of greatest rank, then of most poses, then of the first place.
     """
     if len(poses) == 0:
         return Pieces((), 0)
@@ -55,7 +62,10 @@ def pieces_of(poses: NDArray[np.intp], ranks: NDArray[np.uint16], headings_rad: 
     sizes = np.bincount(labels)
     best_ranks = np.zeros(len(sizes), np.uint16)
     np.maximum.at(best_ranks, labels, ranks)
-    order = np.lexsort((np.arange(len(sizes)), -sizes, -best_ranks.astype(np.intp)))
+    urgency = np.full(len(sizes), len(poses))
+    if first is not None:
+        np.minimum.at(urgency, labels[first], np.arange(len(first)))
+    order = np.lexsort((np.arange(len(sizes)), -sizes, -best_ranks.astype(np.intp), urgency))
     members = np.argsort(labels, kind="stable")
     ends = np.cumsum(sizes)
     chosen = (members[ends[label] - sizes[label] : ends[label]] for label in order[:most])

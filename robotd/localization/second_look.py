@@ -10,6 +10,11 @@ be known as undecided, so every answer is weighed against all others there can b
 
 What is compared is evidence in the sense of Bayes. Readings that say the same count once (:mod:`.patches`), else
 twenty beams on one moved chair would be evidence enough against any place.
+
+Belief alone is too sure of itself where two places truly are alike: by luck the map shows one of them a little more
+sharply, and over a whole room that adds up to any belief. So a place must also stand out from each other one by its
+*contrast*: the sum of what the readings say, by its standard error. No single reading can decide, and no sum of
+differences that are as small as such luck.
 """
 
 import math
@@ -37,6 +42,8 @@ _ASIDE = 1.2
 _DIRECTIONS = 16
 _TOGETHER_M, _TOGETHER_RAD = 0.1, 0.03
 """Starts that end so near to each other climbed the same hill."""
+_ELSEWHERE_M, _ELSEWHERE_RAD = 1.0, 0.35
+"""So far away, or turned by so much, a place has the readings on other walls."""
 _HOPELESS_SHARE, _HOPELESS = 0.5, 10.0
 """A place so far behind at a glance, for each independent reading and altogether, is not looked at: a glance errs by
 far less."""
@@ -64,6 +71,9 @@ class SecondLookSettings:
     """Belief, before any reading, that the robot is not on the map."""
     doubt_max: float = 0.05
     """All that is not the best place may have this share of the belief if the robot is to be called localized."""
+    contrast_min: float = 1.28
+    """And so many standard errors must what the readings say for the best place, rather than any other, be above 0: by
+    chance the wrong one of two places that are alike in truth reaches that once in ten times."""
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
@@ -73,6 +83,8 @@ class SecondLookSettings:
         for name in ("readings_max", "glance_readings_max", "starts_max", "places_max"):
             if getattr(self, name) < 1:
                 raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")
+        if not self.contrast_min >= 0.0:
+            raise ValueError(f"contrast_min must not be negative, got {self.contrast_min}")
         for name in ("off_map_share", "doubt_max"):
             if not 0.0 < getattr(self, name) < 0.5:
                 raise ValueError(f"{name} must lie between 0 and 0.5, got {getattr(self, name)}")
@@ -93,6 +105,8 @@ class SecondLook:
     """Share of what lies aside of the best place: near to 0.5 and above where nothing holds it."""
     nowhere: float
     """Share of being nowhere on the map."""
+    contrast: float
+    """Least contrast of the best place with any elsewhere on the map, in standard errors; infinite if there is none."""
 
 
 def second_look(
@@ -115,16 +129,20 @@ def second_look(
     """
     starts = _glance(likelihood, readings, poses[shortlist(poses, ranks, 0.2, 0.07, settings.starts_max)], settings)
     if len(starts) == 0 or len(readings) == 0:
-        return SecondLook(PoseState.LOST, np.zeros((0, 3)), np.zeros(0), np.zeros(0), 0.0, 1.0)
+        return SecondLook(PoseState.LOST, np.zeros((0, 3)), np.zeros(0), np.zeros(0), 0.0, 1.0, 0.0)
     kept = thinned(readings, settings.patch_m / 2.0, settings.readings_max)
     hill = Hill(likelihood, likelihood.sight(kept), weights(kept, settings.patch_m))
     found, scores = climb(hill, starts, _LOOK_STEPS)
     apart = shortlist(found, _in_order(scores), _TOGETHER_M, _TOGETHER_RAD, len(found))
     found, scores = found[apart], scores[apart]
+    is_rival = ~near(found, found[0], settings.same_within_m, settings.same_within_rad)
+    is_rival[0] = True
+    found, scores = found[is_rival], scores[is_rival]
     _, aside = climb(hill, _around(found[0], settings), _ASIDE_STEPS, _ASIDE_MOVES)
     to_beat = float((likelihood.elsewhere_logs(hill.sight) * hill.weights).sum())
     to_beat += math.log(_places(likelihood, settings) * settings.off_map_share / (1.0 - settings.off_map_share))
-    return _weigh(found, scores - to_beat, float(aside.max()) - to_beat, settings)
+    contrast = _contrast(hill, found)
+    return _weigh(found, scores - to_beat, float(aside.max()) - to_beat, contrast, settings)
 
 
 def _glance(
@@ -172,18 +190,34 @@ def _places(likelihood: Likelihood, settings: SecondLookSettings) -> float:
     return max(1.0, vacant_m2 / settings.same_within_m**2 * math.tau / settings.same_within_rad)
 
 
+def _contrast(hill: Hill, poses: NDArray[np.float64]) -> float:
+    """Return the least contrast of the first of poses ``float64[n, 3]`` with those that are seen on other walls.
+
+    Vuong's test for which of two models is nearer to the truth (Econometrica 57, 1989), the models being two places,
+    and its standard error widened by what all readings have in common: how sharply the map shows a place.
+    A pose close by sees the same walls: what the map has wrong of them is as wrong for both, and belief is enough.
+    """
+    elsewhere = poses[~near(poses, poses[0], _ELSEWHERE_M, _ELSEWHERE_RAD)]
+    logs = hill.likelihood.logs(hill.sight, np.concatenate((poses[:1], elsewhere))) * hill.weights
+    said = logs[0] - logs[1:]
+    in_common = hill.likelihood.model.map_sharpness_sigma * float(hill.weights.sum())
+    errors = np.sqrt((said * said).sum(axis=1) + in_common**2)
+    contrasts = np.divide(said.sum(axis=1), errors, out=np.zeros(len(said)), where=errors > 0.0)
+    return float(contrasts.min(initial=math.inf))
+
+
 def _weigh(
-    poses: NDArray[np.float64], evidence: NDArray[np.float64], aside: float, settings: SecondLookSettings
+    poses: NDArray[np.float64],
+    evidence: NDArray[np.float64],
+    aside: float,
+    contrast: float,
+    settings: SecondLookSettings,
 ) -> SecondLook:
     """Share the belief among the places, what lies aside of the best, and nowhere, whose evidence is 0."""
-    is_rival = ~near(poses, poses[0], settings.same_within_m, settings.same_within_rad)
-    is_rival[0] = True
-    poses, evidence = poses[is_rival], evidence[is_rival]
     powers = np.exp(np.append(evidence, (aside, 0.0)) - max(float(evidence[0]), 0.0))
     shares = powers / powers.sum()
-    best, nowhere = float(shares[0]), float(shares[-1])
-    if nowhere > 0.5:
-        state = PoseState.LOST
-    else:
-        state = PoseState.LOCALIZED if best >= 1.0 - settings.doubt_max else PoseState.AMBIGUOUS
-    return SecondLook(state, poses, evidence, shares[:-2], float(shares[-2]), nowhere)
+    is_sure = float(shares[0]) >= 1.0 - settings.doubt_max and contrast >= settings.contrast_min
+    nowhere = float(shares[-1])
+    on_map = PoseState.LOCALIZED if is_sure else PoseState.AMBIGUOUS
+    state = PoseState.LOST if nowhere > 0.5 else on_map
+    return SecondLook(state, poses, evidence, shares[:-2], float(shares[-2]), nowhere, contrast)

@@ -25,8 +25,6 @@ class LocalizationSettings:
     """Share of the readings that the best pose must explain; below it the robot is lost."""
     rival_share: float = 0.15
     """A pose is still an answer if it explains fewer readings than the best by no more than this share of all."""
-    unique_within_m: float = 0.5
-    """The pose is unique if all answers lie this near to the best: no rival elsewhere, no region a corridor long."""
     readings_min: int = 12
     """With fewer readings than this nothing is said."""
     regions_max: int = 32
@@ -49,8 +47,6 @@ class LocalizationSettings:
             raise ValueError(f"localized_share must lie in (0, 1], got {self.localized_share}")
         if not 0.0 <= self.rival_share < 1.0:
             raise ValueError(f"rival_share must lie in [0, 1), got {self.rival_share}")
-        if not self.unique_within_m > 0.0:
-            raise ValueError(f"unique_within_m must be positive, got {self.unique_within_m}")
         if self.readings_min < 1:
             raise ValueError(f"readings_min must be at least 1, got {self.readings_min}")
         if self.regions_max < 1:

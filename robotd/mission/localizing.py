@@ -14,12 +14,12 @@ from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import RangeReading
 from robotd.localization.estimate import PoseEstimate, PoseState, Region
 from robotd.localization.localizer import Localizer
-from robotd.localization.settings import LocalizationSettings
 from robotd.mission.compute import cores
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import MissionPhase
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.requests import LocalizeMission, PriorHeading
+from robotd.mission.settings import MissionSettings
 from robotd.mission.stop_and_sweep import faults_text, standing
 
 _BATCH = 20
@@ -46,17 +46,17 @@ async def run_localizing(
         narrowed.cancel()
         await asyncio.wait((narrowed,))
     if mission.tie and context.robot.has_base:
-        _learn(place, sweep.in_odom, estimate, context.settings.localization)
+        _learn(place, sweep.in_odom, estimate, context.settings)
     return estimate
 
 
-def _learn(place: MapInUse, in_odom: Pose2, estimate: PoseEstimate, settings: LocalizationSettings) -> None:
+def _learn(place: MapInUse, in_odom: Pose2, estimate: PoseEstimate, settings: MissionSettings) -> None:
     """Tie odometry to the map where the robot was found; doubt the tie if it was found nowhere near that."""
     if estimate.state is PoseState.LOCALIZED and estimate.best is not None:
         place.tie(estimate.best, in_odom)
-    elif place.map_from_odom is not None:
+    elif place.map_from_odom is not None and (estimate.regions or estimate.state is PoseState.LOST):
         believed = place.map_from_odom @ in_odom
-        near_m, near_rad = settings.unique_within_m, settings.heading_error_rad
+        near_m, near_rad = settings.judgement.second_look.same_within_m, settings.localization.heading_error_rad
         place.is_doubted |= not any(_reaches(region, believed, near_m, near_rad) for region in estimate.regions)
 
 
@@ -99,10 +99,10 @@ class Narrowing:
         cls, context: MissionContext, place: MapInUse, mission: LocalizeMission, headings_rad: tuple[float, ...]
     ) -> "Narrowing":
         """Make the map ready, and try these headings on it."""
-        job = place.readiness.hand_over(place.grid, context.settings.localization)
+        job = place.readiness.hand_over(place.grid, context.settings.localization, context.settings.error_model)
         ready = await context.compute.run("prepare", job)
         place.readiness.keep(ready)
-        localizer = Localizer(ready, place.map_id, refinement=context.settings.refinement, threads=cores())
+        localizer = Localizer(ready, place.map_id, context.settings.judgement, threads=cores())
         localizer.begin(headings_rad, mission.within)
         is_searched = mission.heading is PriorHeading.UNKNOWN
         return cls(context, localizer, -(-context.settings.sweep.readings // _ESTIMATES) if is_searched else _BATCH)

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.ternary import TernaryMap
 from robotd.grid.window import CellWindow
+from robotd.localization.error_model import ErrorModel
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 
@@ -23,7 +23,9 @@ class Readiness:
         """Take note that cells changed."""
         self.changed = self.changed.joined(changed)
 
-    def hand_over(self, grid: OccupancyGrid, settings: LocalizationSettings) -> Callable[[], ReadyMap]:
+    def hand_over(
+        self, grid: OccupancyGrid, settings: LocalizationSettings, errors: ErrorModel
+    ) -> Callable[[], ReadyMap]:
         """Return the job that makes the map ready; hand its result to :meth:`keep`.
 
         A job uses up the ready map that it begins with. It is therefore handed over with the job, and if nobody comes
@@ -31,12 +33,12 @@ class Readiness:
         """
         ready, changed = self.ready, self.changed
         self.ready, self.changed = None, _NOTHING
-        return lambda: _made(grid, settings) if ready is None else ready.updated(grid, changed)
+        return lambda: _made(grid, settings, errors) if ready is None else ready.updated(grid, changed)
 
     def keep(self, ready: ReadyMap) -> None:
         """Take over what a job has made."""
         self.ready = ready
 
 
-def _made(grid: OccupancyGrid, settings: LocalizationSettings) -> ReadyMap:
-    return ReadyMap.of(TernaryMap.from_grid(grid), settings)
+def _made(grid: OccupancyGrid, settings: LocalizationSettings, errors: ErrorModel) -> ReadyMap:
+    return ReadyMap.of(grid, settings, errors)

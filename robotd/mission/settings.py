@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 
 from robotd.grid.occupancy import GridSettings
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
-from robotd.localization.refinement import RefinementSettings
+from robotd.localization.error_model import ErrorModel
+from robotd.localization.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.steering import DrivingSettings
 from robotd.mission.stop_and_sweep import SweepSettings
@@ -21,5 +22,6 @@ class MissionSettings:
     driving: DrivingSettings = field(default_factory=DrivingSettings)
     grid: GridSettings = field(default_factory=GridSettings)
     localization: LocalizationSettings = field(default_factory=LocalizationSettings)
-    refinement: RefinementSettings = field(default_factory=RefinementSettings)
+    judgement: Judgement = field(default_factory=Judgement)
+    error_model: ErrorModel = field(default_factory=ErrorModel)
     planning: PlanningSettings = field(default_factory=PlanningSettings)

@@ -89,8 +89,9 @@ async def test_estimates_are_published_while_the_sweep_is_under_way(live: Live) 
     assert estimates[-1].final
 
 
-async def test_in_one_of_two_equal_rooms_it_is_never_sure_of_the_wrong_one(live: Live) -> None:
-    robot = SimulatedRobot(load_world("symmetric"), seed=2)
+async def test_in_one_of_two_equal_rooms_it_is_not_sure_of_the_wrong_one(live: Live) -> None:
+    """One of the two is on the map a little better than the other, by luck: that is no reason to believe in it."""
+    robot = SimulatedRobot(load_world("symmetric"), seed=0)
     states = []
     async with live(robot) as it:
         await it.done(MapMission("twins", robot.stops_m, robot.start))

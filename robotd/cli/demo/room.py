@@ -15,7 +15,6 @@ from robotd.config import Config
 from robotd.core.reading import Sweep
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
-from robotd.grid.ternary import TernaryMap
 from robotd.localization.rank import RankGrid
 from robotd.localization.ready_map import ReadyMap
 from robotd.mission.events import MapChanged
@@ -110,7 +109,7 @@ def _draw(
 def rank_of(the_map: MapChanged, sweep: Sweep, heading_rad: float) -> RankGrid:
     """Return the rank grid of a sweep on a map: what the daemon saw when it decided."""
     settings = Config().localization
-    the_ternary = TernaryMap.from_grid(OccupancyGrid(the_map.spec, the_map.values))
-    ranks = RankGrid(ReadyMap.of(the_ternary, settings).prepared, (heading_rad,))
+    grid = OccupancyGrid(the_map.spec, the_map.values)
+    ranks = RankGrid(ReadyMap.of(grid, settings).prepared, (heading_rad,))
     ranks.add(*sweep.measured)
     return ranks

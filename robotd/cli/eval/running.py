@@ -8,10 +8,10 @@ from robotd.cli.eval.cases import Query
 from robotd.cli.eval.recorded import Reach, readings_of
 from robotd.cli.eval.verdict import Case
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.ternary import TernaryMap
+from robotd.localization.error_model import ErrorModel
+from robotd.localization.judgement import Judgement
 from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
-from robotd.localization.refinement import RefinementSettings
 from robotd.localization.settings import LocalizationSettings
 
 
@@ -21,14 +21,15 @@ class Searcher:
 
     grid: OccupancyGrid
     settings: LocalizationSettings
-    refinement: RefinementSettings
+    judgement: Judgement
+    errors: ErrorModel
     reach: Reach
     threads: int
 
     def cases(self, queries: tuple[Query, ...]) -> Iterator[Case]:
         """Seek each query, nothing known, and hand it over as soon as it is answered."""
-        the_map = ReadyMap.of(TernaryMap.from_grid(self.grid), self.settings)
-        localizer = Localizer(the_map, "", refinement=self.refinement, threads=self.threads)
+        the_map = ReadyMap.of(self.grid, self.settings, self.errors)
+        localizer = Localizer(the_map, "", self.judgement, threads=self.threads)
         headings_rad = self.settings.headings_all_round()
         for query in queries:
             readings = readings_of(query.scan, self.reach)

@@ -1,6 +1,7 @@
 """The report of a log as a table for people, and all logs in one."""
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 from rich.table import Table
@@ -90,12 +91,14 @@ def _add_summary(table: Table, name: str, reports: list[LogReport]) -> None:
 
 def print_parameters(parameters: dict[str, Any]) -> None:
     """Print what the figures depend on, a line for each room."""
-    print_pairs((name, _in_one_line(value)) for name, value in parameters.items())
+    print_pairs(_lines(parameters))
 
 
-def _in_one_line(value: object) -> str:
-    if not isinstance(value, dict):
-        return str(value)
-    return ", ".join(
-        f"{name} {number:g}" if isinstance(number, float) else f"{name} {number}" for name, number in value.items()
-    )
+def _lines(parameters: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    for name, value in parameters.items():
+        if not isinstance(value, dict):
+            yield name, str(value)
+        elif any(isinstance(inner, dict) for inner in value.values()):
+            yield from _lines(value)
+        else:
+            yield name, ", ".join(f"{key} {number}" for key, number in value.items())

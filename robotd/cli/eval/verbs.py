@@ -23,7 +23,8 @@ from robotd.cli.verb import INTERRUPTED, OK, Verb
 from robotd.core.errors import RecordingError, RobotdError
 from robotd.grid import kernels
 from robotd.grid.occupancy import GridSettings
-from robotd.localization.refinement import RefinementSettings
+from robotd.localization.error_model import ErrorModel
+from robotd.localization.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.compute import cores
 from robotd.sim.carmen import CarmenLog, read_carmen
@@ -40,7 +41,8 @@ class _Plan:
     reach: Reach
     grid: GridSettings
     localization: LocalizationSettings
-    refinement: RefinementSettings
+    judgement: Judgement
+    error_model: ErrorModel
     threads: int
 
     def document(self) -> dict[str, Any]:
@@ -81,7 +83,9 @@ def _plan(arguments: argparse.Namespace) -> _Plan:
         lower_alpha=arguments.lower_alpha,
     )
     reach = Reach(arguments.range_max, min(arguments.clear, arguments.range_max))
-    return _Plan(arguments.cases, arguments.seed, reach, grid, read.localization, read.refinement, cores())
+    return _Plan(
+        arguments.cases, arguments.seed, reach, grid, read.localization, read.judgement, read.error_model, cores()
+    )
 
 
 def _drawing() -> Callable[[Path, LogReport], None]:
@@ -109,7 +113,7 @@ def _evaluate(plan: _Plan, name: str, log: CarmenLog) -> LogReport:
     except ValueError as error:
         raise RecordingError(f"{name}: no map can be made of it: {error}") from error
     cases: list[Case] = []
-    searcher = Searcher(grid, plan.localization, plan.refinement, plan.reach, plan.threads)
+    searcher = Searcher(grid, plan.localization, plan.judgement, plan.error_model, plan.reach, plan.threads)
     with _bar() as bar, suppress(KeyboardInterrupt):
         task = bar.add_task(name, total=len(division.queries))
         for case in searcher.cases(division.queries):

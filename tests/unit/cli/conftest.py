@@ -37,6 +37,7 @@ STATUS = Status(
     recording=None,
 )
 REGION = Region(
+    belief=0.98,
     pose=Pose2(1.0, 2.0, 0.0),
     covariance=((1e-4, 0.0, 0.0), (0.0, 1e-4, 0.0), (0.0, 0.0, 1e-5)),
     residual_m=0.02,

@@ -11,8 +11,8 @@ from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.spec import GridSpec
-from robotd.grid.ternary import TernaryMap
 from robotd.localization.area import Area
 from robotd.localization.counting import Count
 from robotd.localization.rank import even_headings
@@ -32,7 +32,8 @@ maps = hnp.arrays(np.uint8, SPEC.shape, elements=st.sampled_from([0, 0, 0, 1, 2]
 
 
 def ready(cells: NDArray[np.uint8]) -> ReadyMap:
-    return ReadyMap.of(TernaryMap(SPEC, cells == 1, cells == 0), LocalizationSettings(range_error_m=0.1))
+    evidence = np.choose(cells, (np.uint8(0), np.uint8(255), np.uint8(128)))
+    return ReadyMap.of(OccupancyGrid(SPEC, evidence), LocalizationSettings(range_error_m=0.1))
 
 
 @settings(max_examples=60, deadline=None)

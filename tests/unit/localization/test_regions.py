@@ -11,9 +11,9 @@ from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.spec import GridSpec
-from robotd.grid.ternary import TernaryMap
-from robotd.localization.described import Situation, described
+from robotd.localization.described import Answer, Situation, described
 from robotd.localization.estimate import Cover, Region
 from robotd.localization.prepared import PreparedMap
 from robotd.localization.rank import RankGrid, even_headings
@@ -79,15 +79,15 @@ def ready_rooms() -> ReadyMap:
     occupied = np.ones((6, 13), np.bool_)
     occupied[1:5, 1:6] = False
     occupied[1:5, 7:12] = False
-    ternary = TernaryMap(GridSpec(0.5, -1.0, 0.0, (6, 13)), occupied, ~occupied)
-    return ReadyMap.of(ternary, LocalizationSettings(range_error_m=0.0, blocked_by=1))
+    grid = OccupancyGrid(GridSpec(0.5, -1.0, 0.0, (6, 13)), np.where(occupied, np.uint8(255), np.uint8(0)))
+    return ReadyMap.of(grid, LocalizationSettings(range_error_m=0.0, blocked_by=1))
 
 
 def regions_of(ranks: RankGrid, least_rank: int, most: int = 99) -> tuple[Region, ...]:
     poses = ranks.cells_of_rank(least_rank)
     pieces = pieces_of(poses, ranks.rank_at(poses), ranks.headings_rad, most)
     situation = Situation(ready_rooms(), ranks.headings_rad, np.empty((0, 5)), RefinementSettings())
-    return described(pieces.best, situation)
+    return described([Answer(piece) for piece in pieces.best], situation)
 
 
 def test_every_region_is_told_with_its_place_and_extent() -> None:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import asdict, dataclass
 from functools import cache
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -13,10 +14,11 @@ from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.grid.readings import numbers_of
 from robotd.grid.spec import GridSpec
+from robotd.localization.climbing import Hill
 from robotd.localization.error_model import ErrorModel
 from robotd.localization.estimate import PoseState
 from robotd.localization.likelihood import Likelihood
-from robotd.localization.second_look import SecondLook, SecondLookSettings, second_look
+from robotd.localization.second_look import SecondLook, SecondLookSettings, _contrast, second_look
 from robotd.localization.shortlist import near
 from robotd.sim.walls import Walls, ray_cast
 
@@ -204,3 +206,64 @@ def test_without_poses_or_readings_the_robot_is_lost() -> None:
 def test_impossible_settings_are_refused(name: str) -> None:
     with pytest.raises(ValueError, match=name):
         SecondLookSettings(**{name: -1})
+
+
+APART_M = 10.0
+
+
+class Said:
+    """A likelihood that says what it is told to: the logarithms of poses 0, 1, 2... are rows."""
+
+    def __init__(self, *rows: list[float], sharpness: float = 0.0) -> None:
+        self._rows = np.array(rows)
+        self.model = ErrorModel(map_sharpness_sigma=sharpness)
+
+    def logs(self, sight: Any, poses: NDArray[np.float64]) -> NDArray[np.float64]:
+        logs: NDArray[np.float64] = self._rows[(poses[:, 0] / APART_M).astype(int)]
+        return logs
+
+
+def contrast_of(*rows: list[float], sharpness: float = 0.0) -> float:
+    poses = np.array([[APART_M * number, 0.0, 0.0] for number in range(len(rows))])
+    return _contrast(Hill(Said(*rows, sharpness=sharpness), cast("Any", None), np.ones(len(rows[0]))), poses)  # type: ignore[arg-type]  # a stand-in
+
+
+def test_no_single_reading_decides_however_loud_it_is() -> None:
+    assert contrast_of([50.0, 0.0, 0.0], [0.0, 0.0, 0.0]) == pytest.approx(1.0)
+    assert contrast_of([50.0, 0.0, 0.0], [0.0, 0.0, 0.0]) < SecondLookSettings().contrast_min
+
+
+def test_many_readings_that_agree_decide_and_those_that_contradict_each_other_do_not() -> None:
+    nothing = [0.0] * 16
+    assert contrast_of([1.0] * 16, nothing) == pytest.approx(4.0)
+    assert contrast_of([1.0] * 9 + [-1.0] * 7, nothing) == pytest.approx(0.5)
+
+
+def test_the_nearest_rival_counts_and_one_that_is_the_same_in_all_is_no_contrast() -> None:
+    nothing = [0.0] * 4
+    assert contrast_of([1.0] * 4, nothing, [1.0, 1.0, 0.0, 0.0]) == pytest.approx(math.sqrt(2.0))
+    assert contrast_of(nothing, nothing) == 0.0
+
+
+def test_small_differences_in_all_readings_are_no_more_than_luck_of_the_map() -> None:
+    nothing = [0.0] * 100
+    assert contrast_of([0.1] * 100, nothing) == pytest.approx(10.0)
+    assert contrast_of([0.1] * 100, nothing, sharpness=0.1) < 1.0
+    assert contrast_of([0.5] * 100, nothing, sharpness=0.1) > 3.0
+
+
+def test_what_lies_close_by_is_left_to_belief_alone() -> None:
+    """It is seen on the same walls, so no luck of the map tells the two apart."""
+    hill = Hill(Said([0.0] * 4), cast("Any", None), np.ones(4))  # type: ignore[arg-type]  # a stand-in
+    assert _contrast(hill, np.array([[1.0, 2.0, 0.0], [1.4, 2.0, 0.1]])) == math.inf
+
+
+def test_one_of_two_rooms_that_exist_twice_is_seldom_taken_for_sure() -> None:
+    sure = 0
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        here = Pose2(rng.uniform(1, 5), rng.uniform(1, 3), rng.uniform(-3, 3))
+        others = (moved(here, 8.0), turned_about(here), moved(turned_about(here), 8.0))
+        result = look(TWINS, scan(TWINS.boxes, here, rng, 0.015, 0.02), everywhere(mapped(TWINS), here, others))
+        sure += result.state is PoseState.LOCALIZED
+    assert sure <= 1

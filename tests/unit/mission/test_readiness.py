@@ -9,12 +9,14 @@ import pytest
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.localization.error_model import ErrorModel
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission import readiness
 from robotd.mission.map_in_use import MapInUse
 
 SETTINGS = LocalizationSettings()
+ERRORS = ErrorModel()
 
 
 def swept(place: MapInUse, x_m: float) -> Sweep:
@@ -48,9 +50,9 @@ def from_nothing(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     made: list[int] = []
     whole = readiness._made
 
-    def noting(grid: OccupancyGrid, settings: LocalizationSettings) -> ReadyMap:
+    def noting(grid: OccupancyGrid, settings: LocalizationSettings, errors: ErrorModel) -> ReadyMap:
         made.append(1)
-        return whole(grid, settings)
+        return whole(grid, settings, errors)
 
     monkeypatch.setattr(readiness, "_made", noting)
     return made
@@ -61,14 +63,14 @@ def test_sweeps_between_two_localizations_are_taken_in_at_once_and_only_where_th
 ) -> None:
     here = place()
     insert(here, -0.5)
-    here.readiness.keep(here.readiness.hand_over(here.grid, SETTINGS)())
+    here.readiness.keep(here.readiness.hand_over(here.grid, SETTINGS, ERRORS)())
     insert(here, 0.4)
     insert(here, 0.9)
-    updated = here.readiness.hand_over(here.grid, SETTINGS)()
+    updated = here.readiness.hand_over(here.grid, SETTINGS, ERRORS)()
     assert len(from_nothing) == 1
     anew = place()
     anew.grid = here.grid
-    fresh = anew.readiness.hand_over(anew.grid, SETTINGS)()
+    fresh = anew.readiness.hand_over(anew.grid, SETTINGS, ERRORS)()
     assert len(from_nothing) == 2
     for one, other in zip(arrays(updated), arrays(fresh), strict=True):
         np.testing.assert_array_equal(one, other)
@@ -76,15 +78,15 @@ def test_sweeps_between_two_localizations_are_taken_in_at_once_and_only_where_th
 
 def test_a_map_that_did_not_change_stays_ready(from_nothing: list[int]) -> None:
     here = place()
-    ready = here.readiness.hand_over(here.grid, SETTINGS)()
+    ready = here.readiness.hand_over(here.grid, SETTINGS, ERRORS)()
     here.readiness.keep(ready)
-    assert here.readiness.hand_over(here.grid, SETTINGS)() is ready
+    assert here.readiness.hand_over(here.grid, SETTINGS, ERRORS)() is ready
 
 
 def test_a_job_whose_result_nobody_took_is_forgotten_with_what_it_used_up(from_nothing: list[int]) -> None:
     here = place()
-    here.readiness.keep(here.readiness.hand_over(here.grid, SETTINGS)())
+    here.readiness.keep(here.readiness.hand_over(here.grid, SETTINGS, ERRORS)())
     insert(here, 0.4)
-    here.readiness.hand_over(here.grid, SETTINGS)  # the mission was stopped while it ran
-    here.readiness.hand_over(here.grid, SETTINGS)()
+    here.readiness.hand_over(here.grid, SETTINGS, ERRORS)  # the mission was stopped while it ran
+    here.readiness.hand_over(here.grid, SETTINGS, ERRORS)()
     assert len(from_nothing) == 2

@@ -170,6 +170,7 @@ class FakeControl:
 def an_estimate(state: PoseState, time_ns: int = 9) -> PoseEstimate:
     """A pose as a robot would publish it."""
     region = Region(
+        belief=0.98,
         pose=Pose2(1.0, 2.0, 0.25),
         covariance=((1e-4, 0.0, 0.0), (0.0, 1e-4, 0.0), (0.0, 0.0, 1e-5)),
         residual_m=0.02,

@@ -36,6 +36,7 @@ poses = st.builds(Pose2, numbers, numbers, st.floats(-3.2, 3.2))
 counts = st.integers(0, 300)
 regions = st.builds(
     Region,
+    belief=numbers,
     pose=poses,
     covariance=st.tuples(*[st.tuples(*[numbers] * 3)] * 3),
     residual_m=numbers,
@@ -73,6 +74,9 @@ events: st.SearchStrategy[Published] = st.one_of(
         st.booleans(),
         st.text(max_size=8),
         counts,
+        numbers,
+        numbers,
+        st.none() | numbers,
         st.lists(numbers, max_size=4).map(tuple),
     ),
     st.builds(
