@@ -30,6 +30,7 @@ class _Slice:
 
 
 def _exact(arguments: argparse.Namespace) -> int:
+    _refuse_contradictions(arguments)
     arithmetic = ARITHMETICS[arguments.arithmetic]
     asked = question(arguments, arithmetic)
     eps = rational(arguments.eps_m, arithmetic)
@@ -43,12 +44,17 @@ def _exact(arguments: argparse.Namespace) -> int:
     return OK
 
 
+def _refuse_contradictions(arguments: argparse.Namespace) -> None:
+    if arguments.out is not None and (arguments.at is not None or arguments.smallest_error is not None):
+        raise RobotdError("--out draws regions: neither --at nor --smallest-error has any")
+
+
 def _where(arguments: argparse.Namespace, asked: Question, eps: Rational) -> None:
     polygon_map = PolygonMap(asked.obstacles, eps)
     by_heading = zip(asked.headings_deg, asked.slices, strict=True)
     slices = [_slice(polygon_map, beams, heading_deg) for heading_deg, beams in by_heading]
     best = max(one.best for one in slices)
-    least = max(1, best if arguments.least_rank is None else min(arguments.least_rank, best))
+    least = arguments.least_rank or max(1, best)
     found = [(one.heading_deg, region) for one in slices for region in regions(one.ranks, of_rank(least))]
     found.sort(key=lambda place: -place[1].best_rank)
     summary = {

@@ -58,7 +58,7 @@ def read_map(path: Path, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
     if path.suffix not in FORMATS:
         raise MapError(f"{path}: the ending must be one of {', '.join(FORMATS)}, or it must be a saved map's directory")
     try:
-        return FORMATS[path.suffix](path.read_text(encoding="utf-8"), arithmetic)
+        return FORMATS[path.suffix](path.read_text(encoding="utf-8-sig"), arithmetic)
     except KeyError as error:
         raise MapError(f"{path}: no {error.args[0]} where there must be one") from error
     except (AttributeError, IndexError, TypeError) as error:
@@ -82,7 +82,7 @@ def read_beams(path: Path, arithmetic: Arithmetic = DEFAULT) -> list[Beam]:
         RobotdError: something in it is impossible.
     """
     try:
-        with path.open(encoding="utf-8", newline="") as lines:
+        with path.open(encoding="utf-8-sig", newline="") as lines:
             return beams_of(lines, arithmetic)
     except ValueError as error:
         raise RobotdError(f"{path}: {error}") from error

@@ -165,7 +165,7 @@ DOCUMENTS = (
         ],
         ("robotd/localization/exact/formats.py", "robotd/cli/exact_inputs.py"),
         typed=(RobotdError,),
-        tokens=(b"POLYGON ", b"MULTIPOLYGON ", b"((", b"))", b"EMPTY", b", "),
+        tokens=(b"POLYGON ", b"MULTIPOLYGON ", b"GEOMETRYCOLLECTION (", b" Z ", b"((", b"))", b"EMPTY", b", "),
         size_max=256,
     ),
     Target(

@@ -2,11 +2,13 @@
 
 TOML has ``outline_m`` for a room (all beyond is solid) and ``[[obstacle]]`` with ``points_m`` and ``holes_m``; the
 simulation's worlds are read as well: the closed ``[[wall]]`` around the start is the room, the others are solid.
+Points and lines have no inside: in GeoJSON and WKT they are passed over. A third coordinate is left out.
 """
 
 import json
 import re
 import tomllib
+from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final, Protocol
 
@@ -16,47 +18,54 @@ from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import Polygon, Ring, ring_of, solid, turned
 from robotd.localization.exact.rationals import DEFAULT, Arithmetic, rational
 
+Rings = Sequence[Sequence[Sequence[Any]]]
+"""The rings of a polygon as they are written, its outer one first."""
+
+_REFERENCE = re.compile(r"SRID=\d+;", re.IGNORECASE)
+"""In which coordinates a geometry is, as some databases write before it."""
 _WORDS = re.compile(r"[A-Za-z]+|[(),;=]|[^\s(),;=]+")
+_WITHOUT_INSIDE = {"Point", "MultiPoint", "LineString", "MultiLineString"}
+_WKT_KINDS = {"POLYGON", "MULTIPOLYGON", "GEOMETRYCOLLECTION", *(kind.upper() for kind in _WITHOUT_INSIDE)}
+_DIMENSIONS = {"Z", "M", "ZM"}
 
 
 def map_of_geojson(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
     """Return the union of all polygons of a GeoJSON document, whatever features and collections they are in.
 
     Raises:
-        ValueError: it is none, or has no polygons, or one has no area.
+        ValueError: it is none, or has no polygons, or one is impossible; says which.
     """
-    return _solid(_of_geometry(json.loads(text, parse_float=str), arithmetic))
+    return _solid(_of_geometry(json.loads(text, parse_float=str)), arithmetic)
 
 
 def map_of_wkt(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
-    """Return the union of all polygons of geometries in well-known text; other kinds are passed over.
+    """Return the union of all polygons of geometries in well-known text, one after another or in collections.
 
     Raises:
-        ValueError: there are none, or their parentheses do not match, or one has no area.
+        ValueError: there are none, or something is no such text, or a polygon is impossible; says which.
     """
-    words = _WORDS.findall(text)
-    found: list[Polygon] = []
-    while words:
-        kind = words.pop(0).upper()
-        if kind in ("POLYGON", "MULTIPOLYGON") and words and words[0] == "(":
-            nested = _nested(words)
-            found.extend(_polygon(rings, arithmetic) for rings in ([nested] if kind == "POLYGON" else nested))
-    return _solid(found)
+    words = deque(_WORDS.findall(_REFERENCE.sub("", text)))
+    obstacles = _solid(_of_wkt(words), arithmetic)
+    if words:
+        raise ValueError("a parenthesis is not opened")
+    return obstacles
 
 
 def map_of_toml(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
     """Return what is solid in a map or in a simulated world in TOML.
 
     Raises:
-        ValueError: it is neither, or a wall is open, or one has no area.
+        ValueError: it is neither, or a key is unknown, or a wall is open, or a polygon is impossible; says which.
     """
     document = tomllib.loads(text, parse_float=str)
     if "wall" in document:
         return _of_world(document, arithmetic)
-    found = [
-        _polygon([item["points_m"], *item.get("holes_m", [])], arithmetic) for item in document.get("obstacle", [])
-    ]
-    return _solid(found, ring_of(document["outline_m"], arithmetic) if "outline_m" in document else None)
+    _refuse_unknown(document, {"name", "outline_m", "obstacle"})
+    obstacles = document.get("obstacle", [])
+    for obstacle in obstacles:
+        _refuse_unknown(obstacle, {"name", "points_m", "holes_m"})
+    room = ring_of(document["outline_m"], arithmetic) if "outline_m" in document else None
+    return _solid(([item["points_m"], *item.get("holes_m", [])] for item in obstacles), arithmetic, room)
 
 
 class Format(Protocol):
@@ -75,46 +84,80 @@ FORMATS: Final[dict[str, Format]] = {
 """What reads a file, by its ending."""
 
 
-def _solid(polygons: Iterable[Polygon], room: Ring | None = None) -> PlanarSet:
-    found = list(polygons)
+def _solid(written: Iterable[Rings], arithmetic: Arithmetic, room: Ring | None = None) -> PlanarSet:
+    found = [_polygon(rings, number, arithmetic) for number, rings in enumerate(written, 1)]
     if not found and room is None:
         raise ValueError("no polygons in it")
     return solid(found, room=room)
 
 
-def _polygon(rings: Sequence[Sequence[Sequence[Any]]], arithmetic: Arithmetic) -> Polygon:
+def _polygon(rings: Rings, number: int, arithmetic: Arithmetic) -> Polygon:
     if not rings:
-        raise ValueError("a polygon has no ring")
-    outer, *holes = (ring_of((corner[:2] for corner in ring), arithmetic) for ring in rings)
-    return Polygon(outer, tuple(holes))
+        raise ValueError(f"polygon {number}: no ring")
+    try:
+        outer, *holes = (ring_of((corner[:2] for corner in ring), arithmetic) for ring in rings)
+        return Polygon(outer, tuple(holes))
+    except ValueError as error:
+        raise ValueError(f"polygon {number}: {error}") from error
 
 
-def _of_geometry(item: dict[str, Any], arithmetic: Arithmetic) -> Iterator[Polygon]:
+def _refuse_unknown(table: dict[str, Any], known: set[str]) -> None:
+    for key in table:
+        if key not in known:
+            raise ValueError(f"unknown key {key}; known: {', '.join(sorted(known))}")
+
+
+def _of_geometry(item: dict[str, Any]) -> Iterator[Rings]:
     match item.get("type"):
         case "FeatureCollection":
             for feature in item["features"]:
-                yield from _of_geometry(feature, arithmetic)
+                yield from _of_geometry(feature)
         case "Feature":
-            yield from _of_geometry(item["geometry"] or {}, arithmetic)
+            if item["geometry"] is not None:
+                yield from _of_geometry(item["geometry"])
         case "GeometryCollection":
             for geometry in item["geometries"]:
-                yield from _of_geometry(geometry, arithmetic)
+                yield from _of_geometry(geometry)
         case "Polygon":
-            yield _polygon(item["coordinates"], arithmetic)
+            yield item["coordinates"]
         case "MultiPolygon":
-            yield from (_polygon(rings, arithmetic) for rings in item["coordinates"])
+            yield from item["coordinates"]
+        case kind if kind not in _WITHOUT_INSIDE:
+            raise ValueError(f"{kind!r} is no type of GeoJSON")
 
 
-def _nested(words: list[str]) -> list[Any]:
+def _of_wkt(words: deque[str]) -> Iterator[Rings]:
+    """Take geometry after geometry off the front, up to the parenthesis that closes their collection."""
+    while words and words[0] != ")":
+        word = words.popleft()
+        kind = word.upper()
+        if kind == ",":
+            continue
+        if kind not in _WKT_KINDS:
+            raise ValueError(f"{word} is no geometry of well-known text")
+        if words and words[0].upper() in _DIMENSIONS:
+            words.popleft()
+        if words and words[0].upper() == "EMPTY":
+            words.popleft()
+        elif kind == "GEOMETRYCOLLECTION":
+            _take("(", words)
+            yield from _of_wkt(words)
+            _take(")", words)
+        else:
+            nested = _nested(words)
+            yield from {"POLYGON": [nested], "MULTIPOLYGON": nested}.get(kind, [])
+
+
+def _nested(words: deque[str]) -> list[Any]:
     """Take one parenthesis off the front: of others, or of a list of corners."""
     inside: list[Any] = []
     corner: list[str] = []
-    words.pop(0)
+    _take("(", words)
     while words:
         if words[0] == "(":
             inside.append(_nested(words))
             continue
-        word = words.pop(0)
+        word = words.popleft()
         if word in (",", ")"):
             if corner:
                 inside.append(corner)
@@ -126,19 +169,26 @@ def _nested(words: list[str]) -> list[Any]:
     raise ValueError("a parenthesis is not closed")
 
 
+def _take(parenthesis: str, words: deque[str]) -> None:
+    if not words or words.popleft() != parenthesis:
+        raise ValueError(f"a parenthesis is not {'opened' if parenthesis == '(' else 'closed'}")
+
+
 def _of_world(document: dict[str, Any], arithmetic: Arithmetic) -> PlanarSet:
+    _refuse_unknown(document, {"name", "start", "wall", "stops_m", "probes_m"})
     start = document["start"]
     at = Point(rational(start["x_m"], arithmetic), rational(start["y_m"], arithmetic))
     room: Ring | None = None
     obstacles: list[Polygon] = []
     for number, wall in enumerate(document["wall"], 1):
+        _refuse_unknown(wall, {"name", "points_m", "closed", "height_m"})
         if not wall.get("closed", True) or len(wall["points_m"]) < 3:
             raise ValueError(f"wall {number} encloses nothing: the exact algorithm takes areas")
         ring = ring_of(wall["points_m"], arithmetic)
         if room is None and _surrounds(ring, at):
             room = ring
         else:
-            obstacles.append(Polygon(ring))
+            obstacles.append(_polygon([wall["points_m"]], number, arithmetic))
     return solid(obstacles, room=room)
 
 

@@ -23,7 +23,7 @@ class Polygon:
         """Refuse what has no area."""
         for ring in (self.outer, *self.holes):
             if len(ring) < 3 or sign(twice_area(ring)) == 0:
-                raise ValueError(f"a ring needs an area, got {ring}")
+                raise ValueError(f"a ring needs an area, and one of {len(ring)} corners has none")
 
 
 def ring_of(corners: Iterable[Sequence[int | str | float]], arithmetic: Arithmetic = DEFAULT) -> Ring:
@@ -37,7 +37,7 @@ def ring_of(corners: Iterable[Sequence[int | str | float]], arithmetic: Arithmet
 
 
 def _corner(numbers: Sequence[int | str | float], arithmetic: Arithmetic) -> Point:
-    if len(numbers) != 2:
+    if isinstance(numbers, str) or len(numbers) != 2:
         raise ValueError(f"a corner needs x and y, got {numbers}")
     return Point(rational(numbers[0], arithmetic), rational(numbers[1], arithmetic))
 

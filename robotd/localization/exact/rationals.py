@@ -23,9 +23,9 @@ class Arithmetic(Protocol):
 
 _CLASSES = {"gmpy2": "mpq", "flint": "fmpq", "fractions": "Fraction"}
 """Where each arithmetic lives, fastest first; all but the last are extras."""
-
-
 _HUGE_EXPONENT: Final = re.compile(r"[eE][+-]?[0-9_]{4,}")
+_TOO_LARGE: Final = 10**90
+"""Whoever draws or prints a number wants a float, and squares it."""
 
 
 def _installed() -> dict[str, Arithmetic]:
@@ -56,12 +56,15 @@ def rational(value: str | SupportsFloat, arithmetic: Arithmetic = DEFAULT) -> Ra
     1 1/2
 
     Raises:
-        ValueError: it is not a finite number, or text of one that no float comes near.
+        ValueError: it is not a finite number, or too large, or written with a huge exponent.
     """
+    impossible = f"must be a finite number below 1e90, got {value!r}"
     try:
         exact = _fraction(value)
     except (ValueError, OverflowError, ZeroDivisionError) as error:
-        raise ValueError(f"not a finite number: {value!r}") from error
+        raise ValueError(impossible) from error
+    if abs(exact) >= _TOO_LARGE:
+        raise ValueError(impossible)
     return arithmetic(exact.numerator, exact.denominator)
 
 
@@ -70,9 +73,7 @@ def _fraction(value: str | SupportsFloat) -> Fraction:
     if isinstance(value, str):
         if _HUGE_EXPONENT.search(value):
             raise ValueError("its digits alone would take for ever")
-        exact = Fraction(value)
-        float(exact)  # everybody looks at the float first; OverflowError if there is none
-        return exact
+        return Fraction(value)
     if hasattr(value, "numerator") and hasattr(value, "denominator"):
         return Fraction(int(value.numerator), int(value.denominator))
     return Fraction(float(value))

@@ -19,7 +19,7 @@ def beams_of(lines: Iterable[str], arithmetic: Arithmetic = DEFAULT) -> list[Bea
     Raises:
         ValueError: a column is missing, or something in a line is impossible.
     """
-    table = csv.DictReader(line for line in lines if line.strip() and not line.startswith("#"))
+    table = csv.DictReader((line for line in lines if line.strip() and line[0] != "#"), skipinitialspace=True)
     missing = sorted(_COLUMNS - set(table.fieldnames or ()))
     if missing:
         raise ValueError(f"no column {', '.join(missing)}")

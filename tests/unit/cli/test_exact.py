@@ -109,6 +109,35 @@ def test_a_share_of_the_readings_is_rounded_up(files: list[str], capsys: pytest.
     assert "0.1005859375 m, proved" in said
 
 
+def test_a_rank_that_nothing_reaches_is_reached_nowhere(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["exact", *files, "--least-rank", "6", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert (answer["best_rank"], answer["regions"]) == (5, [])
+
+
+def test_what_is_not_bounded_is_said_to_be_infinite(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    Path(files[0]).write_text("[[obstacle]]\npoints_m = [[3, 3], [4, 3], [4, 4]]", encoding="utf-8")
+    Path(files[1]).write_text("bearing_deg,range_m,status\n45,1.5,miss\n", encoding="utf-8")
+    assert main(["exact", *files, "--json"]) == 0
+    (region,) = json.loads(capsys.readouterr().out)["regions"]
+    assert (region["kind"], region["area_m2"], region["box_m"]) == ("area", None, [None] * 4)
+    assert main(["exact", *files]) == 0
+    assert capsys.readouterr().out.splitlines()[-1].split() == ["1", "0.000", "area", "inf", "0.0000", *"----"]
+
+
+def test_files_may_begin_with_a_mark_of_their_encoding(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    for file in files:
+        Path(file).write_text(Path(file).read_text(encoding="utf-8"), encoding="utf-8-sig")
+    assert main(["exact", *files, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["best_rank"] == 5
+
+
+@pytest.mark.parametrize("answer", [["--at", "1", "2"], ["--smallest-error", "1"]])
+def test_only_regions_are_drawn(answer: list[str], files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["exact", *files, *answer, "--out", "where.png"]) == 1
+    assert "--out" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("arithmetic", ARITHMETICS)
 def test_every_arithmetic_gives_the_same_answer(
     arithmetic: str, files: list[str], capsys: pytest.CaptureFixture[str]
@@ -137,14 +166,16 @@ def test_a_saved_map_of_cells_is_a_map_of_polygons(tmp_path: Path) -> None:
     ("name", "text", "message"),
     [
         ("map.txt", MAP, "the ending must be"),
-        ("map.toml", "x = 1", "no polygons"),
+        ("map.toml", "", "no polygons"),
+        ("map.toml", "x = 1", "unknown key x"),
         ("map.toml", "obstacle = 3", "not built as such a file is"),
         ("map.toml", "[[obstacle]]", "no points_m"),
         ("map.json", "[1, 2]", "not built as such a file is"),
         ("map.json", "{", "Expecting"),
+        ("map.wkt", "\xff\xfe", "can't decode"),
     ],
 )
 def test_what_is_no_map_is_refused(tmp_path: Path, name: str, text: str, message: str) -> None:
-    (tmp_path / name).write_text(text, encoding="utf-8")
+    (tmp_path / name).write_text(text, encoding="latin-1")
     with pytest.raises(MapError, match=message):
         read_map(tmp_path / name)

@@ -32,7 +32,24 @@ holes_m = [[[1, 1], [2, 1], [2, 2.1], [1, 2.1]]]
 points_m = [[5, 0], [6, 0], [5.5, 0.7]]"""
 
 
-@pytest.mark.parametrize(("read", "text"), [(map_of_geojson, GEOJSON), (map_of_wkt, WKT), (map_of_toml, TOML)])
+WKT_OF_MORE = """SRID=25832;GEOMETRYCOLLECTION (POINT (1 2), LINESTRING EMPTY,
+POLYGON Z ((0 0 9, 3 0 9, 3 3 9, 0 3 9, 0 0 9), (1 1 9, 2 1 9, 2 2.1 9, 1 2.1 9, 1 1 9)),
+POLYGON EMPTY, MULTIPOLYGON ZM (((5 0 1 2, 6 0 1 2, 5.5 0.7 1 2))))"""
+GEOJSON_OF_MORE = """{"type": "GeometryCollection", "geometries": [{"type": "Point", "coordinates": [1, 2]},
+{"type": "Polygon", "coordinates": [[[0,0,9],[3,0,9],[3,3,9],[0,3,9],[0,0,9]],[[1,1],[1,2.1],[2,2.1],[2,1],[1,1]]]},
+{"type": "Feature", "geometry": null}, {"type": "Polygon", "coordinates": [[[5,0],[6,0],[5.5,0.7],[5,0]]]}]}"""
+
+
+@pytest.mark.parametrize(
+    ("read", "text"),
+    [
+        (map_of_geojson, GEOJSON),
+        (map_of_geojson, GEOJSON_OF_MORE),
+        (map_of_wkt, WKT),
+        (map_of_wkt, WKT_OF_MORE),
+        (map_of_toml, TOML),
+    ],
+)
 def test_a_map_is_the_same_in_every_format(read, text: str) -> None:  # type: ignore[no-untyped-def]  # three readers
     obstacles = read(text)
     assert edge_count(obstacles) == 11
@@ -50,11 +67,22 @@ def test_a_map_is_the_same_in_every_format(read, text: str) -> None:  # type: ig
     [
         (map_of_geojson, '{"type": "Point", "coordinates": [1, 2]}', "no polygons"),
         (map_of_wkt, "POLYGON ((0 0, 1 0, 1 1", "not closed"),
-        (map_of_wkt, "POLYGON ((0 0, 1 0, 2 0))", "an area"),
+        (map_of_wkt, "POLYGON ((0 0, 1 0, 2 0))", "polygon 1: a ring needs an area, and one of 3 corners has none"),
+        (map_of_wkt, "POLYGON ((0 0, 1 0, 1 1)) POLYGON ((0 0, 1 0, 2 0))", "polygon 2: a ring needs an area"),
+        (map_of_wkt, "POLYGON ((0 0, 1 0, 1 one))", "polygon 1: must be a finite number below 1e90, got 'one'"),
+        (map_of_wkt, "POLYGON ((0 0, 1 0, 1 1)) CURVEPOLYGON ((0 0, 1 0, 1 1))", "CURVEPOLYGON is no geometry"),
+        (map_of_wkt, "POLYGON (0 0, 1 0, 1 1)", "polygon 1: a corner needs x and y, got 0"),
+        (map_of_wkt, "POLYGON ((0 0, 1 0, 1 1) 7", "not closed"),
+        (map_of_wkt, "POLYGON ((0 0, 1 0, 1 1)))", "a parenthesis is not opened"),
         (map_of_wkt, "POLYGON ((0 0, 4 4, 4 0, 0 3))", "a ring crosses or overlaps itself"),
         (map_of_geojson, '{"type": "Polygon", "coordinates": []}', "no ring"),
         (map_of_geojson, '{"type": "Polygon", "coordinates": [[[0], [1, 0], [1, 1]]]}', "needs x and y"),
+        (map_of_geojson, '{"type": "Polygon", "coordinates": [["00", "10", "11"]]}', "needs x and y, got 00"),
+        (map_of_geojson, '{"type": "polygon", "coordinates": []}', "'polygon' is no type of GeoJSON"),
         (map_of_toml, "name = 'nothing'", "no polygons"),
+        (map_of_toml, "outline_m = [[0, 0], [1e99, 0], [0, 1]]", "must be a finite number below 1e90, got '1e99'"),
+        (map_of_toml, "outline_m = [[0, 0], [9, 0], [9, 9]]\n[[obstacles]]\n", "unknown key obstacles; known: "),
+        (map_of_toml, TOML + "\nhole_m = []", "unknown key hole_m; known: "),
         (map_of_toml, "start = {x_m = 0, y_m = 0}\n[[wall]]\npoints_m = [[1, 1], [2, 2]]", "encloses nothing"),
     ],
 )
@@ -90,6 +118,9 @@ def test_readings_are_read_exactly() -> None:
     assert east.is_hit
     assert miss.length == 2
     assert not miss.is_hit
+    (spaced,) = beams_of(["bearing_deg, range_m, status\n", "0, 2, miss\n"])
+    assert spaced.dx == 2
+    assert not spaced.is_hit
     assert float(miss.dx) == pytest.approx(float(sqrt(rational(2))), abs=2e-9)
 
 
@@ -102,10 +133,13 @@ def test_readings_are_read_exactly() -> None:
         (["bearing_deg,range_m,status\n", "0,1,fault\n"], "hit or miss"),
         (["bearing_deg,range_m\n", "0,1\n", "0\n"], "reading 2: another number of columns"),
         (["bearing_deg,range_m\n", "0,1,hit\n"], "reading 1: another number of columns"),
-        (["bearing_deg,range_m\n", "nan,1\n"], "reading 1: not a finite number: 'nan'"),
-        (["bearing_deg,range_m\n", "0,far\n"], "reading 1: not a finite number: 'far'"),
-        (["bearing_deg,range_m\n", "0,1e999\n"], "reading 1: not a finite number: '1e999'"),
-        (["bearing_deg,range_m\n", "0,1e-9999999999\n"], "reading 1: not a finite number: '1e-9999999999'"),
+        (["bearing_deg,range_m\n", "nan,1\n"], "reading 1: must be a finite number below 1e90, got 'nan'"),
+        (["bearing_deg,range_m\n", "0,far\n"], "reading 1: must be a finite number below 1e90, got 'far'"),
+        (["bearing_deg,range_m\n", "0,1e999\n"], "reading 1: must be a finite number below 1e90, got '1e999'"),
+        (
+            ["bearing_deg,range_m\n", "0,1e-9999999999\n"],
+            "reading 1: must be a finite number below 1e90, got '1e-9999999999'",
+        ),
     ],
 )
 def test_impossible_readings_are_refused(lines: list[str], message: str) -> None:
