@@ -33,7 +33,7 @@ def _row(heading_deg: float, region: Region) -> tuple[str, ...]:
     west, south, east, north = region.box_m
     sizes = (region.length_m, *region.centre_m, east - west, north - south)
     texts = (f"{size:.4f}" if math.isfinite(size) else "-" for size in sizes)
-    return (str(region.best_rank), f"{heading_deg:.3f}", region.kind, f"{region.area_m2:.6f}", *texts)
+    return (str(region.best_rank), f"{heading_deg:.3f}", region.kind, f"{region.area_m2:.6g}", *texts)
 
 
 def _document(heading_deg: float, region: Region) -> dict[str, Any]:

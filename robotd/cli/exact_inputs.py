@@ -55,10 +55,11 @@ def read_map(path: Path, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
     """
     if path.is_dir():
         return _read_cells(path, arithmetic)
-    if path.suffix not in FORMATS:
+    read = FORMATS.get(path.suffix.lower())
+    if read is None:
         raise MapError(f"{path}: the ending must be one of {', '.join(FORMATS)}, or it must be a saved map's directory")
     try:
-        return FORMATS[path.suffix](path.read_text(encoding="utf-8-sig"), arithmetic)
+        return read(path.read_text(encoding="utf-8-sig"), arithmetic)
     except KeyError as error:
         raise MapError(f"{path}: no {error.args[0]} where there must be one") from error
     except (AttributeError, IndexError, TypeError) as error:

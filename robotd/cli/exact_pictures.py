@@ -15,6 +15,8 @@ from robotd.localization.exact.planar import PlanarSet
 
 SOLID = "#4a5763"
 _BEST = "#0b63ce"
+_SMALL = 1 / 200
+"""What part of a picture's width is easily overlooked."""
 _FAR_M = 1000.0
 """How far to fill a set that reaches to infinity; farther than any picture."""
 
@@ -62,12 +64,23 @@ def draw_ranks(
     best = best_rank(ranks)
     fewer = f"; grey: fewer, from {least}, the darker the more" if least < best else ""
     note = f"exact; blue: all poses where {best} readings hold, the most{fewer}"
-    axes = paper(title, box or box_of(obstacles), note)
+    box = box or box_of(obstacles)
+    axes = paper(title, box, note)
     fill(axes, obstacles, SOLID, zorder=1.0)
     for rank in range(least, best):
         fill(axes, of_rank(ranks, rank), INK, alpha=min(0.5, 1.5 / best), zorder=2.0)
     if best > 0:
-        fill(axes, of_rank(ranks, best), _BEST, zorder=3.0)
+        poses = of_rank(ranks, best)
+        fill(axes, poses, _BEST, zorder=3.0)
+        _mark_small(axes, poses, (box[2] - box[0]) * _SMALL)
     if truth_m is not None:
         axes.plot(*truth_m, "o", markersize=16, markerfacecolor="none", markeredgecolor=TRUTH, markeredgewidth=2)
     save(axes, file)
+
+
+def _mark_small(axes: Axes, planar: PlanarSet, size_m: float) -> None:
+    """Put a dot where an area or a line of a set would be too small to be seen."""
+    for line in (*outline_loops(planar), *single_lines(planar)):
+        xs, ys = zip(*line, strict=True)
+        if max(max(xs) - min(xs), max(ys) - min(ys)) < size_m:
+            axes.plot(xs[0], ys[0], "o", markersize=5.0, color=_BEST, markeredgewidth=0.0, zorder=3.0)
