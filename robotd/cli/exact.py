@@ -9,7 +9,7 @@ from robotd.cli.exact_inputs import Question, question
 from robotd.cli.quantities import number, positive, whole
 from robotd.cli.verb import OK, Verb
 from robotd.core.errors import RobotdError
-from robotd.localization.exact.arrangement import Arrangement
+from robotd.localization.exact.arrangement import Arrangement, at_least
 from robotd.localization.exact.beams import Beam
 from robotd.localization.exact.feasible import PolygonMap, best_rank, ranked
 from robotd.localization.exact.formats import FORMATS
@@ -17,7 +17,7 @@ from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import edge_count
 from robotd.localization.exact.rationals import ARITHMETICS, DEFAULT, Rational, name_of, rational
-from robotd.localization.exact.regions import of_rank, regions
+from robotd.localization.exact.regions import regions
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ def _where(arguments: argparse.Namespace, asked: Question, eps: Rational) -> Non
     slices = [_slice(polygon_map, beams, heading_deg) for heading_deg, beams in by_heading]
     best = max(one.best for one in slices)
     least = arguments.least_rank or max(1, best)
-    found = [(one.heading_deg, region) for one in slices for region in regions(one.ranks, of_rank(least))]
+    found = [(one.heading_deg, region) for one in slices for region in regions(one.ranks, at_least(least))]
     found.sort(key=lambda place: -place[1].best_rank)
     summary = {
         "edges": edge_count(asked.obstacles),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
 
-from robotd.localization.exact.arrangement import Arrangement
+from robotd.localization.exact.arrangement import Arrangement, at_least
 from robotd.localization.exact.beams import Beam
 from robotd.localization.exact.feasible import (
     PolygonMap,
@@ -21,7 +21,7 @@ from robotd.localization.exact.feasible import (
 from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.polygons import edge_count
 from robotd.localization.exact.rationals import ARITHMETICS, rational
-from robotd.localization.exact.regions import of_rank, regions
+from robotd.localization.exact.regions import regions
 from robotd.localization.exact.sweep import arrange
 from tests.exact.operations import counted
 from tests.exact.scenes import (
@@ -117,7 +117,7 @@ def by_arithmetic() -> Iterator[tuple[str, float, float]]:
 def _localized(walls: PlanarSet, beams: Sequence[Beam], eps: str) -> Localized:
     ranks, seconds = timed(lambda: ranked(PolygonMap(walls, rational(eps)), beams))
     best = best_rank(ranks)
-    found = regions(ranks, of_rank(best))
+    found = regions(ranks, at_least(best))
     area = sum(region.area_m2 for region in found)
     return Localized(eps, len(beams), best, len(found), area, len(ranks.vertices), seconds)
 

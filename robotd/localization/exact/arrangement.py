@@ -15,6 +15,11 @@ Mask = int
 """Bit k is set if set k contains the cell."""
 
 
+def at_least(depth: int) -> Callable[[Mask], bool]:
+    """Return the condition that so many sets contain a cell, or more."""
+    return lambda mask: mask.bit_count() >= depth
+
+
 @dataclass(slots=True, eq=False)
 class Vertex:
     """A point where borders end, meet or cross, or where a spot is."""

@@ -41,7 +41,7 @@ class Verdict:
 
 
 def cast(obstacles: PlanarSet, beam: Beam, eps: Rational, pose: Point) -> Verdict:
-    """Return what becomes of a beam from a point of rational or irrational coordinates."""
+    """Return what becomes of a beam from a point of rational or irrational coordinates: O(n k) if it meets k edges."""
     entry = _entry(obstacles, beam, pose)
     if entry is not None and compare(entry, beam.body_share(eps)) < 0:
         return Verdict(Outcome.BLOCKED, free_length=entry * beam.length)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from robotd.localization.exact.arrangement import Arrangement, Mask
+from robotd.localization.exact.arrangement import Arrangement, Mask, at_least
 from robotd.localization.exact.beams import Beam
 from robotd.localization.exact.minkowski import blocked, grown
 from robotd.localization.exact.planar import PlanarSet
@@ -47,7 +47,10 @@ class PolygonMap:
 
 
 def feasible_arrangement(polygon_map: PolygonMap, beam: Beam) -> Arrangement:
-    """Return the arrangement of D (bit 0; everything, for an over-range reading) and the parts of E (the others)."""
+    """Return the arrangement of D (bit 0; everything, for an over-range reading) and the parts of E (the others).
+
+    O((n + s) log n) for n edges of the map, where the borders of D and of the parts meet in s points (theorems 3, 4).
+    """
     everywhere = PlanarSet(far=True)
     return arrange([polygon_map.endpoint_set(beam) if beam.is_hit else everywhere, *polygon_map.blocked_parts(beam)])
 
@@ -65,7 +68,8 @@ def feasible_poses(polygon_map: PolygonMap, beam: Beam) -> PlanarSet:
 def ranked(polygon_map: PolygonMap, beams: Sequence[Beam]) -> Arrangement:
     """Return the arrangement of the feasible poses of many readings.
 
-    Bit k of a mask is the k-th reading; how many bits are set is the rank of the cell, rnk(M, Z, p).
+    Bit k of a mask is the k-th reading; how many bits are set is the rank of the cell, rnk(M, Z, p). For m readings
+    O((m n^2 + s) log m n) at worst (theorems 5, 7): the feasible poses of one have up to n^2 borders.
     """
     return arrange([feasible_poses(polygon_map, beam) for beam in beams])
 
@@ -77,4 +81,4 @@ def best_rank(arrangement: Arrangement) -> int:
 
 def of_rank(arrangement: Arrangement, least: int) -> PlanarSet:
     """Return the poses that explain at least so many readings: loc(M, Z) for the best rank, FP(M, Z) for all."""
-    return arrangement.select(lambda mask: mask.bit_count() >= least)
+    return arrangement.select(at_least(least))

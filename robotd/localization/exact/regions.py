@@ -40,16 +40,12 @@ class Region:
 def regions(arrangement: Arrangement, belongs: Callable[[Mask], bool]) -> list[Region]:
     """Return the connected regions of all cells whose masks belong: best rank first, then largest, then from the west.
 
-    Two cells are connected where one lies on the border of the other and both belong.
+    Two cells are connected where one lies on the border of the other and both belong. Time is nearly linear in the
+    number of cells.
     """
     areas, around = face_areas(arrangement), _borders_of_faces(arrangement)
     found = [_region(arrangement, areas, around, cells) for cells in _components(arrangement, belongs)]
     return sorted(found, key=lambda region: (-region.best_rank, -region.area_m2, -region.length_m, region.box_m))
-
-
-def of_rank(least: int) -> Callable[[Mask], bool]:
-    """Return the condition that at least so many readings hold."""
-    return lambda mask: mask.bit_count() >= least
 
 
 @dataclass(frozen=True, slots=True)

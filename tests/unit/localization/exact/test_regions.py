@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.localization.exact.arrangement import Arrangement
+from robotd.localization.exact.arrangement import Arrangement, at_least
 from robotd.localization.exact.locate import contains
 from robotd.localization.exact.loops import outline_loops, single_lines, single_points
 from robotd.localization.exact.measure import face_areas
@@ -16,7 +16,7 @@ from robotd.localization.exact.planar import PlanarSet, Spot, area_within, disk,
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import Polygon, ring_of, solid
 from robotd.localization.exact.rationals import Rational, rational
-from robotd.localization.exact.regions import of_rank, regions
+from robotd.localization.exact.regions import regions
 from robotd.localization.exact.surds import sqrt
 from robotd.localization.exact.sweep import arrange
 from tests.unit.localization.exact.arithmetics import rationals
@@ -48,14 +48,14 @@ def test_areas_with_holes_are_counted_without_them() -> None:
 def test_closed_squares_that_touch_in_a_corner_are_one_region_and_open_ones_two() -> None:
     for closed, expected in ((True, 1), (False, 2)):
         sets = [square(0, 0, 1, closed=closed), square(1, 1, 1, closed=closed)]
-        assert len(regions(arrange(sets), of_rank(1))) == expected
+        assert len(regions(arrange(sets), at_least(1))) == expected
 
 
 def test_regions_come_best_and_largest_first_and_know_their_readings() -> None:
     lonely = PlanarSet(
         (segment(point(20, 0), point(23, 4), on=True, left=False, right=False),), (Spot(point(30, 0), on=True),)
     )
-    found = regions(arrange([square(0, 0, 3), square(1, 1, 1), square(10, 0, 5), lonely]), of_rank(1))
+    found = regions(arrange([square(0, 0, 3), square(1, 1, 1), square(10, 0, 5), lonely]), at_least(1))
     assert [region.kind for region in found] == ["area", "area", "segment", "point"]
     assert [region.readings for region in found] == [0b11, 0b100, 0b1000, 0b1000]
     assert [region.area_m2 for region in found] == pytest.approx([9.0, 25.0, 0.0, 0.0])
@@ -65,19 +65,19 @@ def test_regions_come_best_and_largest_first_and_know_their_readings() -> None:
 
 def test_all_that_no_reading_denies_reaches_to_infinity() -> None:
     everywhere = arrange([PlanarSet(far=True)])
-    (region,) = regions(everywhere, of_rank(1))
+    (region,) = regions(everywhere, at_least(1))
     assert region.area_m2 == math.inf
     assert region.kind == "area"
 
 
 def test_all_but_a_hole_reaches_to_infinity_on_every_side() -> None:
-    (region,) = regions(arrange([flipped(square(2, 2, 1))]), of_rank(1))
+    (region,) = regions(arrange([flipped(square(2, 2, 1))]), at_least(1))
     assert region.area_m2 == math.inf
     assert region.box_m == (-math.inf, -math.inf, math.inf, math.inf)
 
 
 def test_a_box_holds_the_arcs_that_bulge_beyond_their_ends() -> None:
-    (whole,) = regions(arrange([disk(point(3, -2), sqrt(rational(4)), closed=True)]), of_rank(1))
+    (whole,) = regions(arrange([disk(point(3, -2), sqrt(rational(4)), closed=True)]), at_least(1))
     assert whole.box_m == pytest.approx((1.0, -4.0, 5.0, 0.0))
     above = arrange([disk(point(0, 0), rational(5), closed=True), square(-9, 3, 18)])
     (cap,) = regions(above, lambda mask: mask == 0b11)
@@ -90,7 +90,7 @@ def test_a_box_holds_the_arcs_that_bulge_beyond_their_ends() -> None:
 @pytest.mark.parametrize(("east", "north"), [("0", "0"), ("500000.1", "5600000.1"), ("-1e15", "1e15")])
 def test_a_small_area_is_an_area_wherever_it_lies(east: str, north: str) -> None:
     ring = [point(east, north).moved(rational(dx), rational(dy)) for dx, dy in ((0, 0), ("0.001", 0), (0, "0.001"))]
-    (region,) = regions(arrange([area_within([ring], closed=True)]), of_rank(1))
+    (region,) = regions(arrange([area_within([ring], closed=True)]), at_least(1))
     assert region.kind == "area"
 
 
@@ -128,7 +128,7 @@ def windings(planar: PlanarSet, x: float, y: float) -> int:
 @settings(max_examples=40, deadline=None)
 @given(st.lists(planar_sets, min_size=1, max_size=4), st.integers(1, 2), st.lists(places, min_size=2, max_size=6))
 def test_outlines_run_once_round_every_area(sets: list[PlanarSet], least: int, somewhere: list[Point]) -> None:
-    whole = arrange(sets).select(of_rank(least))
+    whole = arrange(sets).select(at_least(least))
     corners = [corner for loop in outline_loops(whole) for corner in loop]
     for at in somewhere:
         if all(math.dist(corner, at.floats) > 0.3 for corner in corners):  # arcs are drawn as polylines
