@@ -10,6 +10,7 @@ from contextlib import aclosing
 from multiprocessing.synchronize import Event
 from pathlib import Path
 
+from firmware_proto.common import Fault
 from robotd.app.stall_guard import STALL_S
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.mission.events import MissionPhase, MissionProgress
@@ -104,7 +105,7 @@ async def daemon_killed(rig: Rig, trials: int) -> AsyncIterator[float]:
             await until(lambda: body.velocity[0] > _MOVING_MPS)
             killed_ns = now_ns()
             daemon.kill()
-            await until(lambda: not (body._speed.goal or body._turn.goal))
+            await until(lambda: Fault.DEADMAN in getattr(rig.robot.boards["drive"], "faults", Fault.NONE))
             yield ms_since(killed_ns + round(_TTL_S * NS_PER_S), now_ns())
             await until(lambda: rig.robot.at_rest)
 
@@ -117,10 +118,12 @@ def _far_end(rig: Rig) -> tuple[float, float]:
     )
 
 
+ON_C_BOARDS = "killed, C boards"
 CAUSES = {
     "lease expiry": lease_expiry,
     "client killed": client_killed,
     "loop stall": loop_stall,
     "SIGTERM": sigterm,
     "daemon killed": daemon_killed,
+    ON_C_BOARDS: daemon_killed,
 }

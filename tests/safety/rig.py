@@ -18,6 +18,7 @@ from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.server.async_client import AsyncClient
+from robotd.sim.emulators.catalogue import Dialects, Firmware
 from robotd.sim.faults.fault import Fault
 from robotd.sim.faults.laid import cables_on_ptys
 from robotd.sim.robot import SimulatedRobot
@@ -111,9 +112,9 @@ async def armed(client: AsyncClient) -> None:
 
 
 @contextlib.asynccontextmanager
-async def rig(directory: Path) -> AsyncIterator[Rig]:
+async def rig(directory: Path, boards: Firmware = Firmware.PYTHON) -> AsyncIterator[Rig]:
     """Put a robot's boards on pseudo-terminals, with a configuration to run a daemon on them."""
-    robot = SimulatedRobot(load_world("laboratory"), seed=4)
+    robot = SimulatedRobot(load_world("laboratory"), seed=4, dialects=Dialects(boards=boards))
     async with cables_on_ptys(robot, directory / "devices") as (laid, ports):
         watches = tuple(Watch(device) for device in laid)
         for watch in watches:

@@ -11,12 +11,20 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from tests.safety.causes import CAUSES
+from robotd.sim.emulators.catalogue import Firmware
+from tests.safety.causes import CAUSES, ON_C_BOARDS
 from tests.safety.rig import NICE, rig
 
 BOUND_MS = 50.0
 _BOARDS_NICE = -15
-_TRIALS = {"lease expiry": 500, "client killed": 100, "loop stall": 500, "SIGTERM": 25, "daemon killed": 25}
+_TRIALS = {
+    "lease expiry": 500,
+    "client killed": 100,
+    "loop stall": 500,
+    "SIGTERM": 25,
+    "daemon killed": 25,
+    ON_C_BOARDS: 25,
+}
 
 
 def main() -> None:
@@ -49,7 +57,7 @@ def _measure(cause: str, trials: int) -> bool:
 async def measured(cause: str, trials: int) -> list[float]:
     """Return how late the stop was in each trial [ms]."""
     with tempfile.TemporaryDirectory(prefix="robotd-safety-") as directory:
-        async with rig(Path(directory)) as it:
+        async with rig(Path(directory), Firmware.C if cause == ON_C_BOARDS else Firmware.PYTHON) as it:
             return [late_ms async for late_ms in CAUSES[cause](it, trials)]
 
 
