@@ -5,6 +5,7 @@ import gc
 import inspect
 import os
 import tempfile
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -58,9 +59,17 @@ def _no_leaked_descriptors(request: pytest.FixtureRequest) -> Iterator[None]:
     yield
     if _open_descriptors() - before:
         gc.collect()  # reference cycles may still hold what the test let go
+        _let_watchers_end()
     leaked = dict(_open_descriptors() - before)
     if leaked:
         pytest.fail(f"descriptors left open: {leaked}")
+
+
+def _let_watchers_end() -> None:
+    """Threads that watched a line end soon after it was closed, and close what rang them."""
+    for thread in threading.enumerate():
+        if thread.name.startswith("watch "):
+            thread.join(1.0)
 
 
 def _open_descriptors() -> set[tuple[str, str]]:

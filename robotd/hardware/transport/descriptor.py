@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from robotd.core.errors import TransportError
 from robotd.hardware.transport.outbox import Outbox
+from robotd.hardware.transport.readiness import Readiness
 
 _READ_BYTES = 4096
 
@@ -19,10 +20,11 @@ class DescriptorTransport:
     buffer is the only input buffer, and a line that hung up cannot keep the loop busy.
     """
 
-    def __init__(self, name: str, descriptor: int, release: Callable[[], None]) -> None:
-        """Take over a descriptor; ``release`` closes it."""
+    def __init__(self, name: str, descriptor: int, readiness: Readiness, release: Callable[[], None]) -> None:
+        """Take over a descriptor; ``readiness`` tells when it can be used, ``release`` closes it."""
         self._name = name
         self._descriptor = descriptor
+        self._readiness = readiness
         self._release = release
         self._loop = asyncio.get_running_loop()
         self._outbox = Outbox(name)
@@ -82,24 +84,23 @@ class DescriptorTransport:
             await self._readable
         finally:
             self._readable = None
-            if self._lost is None:
-                self._loop.remove_reader(self._descriptor)
+            self._readiness.forget_readable()
         self._check()
 
     def _watch(self, readable: "asyncio.Future[None]") -> None:
-        self._loop.add_reader(self._descriptor, wake, readable)
+        self._readiness.when_readable(lambda: wake(readable))
 
     def _flush(self) -> None:
         try:
             while self._outbox:
                 self._outbox.drop(os.write(self._descriptor, self._outbox.head()))
         except (BlockingIOError, InterruptedError):
-            self._loop.add_writer(self._descriptor, self._flush)
+            self._readiness.when_writable(self._flush)
             return
         except OSError as error:
             self._hang_up(f"write: {error.strerror}")
             return
-        self._loop.remove_writer(self._descriptor)
+        self._readiness.forget_writable()
 
     def _hang_up(self, reason: str) -> None:
         self._lose(reason)
@@ -112,8 +113,7 @@ class DescriptorTransport:
         if self._lost is not None:
             return
         self._lost = reason
-        self._loop.remove_reader(self._descriptor)
-        self._loop.remove_writer(self._descriptor)
+        self._readiness.close()
         self._outbox.clear()
         with self._closing:  # another thread must not write to whatever gets this number next
             self._release()

@@ -7,6 +7,7 @@ import select
 import tty
 
 from robotd.hardware.transport.descriptor import DescriptorTransport, wake
+from robotd.hardware.transport.readiness import InThread
 
 _LOOK_AGAIN_S = 0.02
 
@@ -21,7 +22,7 @@ class PtyEnd(DescriptorTransport):
 
     def __init__(self, path: str, master: int) -> None:
         """Take over a non-blocking master descriptor, and close it in the end."""
-        super().__init__(path, master, lambda: os.close(master))
+        super().__init__(path, master, InThread(path, master), lambda: os.close(master))
         self._poll = select.poll()
         self._poll.register(master, 0)  # hanging up is reported whether asked for or not
 
@@ -52,7 +53,7 @@ class PtyEnd(DescriptorTransport):
 
     def _drop_output(self) -> None:
         self._outbox.clear()
-        self._loop.remove_writer(self._descriptor)
+        self._readiness.forget_writable()
 
 
 def open_pty() -> PtyEnd:

@@ -6,6 +6,7 @@
 """
 
 import asyncio
+import contextlib
 import errno
 import fcntl
 import os
@@ -19,6 +20,7 @@ from robotd.core.errors import TransportError
 from robotd.hardware.transport.descriptor import DescriptorTransport
 from robotd.hardware.transport.holder import holder_of
 from robotd.hardware.transport.line_format import LineFormat
+from robotd.hardware.transport.readiness import InThread
 
 _PTY_SLAVE_MAJORS = range(136, 144)
 _ADVICE = {
@@ -37,7 +39,7 @@ async def open_serial(path: str, line_format: LineFormat) -> DescriptorTransport
         TransportError: it is not there, busy (the message names the holder if it can), or no serial port.
     """
     port = await asyncio.get_running_loop().run_in_executor(None, _open, path, line_format)
-    return DescriptorTransport(path, port.fileno(), port.close)
+    return DescriptorTransport(path, port.fileno(), InThread(path, port.fileno()), lambda: _release(port))
 
 
 def _open(path: str, line_format: LineFormat) -> serial.Serial:
@@ -71,6 +73,14 @@ def _finish(descriptor: int) -> None:
     termios.tcsetattr(descriptor, termios.TCSANOW, settings)
     if os.major(os.fstat(descriptor).st_rdev) not in _PTY_SLAVE_MAJORS:
         fcntl.ioctl(descriptor, termios.TIOCEXCL)
+
+
+def _release(port: serial.Serial) -> None:
+    """Give it up at once, even while a thread still asks the kernel about it."""
+    with contextlib.suppress(OSError):  # the device may be gone
+        fcntl.flock(port.fileno(), fcntl.LOCK_UN)
+        fcntl.ioctl(port.fileno(), termios.TIOCNXCL)
+    port.close()
 
 
 def _reason(path: str, error: OSError) -> str:

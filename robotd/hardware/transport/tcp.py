@@ -5,6 +5,7 @@ import socket
 
 from robotd.core.errors import TransportError
 from robotd.hardware.transport.descriptor import DescriptorTransport
+from robotd.hardware.transport.readiness import OnLoop
 
 _CONNECT_TIMEOUT_S = 5.0
 _KERNEL_BUFFER_BYTES = 16 * 1024
@@ -33,7 +34,7 @@ def tcp_transport(name: str, connection: socket.socket) -> DescriptorTransport:
     connection.setblocking(False)
     connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _KERNEL_BUFFER_BYTES)
     connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-    return DescriptorTransport(name, connection.fileno(), connection.close)
+    return DescriptorTransport(name, connection.fileno(), OnLoop(connection.fileno()), connection.close)
 
 
 async def _connect(host: str, port: int) -> socket.socket:
