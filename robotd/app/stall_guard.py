@@ -10,6 +10,7 @@ import contextlib
 import logging
 import sys
 import threading
+import traceback
 from collections.abc import AsyncIterator, Callable
 from typing import NoReturn
 
@@ -50,6 +51,8 @@ async def guarded(stop_past_loop: Callable[[], None], stalled: Callable[[], None
 class _Guard:
     def __init__(self, stop_past_loop: Callable[[], None]) -> None:
         self._stop_past_loop = stop_past_loop
+        self._loop_thread = threading.get_ident()
+        self._stuck_in = ""
         self._beaten = threading.Event()
         self._fired = threading.Event()
         self._is_ending = False
@@ -60,7 +63,11 @@ class _Guard:
             self._beaten.set()
             if self._fired.is_set():
                 self._fired.clear()
-                log.error("the event loop stood still for more than %g s: the robot was stopped", STALL_S)
+                log.error(
+                    "the event loop stood still for more than %g s: the robot was stopped; it was in\n%s",
+                    STALL_S,
+                    self._stuck_in,
+                )
                 stalled()
             await asyncio.sleep(_BEAT_EVERY_S)
 
@@ -69,9 +76,15 @@ class _Guard:
         while not self._is_ending:
             if not self._beaten.wait(STALL_S):
                 self._stop_past_loop()
+                self._stuck_in = self._where()
                 self._fired.set()
                 self._beaten.wait()
             self._beaten.clear()
+
+    def _where(self) -> str:
+        """Return where the loop's thread is: who reads the log wants to know what held it up."""
+        frame = sys._current_frames().get(self._loop_thread)  # noqa: SLF001  # the documented way, for all its underscore
+        return "".join(traceback.format_stack(frame)).rstrip() if frame is not None else "nowhere: its thread ended"
 
     def end(self) -> None:
         """Let the thread end."""
