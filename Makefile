@@ -52,8 +52,8 @@ firmware-test: .venv/.dev  ## The boards' C against Python under the sanitizers:
 fuzz: .venv/.dev  ## Strange bytes for every parser, a minute each: make fuzz FUZZ_SECONDS=5; keeps what it learns in tests/fuzz/corpus
 	@$(BIN)/python -m tests.fuzz.run $(if $(FUZZ_SECONDS),--seconds $(FUZZ_SECONDS)) $(if $(ONLY),--only $(ONLY))
 
-safety: .venv/.dev  ## How late stops are on the wires in real time, all processors busy (six minutes)
-	@$(BIN)/python -m tests.safety.run
+safety: .venv/.dev  ## How late stops are on the wires in real time, all processors busy (half an hour; make safety SHARE=0.1)
+	@$(BIN)/python -m tests.safety.run $(if $(SHARE),--share $(SHARE))
 
 lint: .venv/.dev  ## Check format and style
 	@echo "robotd: ruff"
