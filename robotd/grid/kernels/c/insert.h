@@ -17,7 +17,7 @@ typedef struct {
     const uint8_t *lower;      /* [256] */
     const uint8_t *higher;     /* [256] */
     int32_t all_at_once;       /* each cell once, a hit beats all misses; else one beam after the other */
-    double *beams;             /* [count][5], for the kernel's own use */
+    double *beams;             /* [count][6], for the kernel's own use */
     int64_t *hits;             /* [count], the same */
     uint8_t *before;           /* [rows][cols], the same */
     int64_t *changed;          /* [min(rows * cols, count * (max(rows, cols) + 3))] */
