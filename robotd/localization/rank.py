@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from robotd.core.errors import TooLarge
 from robotd.core.reading import RangeReading
 from robotd.grid import kernels
-from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, BeamSettings, Words, unpack
+from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, BeamSettings, unpack
 from robotd.grid.readings import numbers_of
 from robotd.localization.prepared import PreparedMap
 
@@ -58,7 +58,7 @@ class RankGrid:
         self._map = the_map.packed
         reach_cells = 2 * max(the_map.spec.shape)
         self._how = BeamSettings(the_map.spec.resolution_m, the_map.error_radius_cells, reach_cells)
-        self._refuse_if_too_large(0)
+        self._refuse_if_too_large(bits_of(0))
         self._counters = self._map.blank_counters(len(self.headings_rad), bits_of(0))
 
     def add(self, *readings: RangeReading) -> None:
@@ -73,7 +73,6 @@ class RankGrid:
         """
         if self.readings + len(readings) > _READINGS_MAX:
             raise ValueError(f"a rank grid counts {_READINGS_MAX} readings")
-        self._refuse_if_too_large(self.readings + len(readings))
         self._count(readings, subtract=False)
 
     def remove(self, *readings: RangeReading) -> None:
@@ -93,26 +92,26 @@ class RankGrid:
             return
         total = self.readings + (-len(readings) if subtract else len(readings))
         numbers = numbers_of(readings)
-        self._counters = _widened(self._counters, bits_of(total))
-        self._count_numbers(numbers, subtract=subtract)
+        self._make_room(bits_of(total))
+        beams = kernels.draw_beams(numbers, self._headings, self._how)
+        threads = self._threads if len(numbers) * len(self._headings) >= _WORTH_THREADS else 1
+        kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
         self.readings = total
 
-    def _count_numbers(self, numbers: NDArray[np.float64], *, subtract: bool) -> None:
-        """Count readings ``float64[n, 5]``, for which the counters have room."""
-        beams = kernels.draw_beams(numbers, self._headings, self._how)
-        threads = self._threads_for(beams.beams)
-        kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
+    def _make_room(self, bits: int) -> None:
+        """Widen the counters so that they hold numbers of so many bits."""
+        missing = bits - self._counters.shape[2]
+        if missing > 0:
+            self._refuse_if_too_large(bits)
+            self._counters = np.pad(self._counters, ((0, 0), (0, 0), (0, missing), (0, 0)))
 
-    def _threads_for(self, beams: NDArray[np.int32]) -> int:
-        """Return how many threads are worth starting."""
-        return self._threads if len(beams) >= _WORTH_THREADS else 1
-
-    def _refuse_if_too_large(self, readings: int) -> None:
-        needed = self._map.counter_bytes(len(self.headings_rad), bits_of(readings))
+    def _refuse_if_too_large(self, bits: int) -> None:
+        needed = self._map.counter_bytes(len(self.headings_rad), bits)
         if needed > _BYTES_MAX:
             raise TooLarge(
-                f"counting {readings} readings at {len(self.headings_rad)} headings on a map of {self.spec.rows} x "
-                f"{self.spec.cols} cells takes {needed / 2**30:.1f} GiB; at most {_BYTES_MAX / 2**30:.1f} GiB"
+                f"counting up to {(1 << bits) - 1} readings at {len(self.headings_rad)} headings on a map of "
+                f"{self.spec.rows} x {self.spec.cols} cells takes {needed / 2**30:.1f} GiB; at most "
+                f"{_BYTES_MAX / 2**30:.1f} GiB"
             )
 
     @property
@@ -178,9 +177,3 @@ def bits_of(readings: int) -> int:
 def even_headings(count: int) -> tuple[float, ...]:
     """Return theta slices all round, ``2 pi k / count`` ([BrownDonald2000]_ sec. 2.2.3)."""
     return tuple(math.tau * k / count for k in range(count))
-
-
-def _widened(counters: Words, bits: int) -> Words:
-    """Return counters that can hold numbers of so many bits."""
-    missing = bits - counters.shape[2]
-    return counters if missing <= 0 else np.pad(counters, ((0, 0), (0, 0), (0, missing), (0, 0)))

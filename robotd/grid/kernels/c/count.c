@@ -205,6 +205,13 @@ int32_t count_feasible(count_job *job, int32_t subtract, int32_t threads, int32_
     job->grown = job->blocking + size;
     job->stopping = job->grown + size;
     job->ending = job->stopping + size;
+    job->chains = job->drawn + job->drawn[0];
+    job->groups = job->drawn + job->drawn[1];
+    job->beams = job->drawn + job->drawn[2];
+    job->batches = job->drawn + job->drawn[3];
+    job->lists = job->drawn + job->drawn[4];
+    job->batch_count = (int32_t)(job->lists - job->batches) - 1;
+    job->slots = job->drawn[6];
     const level best = best_level();
     if (instructions > (int32_t)best)
         return 0;

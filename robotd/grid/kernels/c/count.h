@@ -21,6 +21,7 @@ typedef struct {
     int32_t rows;              /* rows of the map, rounded up to whole tiles */
     const int32_t *tiles;      /* [tile_count][2]: column of words, first row */
     int32_t tile_count;
+    const int32_t *drawn;      /* the beams, part by part (layout.py): */
     const int32_t *chains;     /* [][3]: (row, col) offset, and the slot that keeps what is free up to here, or -1 */
     const int32_t *groups;     /* [group_count + 1]: first cell of each chain */
     const int32_t *batches;    /* [batch_count + 1]: first group of each batch */

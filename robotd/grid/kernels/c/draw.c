@@ -14,6 +14,7 @@
 
 #define FAR_CELLS 268435456.0
 #define DIRECTIONS 1073741824.0
+#define FIRST 7 /* numbers of the parts come before them */
 #define TURN 6.283185307179586
 
 typedef struct {
@@ -33,10 +34,11 @@ static inline double nearest(double cells)
 static inline beam draw(const draw_job *job, int32_t reading, int32_t heading)
 {
     const size_t headings = (size_t)job->heading_count, number = (size_t)reading * headings + (size_t)heading;
-    const double *r = job->readings + 5 * (size_t)reading, *h = job->headings + heading;
+    const double *r = job->readings + 5 * (size_t)reading;
     const double ahead[2] = {job->ahead[number], job->ahead[(size_t)job->reading_count * headings + number]};
-    const double row = (h[headings] * r[2] + h[2 * headings] * r[3]) / job->resolution_m;
-    const double col = (h[2 * headings] * r[2] - h[headings] * r[3]) / job->resolution_m;
+    const double turned_sin = job->turned[heading], turned_cos = job->turned[headings + (size_t)heading];
+    const double row = (turned_sin * r[2] + turned_cos * r[3]) / job->resolution_m;
+    const double col = (turned_cos * r[2] - turned_sin * r[3]) / job->resolution_m;
     const double range_cells = r[1] / job->resolution_m;
     const double dominant = fmax(fabs(ahead[0]), fabs(ahead[1]));
     const double free_cells = fmax(fmin(range_cells - job->error_radius_cells, job->reach_cells), 0.0);
@@ -45,7 +47,7 @@ static inline beam draw(const draw_job *job, int32_t reading, int32_t heading)
     b.step[1] = ahead[1] / dominant;
     b.start[0] = (int64_t)nearest(row);
     b.start[1] = (int64_t)nearest(col);
-    b.direction = (int64_t)rint((h[0] + r[0]) * (DIRECTIONS / TURN)) & ((int64_t)DIRECTIONS - 1);
+    b.direction = (int64_t)rint((job->headings[heading] + r[0]) * (DIRECTIONS / TURN)) & ((int64_t)DIRECTIONS - 1);
     b.length = (int32_t)fmax(ceil(free_cells * dominant), 1.0) + (b.start[0] != 0 || b.start[1] != 0);
     const int is_miss = r[4] > 0.0;
     b.head[0] = is_miss ? NO_HEAD : (int32_t)nearest(row + range_cells * ahead[0]);
@@ -110,10 +112,24 @@ static void share_out(draw_job *job)
     job->steps = (double *)(job->spare + 10 * beams);
     job->sizes = (int32_t *)(job->spare + 18 * beams);
     job->drawn = job->sizes + 2 * beams;
-    job->table = job->drawn + 4 * beams;
+    job->batch_of = job->drawn + 4 * beams;
+    job->table = job->batch_of + 2 * beams;
 }
 
-void draw_groups(draw_job *job)
+/* How many numbers the drawing takes at most, now that the groups are known; and how many slots a batch may have. */
+static int64_t room_for_chains(draw_job *job)
+{
+    const int64_t beams = (int64_t)job->reading_count * job->heading_count;
+    if (beams <= job->slots)
+        job->slots = beams > 1 ? (int32_t)beams : 1;
+    else if (job->slots < 2 * job->longest)
+        job->slots = 2 * job->longest;
+    const int64_t parts = 2 * beams / job->slots + 1, batches = parts < job->group_count ? parts : job->group_count;
+    return FIRST + 3 * (int64_t)job->cell_count + job->group_count + 1 + 3 * beams + batches + 1 +
+           batches * job->heading_count + 1;
+}
+
+int64_t draw_groups(draw_job *job)
 {
     int32_t count = 0;
     share_out(job);
@@ -153,6 +169,7 @@ void draw_groups(draw_job *job)
         job->cell_count += job->sizes[group];
         job->longest = job->sizes[group] > job->longest ? job->sizes[group] : job->longest;
     }
+    return room_for_chains(job);
 }
 
 static void chain(const draw_job *job, int32_t group, int32_t *cells)
@@ -167,37 +184,37 @@ static void chain(const draw_job *job, int32_t group, int32_t *cells)
     }
 }
 
-int32_t draw_chains(const draw_job *job, int32_t slots, int32_t *chains, int32_t *groups, int32_t *batches,
-                    int32_t *batch_of, int32_t *lists, int32_t *beams)
+/* Put groups into batches, and give every end of a body a slot of its batch. Returns the number of batches. */
+static int32_t share_slots(const draw_job *job, const int32_t *groups, int32_t *chains, int32_t *batches)
 {
-    const int32_t beam_count = job->reading_count * job->heading_count, group_count = job->group_count;
-    groups[0] = 0;
-    for (int32_t group = 0; group < group_count; group++) {
-        groups[group + 1] = groups[group] + job->sizes[group];
-        chain(job, group, chains + 3 * (size_t)groups[group]);
-    }
-    for (int32_t i = 0; i < beam_count; i++)
-        chains[3 * (size_t)(groups[job->drawn[4 * i]] + job->drawn[4 * i + 1] - 1) + 2] = 0;
     int32_t batch = 0, used = 0;
     batches[0] = 0;
-    for (int32_t group = 0; group < group_count; group++) {
+    for (int32_t group = 0; group < job->group_count; group++) {
         int32_t wanted = 0;
         for (int32_t cell = groups[group]; cell < groups[group + 1]; cell++)
             wanted += chains[3 * (size_t)cell + 2] == 0;
-        if (used + wanted > slots) {
+        if (used + wanted > job->slots) {
             batches[++batch] = group;
             used = 0;
         }
         for (int32_t cell = groups[group]; cell < groups[group + 1]; cell++)
             if (chains[3 * (size_t)cell + 2] == 0)
                 chains[3 * (size_t)cell + 2] = used++;
-        batch_of[group] = batch;
+        job->batch_of[group] = batch;
     }
-    batches[++batch] = group_count;
-    const size_t list_count = (size_t)batch * (size_t)job->heading_count;
+    batches[++batch] = job->group_count;
+    return batch;
+}
+
+/* List the beams by batch and heading. Returns the end of the lists. */
+static int32_t *list_beams(const draw_job *job, const int32_t *groups, const int32_t *chains, int32_t batches,
+                           int32_t *lists, int32_t *beams)
+{
+    const int32_t headings = job->heading_count, beam_count = job->reading_count * headings;
+    const size_t list_count = (size_t)batches * (size_t)headings;
     memset(lists, 0, (list_count + 1) * sizeof *lists);
     for (int32_t i = 0; i < beam_count; i++)
-        lists[(size_t)batch_of[job->drawn[4 * i]] * (size_t)job->heading_count + (size_t)(i % job->heading_count)]++;
+        lists[(size_t)job->batch_of[job->drawn[4 * i]] * (size_t)headings + (size_t)(i % headings)]++;
     int32_t total = 0;
     for (size_t i = 0; i <= list_count; i++) {
         total += lists[i];
@@ -205,11 +222,30 @@ int32_t draw_chains(const draw_job *job, int32_t slots, int32_t *chains, int32_t
     }
     for (int32_t i = beam_count - 1; i >= 0; i--) { /* from the end: then every list's bound arrives at its beginning */
         const int32_t *d = job->drawn + 4 * (size_t)i;
-        const size_t list = (size_t)batch_of[d[0]] * (size_t)job->heading_count + (size_t)(i % job->heading_count);
-        int32_t *b = beams + 3 * (size_t)--lists[list];
+        int32_t *b = beams + 3 * (size_t)--lists[(size_t)job->batch_of[d[0]] * (size_t)headings + (size_t)(i % headings)];
         b[0] = chains[3 * (size_t)(groups[d[0]] + d[1] - 1) + 2];
         b[1] = d[2];
         b[2] = d[3];
     }
-    return batch;
+    return lists + list_count + 1;
+}
+
+void draw_chains(const draw_job *job, int32_t *numbers)
+{
+    const int32_t beam_count = job->reading_count * job->heading_count, group_count = job->group_count;
+    int32_t *chains = numbers + FIRST, *groups = chains + 3 * (size_t)job->cell_count;
+    int32_t *beams = groups + group_count + 1, *batches = beams + 3 * (size_t)beam_count;
+    groups[0] = 0;
+    for (int32_t group = 0; group < group_count; group++) {
+        groups[group + 1] = groups[group] + job->sizes[group];
+        chain(job, group, chains + 3 * (size_t)groups[group]);
+    }
+    for (int32_t i = 0; i < beam_count; i++)
+        chains[3 * (size_t)(groups[job->drawn[4 * i]] + job->drawn[4 * i + 1] - 1) + 2] = 0;
+    const int32_t batch_count = share_slots(job, groups, chains, batches);
+    int32_t *lists = batches + batch_count + 1, *end = list_beams(job, groups, chains, batch_count, lists, beams);
+    const int32_t *const parts[] = {chains, groups, beams, batches, lists, end};
+    for (int i = 0; i < FIRST - 1; i++)
+        numbers[i] = (int32_t)(parts[i] - numbers);
+    numbers[FIRST - 1] = job->slots;
 }

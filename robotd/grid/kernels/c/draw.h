@@ -5,7 +5,8 @@ enum { NO_HEAD = -1073741824 };
 
 typedef struct {
     const double *readings;    /* [reading_count][5]: bearing, range [m], (x, y) of the beam's start [m], is a miss */
-    const double *headings;    /* [3][heading_count]: angle, its sine and cosine */
+    const double *headings;    /* [heading_count] */
+    const double *turned;      /* [2][heading_count]: their sines and cosines */
     const double *ahead;       /* [2][reading_count * heading_count]: sine and cosine of each beam's bearing in the map */
     int32_t reading_count;
     int32_t heading_count;
@@ -13,22 +14,22 @@ typedef struct {
     double error_radius_cells;
     double reach_cells;
     int32_t table_size;        /* a power of two, more than twice the beams */
-    int64_t *spare;            /* [21 * beams + table_size / 2], for the kernel's own use: */
+    int32_t slots;             /* of a batch, wanted at first; then what a batch may have */
+    int64_t *spare;            /* [22 * beams + table_size / 2], for the kernel's own use: */
     int64_t *keys;             /* [2 * beams][5], of groups */
     double *steps;             /* [2 * beams][4]: least and greatest (row, col) step of each group */
     int32_t *sizes;            /* [2 * beams]: cells of each group's chain */
     int32_t *drawn;            /* [beams][4]: group, length, (row, col) of the head, or NO_HEAD twice */
+    int32_t *batch_of;         /* [2 * beams]: of each group */
     int32_t *table;            /* [table_size] */
     int32_t group_count;       /* what was drawn */
     int32_t cell_count;
     int32_t longest;
 } draw_job;
 
-/* Draw the beams and put those of one direction and start into groups, at most 2 * beams: tells in the job how many,
- * how many cells their chains have, and how many the longest has. */
-void draw_groups(draw_job *job);
+/* Draw the beams and put those of one direction and start into groups, at most 2 * beams. Returns how many numbers
+ * draw_chains writes at most. */
+int64_t draw_groups(draw_job *job);
 
-/* Draw the chains, and list the beams by batch and heading. Returns the number of batches; `slots` is at least the
- * length of the longest chain, and no batch has more of them. */
-int32_t draw_chains(const draw_job *job, int32_t slots, int32_t *chains, int32_t *groups, int32_t *batches,
-                    int32_t *batch_of, int32_t *lists, int32_t *beams);
+/* Draw the chains, and list the beams by batch and heading, as layout.py describes it. */
+void draw_chains(const draw_job *job, int32_t *numbers);

@@ -33,15 +33,13 @@ def count_feasible(
     """
     tiles, headings, bits, _ = counters.shape
     workers = min(threads, _THREADS_MAX)
-    spare = np.empty((workers, (beams.slots + 3) * TILE_ROWS + 2 * beams.slots), np.uint64)
+    slots = beams.slots
+    spare = np.empty(workers * ((slots + 3) * TILE_ROWS + 2 * slots), np.uint64)
     job = ffi.new("count_job *")
     job.planes, job.blocked_by = words(the_map.planes), the_map.blocked_by
     job.words, job.rows = the_map.words, the_map.rows
     job.tiles, job.tile_count = ints(the_map.tiles), tiles
-    job.chains, job.groups = ints(beams.chains), ints(beams.groups)
-    job.batches, job.batch_count = ints(beams.batches), len(beams.batches) - 1
-    job.lists, job.beams, job.slots = ints(beams.lists), ints(beams.beams), beams.slots
-    job.headings, job.bits = headings, bits
+    job.drawn, job.headings, job.bits = ints(beams.numbers), headings, bits
     job.counters, job.spare = words(counters), words(spare)
     level = -1 if instructions is None else INSTRUCTION_SETS.index(instructions)
     if not lib.count_feasible(job, subtract, workers, level):

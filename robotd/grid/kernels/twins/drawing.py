@@ -135,7 +135,7 @@ def _listed(drawn: _Drawn, chains: _Chains, headings: int) -> Beams:
     order = np.argsort(lists, kind="stable")
     bounds = np.searchsorted(lists[order], np.arange(len(batches) * headings + 1))
     beams = np.column_stack((slot_of[end_of], drawn.heads))[order]
-    return Beams(
+    return Beams.of(
         chains=np.ascontiguousarray(np.column_stack((chains.cells, slot_of)), np.int32),
         groups=chains.ends.astype(np.int32),
         batches=np.array([*batches, len(wanted)], np.int32),
