@@ -18,6 +18,7 @@
 #define THREADS_MAX 16
 #define FEW 7
 #define FOUND_MAX 112 /* sixteen sevens */
+#define RUN 8         /* so many cells of a chain are walked before it is asked what is left */
 
 /* What one thread keeps of the bodies of a batch in one tile: the free cells that each leaves open. Bodies of one chain
  * that leave the same cells share a plane. */
@@ -34,38 +35,19 @@ typedef struct {
     const uint64_t *body;
 } source;
 
-static inline int32_t clamp(int32_t value, int32_t low, int32_t high)
-{
-    return value < low ? low : value > high ? high : value;
-}
-
-/* Where in a plane the words are that hold, from bit `offset[1] & 63` on, what the cells of a tile see at an offset. */
+/* Where in a plane the words are that hold, from bit `offset[1] & 63` on, what the cells of a tile see at an offset. All
+ * that lies farther outside than the padding is like its first corner. */
 static inline size_t seen_from(const count_job *job, const int32_t *tile, const int32_t *offset)
 {
-    const int32_t word = clamp(tile[0] + (offset[1] >> 6), -2, job->words);
-    const int32_t row = clamp(tile[1] + offset[0], -TILE, job->rows);
-    return (size_t)(word + 2) * ((size_t)job->rows + 2 * TILE) + (size_t)(row + TILE);
+    const uint32_t word = (uint32_t)(tile[0] + 2 + (offset[1] >> 6)), row = (uint32_t)(tile[1] + TILE + offset[0]);
+    const int is_near = word <= (uint32_t)job->words + 2 && row <= (uint32_t)job->rows + TILE;
+    return is_near ? word * ((size_t)job->rows + 2 * TILE) + row : 0;
 }
 
 /* Of columns that were taken together over the rows of a tile: those that its cells see. */
 static inline uint64_t columns_from(const uint64_t *low, size_t stride, uint64_t shift)
 {
     return low[0] >> shift | low[stride] << 1 << (63 - shift);
-}
-
-/* Whether any of a few beams may have something to say of a tile; if none has, their chains need not be walked. */
-static int can_tell(const count_job *job, const int32_t *tile, int32_t first, int32_t end, const bodies *kept)
-{
-    const size_t stride = (size_t)job->rows + 2 * TILE;
-    const uint64_t *free = kept->planes + (size_t)job->slots * TILE;
-    uint64_t columns = 0;
-    for (int i = 0; i < TILE; i++)
-        columns |= free[i];
-    for (const int32_t *beam = job->beams + 3 * (size_t)first; beam < job->beams + 3 * (size_t)end; beam += 3)
-        if (beam[1] == NO_HEAD || (columns_from(job->ending + seen_from(job, tile, beam + 1), stride,
-                                                (uint64_t)(beam[2] & 63)) & columns) != 0)
-            return 1;
-    return 0;
 }
 
 #define NAME(x) x##_portable
@@ -83,7 +65,7 @@ static int can_tell(const count_job *job, const int32_t *tile, int32_t first, in
 #define HAS_X86 1
 
 #define NAME(x) x##_avx2
-#define TARGET __attribute__((target("avx2")))
+#define TARGET __attribute__((target("avx2,bmi2")))
 #define VECTOR 32
 #define FUNNEL(a, b, n)                                                                                                \
     ((VEC)_mm256_or_si256(_mm256_srl_epi64((__m256i)(a), _mm_cvtsi64_si128((long long)(n))),                           \
@@ -96,7 +78,7 @@ static int can_tell(const count_job *job, const int32_t *tile, int32_t first, in
 
 #define TERNARY(a, b, c, table) ((VEC)_mm512_ternarylogic_epi64((__m512i)(a), (__m512i)(b), (__m512i)(c), table))
 #define NAME(x) x##_avx512
-#define TARGET __attribute__((target("avx512f,avx512vbmi2")))
+#define TARGET __attribute__((target("avx512f,avx512vbmi2,bmi2")))
 #define VECTOR 64
 #define FUNNEL(a, b, n) ((VEC)_mm512_shrdv_epi64((__m512i)(a), (__m512i)(b), _mm512_set1_epi64((long long)(n))))
 #define ANY(a) ((uint64_t)_mm512_reduce_or_epi64((__m512i)(a)))
@@ -111,6 +93,8 @@ typedef enum { PORTABLE, AVX2, AVX512 } level;
 static level best_level(void)
 {
 #ifdef HAS_X86
+    if (!__builtin_cpu_supports("bmi2"))
+        return PORTABLE;
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vbmi2"))
         return AVX512;
     if (__builtin_cpu_supports("avx2"))

@@ -22,11 +22,36 @@ static inline TARGET uint64_t NAME(any)(const VEC *words)
     return ANY(all);
 }
 
+/* Of the free cells of a tile leave those from which one of a few beams may be feasible: at a miss all, else those that see
+ * something that can end it. Returns whether any is left; if none is, the chains need not be walked. */
+static inline TARGET int NAME(narrow)(const count_job *job, const int32_t *tile, const int32_t *beam, const int32_t *end,
+                                      const bodies *kept)
+{
+    const size_t stride = (size_t)job->rows + 2 * TILE;
+    VEC *free = (VEC *)(kept->planes + (size_t)job->slots * TILE), seen[VECTORS] = {{0}};
+    const uint64_t columns = NAME(any)(free);
+    for (; beam < end; beam += 3) {
+        if (beam[1] == NO_HEAD)
+            return 1;
+        const size_t at = seen_from(job, tile, beam + 1);
+        const uint64_t shift = (uint64_t)(beam[2] & 63);
+        if ((columns_from(job->ending + at, stride, shift) & columns) == 0)
+            continue;
+        for (int i = 0; i < VECTORS; i++)
+            seen[i] |= FUNNEL(AT(job->grown + at, i), AT(job->grown + at + stride, i), shift);
+    }
+    for (int i = 0; i < VECTORS; i++)
+        free[i] &= seen[i];
+    return NAME(any)(free) != 0;
+}
+
 /* Walk one chain and keep, for its slots, the free cells that are not blocked so far. */
 static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, int32_t group, const bodies *kept,
                                      const int twice)
 {
     const size_t stride = (size_t)job->rows + 2 * TILE;
+    const count_job map = *job; /* a copy, that nothing written can change */
+    const int32_t place[2] = {tile[0], tile[1]};
     const int32_t all_free = job->slots, none = job->slots + 1;
     const int32_t *offset = job->chains + 3 * (size_t)job->groups[group];
     const int32_t *end = job->chains + 3 * (size_t)job->groups[group + 1];
@@ -35,12 +60,18 @@ static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, 
         open[i] = AT(kept->planes + (size_t)all_free * TILE, i);
     uint64_t columns = NAME(any)(open);
     int32_t plane = all_free, is_new = 0;
-    for (; offset < end && columns != 0; offset += 3) {
-        const size_t at = seen_from(job, tile, offset);
-        const uint64_t shift = (uint64_t)(offset[1] & 63);
-        if ((columns_from(job->stopping + at, stride, shift) & columns) != 0) {
-            const uint64_t *low = job->blocking + at, *high = low + stride;
-            VEC all_gone = {0};
+    while (offset < end && columns != 0) {
+        const int32_t *last = end - offset > 3 * RUN ? offset + 3 * RUN : end;
+        VEC all_gone = {0};
+        int32_t slot;
+        do {
+            const size_t at = seen_from(&map, place, offset);
+            const uint64_t shift = (uint64_t)(offset[1] & 63);
+            slot = offset[2];
+            offset += 3;
+            if ((columns_from(map.stopping + at, stride, shift) & columns) == 0)
+                continue;
+            const uint64_t *low = map.blocking + at, *high = low + stride;
             for (int i = 0; i < VECTORS; i++) {
                 const VEC blocking = FUNNEL(AT(low, i), AT(high, i), shift);
                 VEC gone = open[i] & blocking;
@@ -51,12 +82,11 @@ static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, 
                 open[i] ^= gone;
                 all_gone |= gone;
             }
-            if (!IS_ZERO(all_gone)) {
-                columns = NAME(any)(open);
-                is_new = 1;
-            }
+        } while (slot < 0 && offset < last);
+        if (!IS_ZERO(all_gone)) {
+            columns = NAME(any)(open);
+            is_new = 1;
         }
-        const int32_t slot = offset[2];
         if (slot < 0)
             continue;
         if (is_new) {
@@ -76,15 +106,45 @@ static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, 
         }
 }
 
+/* A row of vectors of the cells from which a beam is feasible. */
+static inline TARGET VEC NAME(plane)(const source *beam, int i)
+{
+    return FUNNEL(AT(beam->low, i), AT(beam->high, i), beam->shift) & AT(beam->body, i);
+}
+
+/* counter += carry, from a bit on. */
+static inline TARGET void NAME(ripple)(VEC *n, VEC carry, int32_t bit, int32_t bits)
+{
+    for (; bit < bits && !IS_ZERO(carry); bit++) {
+        const VEC old = n[bit * VECTORS];
+        n[bit * VECTORS] = old ^ carry;
+        carry &= old;
+    }
+}
+
+/* counter += 3 beams or fewer: what add_seven does of more. */
+static inline TARGET void NAME(add_few)(uint64_t *counter, const source *beams, int32_t count, int32_t bits)
+{
+    for (int i = 0; i < VECTORS; i++) {
+        const VEC none = {0}, first = NAME(plane)(beams, i);
+        const VEC second = count > 1 ? NAME(plane)(beams + 1, i) : none;
+        const VEC third = count > 2 ? NAME(plane)(beams + 2, i) : none;
+        VEC *n = (VEC *)counter + i;
+        const VEC n0 = n[0], n1 = n[VECTORS], ones = XOR3(first, second, third), twos = MAJORITY(first, second, third);
+        const VEC carry = n0 & ones;
+        n[0] = n0 ^ ones;
+        n[VECTORS] = XOR3(n1, twos, carry);
+        NAME(ripple)(n, MAJORITY(n1, twos, carry), 2, bits);
+    }
+}
+
 /* counter += 7 beams: carry-save adders make a number of three bits of their planes, and it ripples up the counter. */
 static inline TARGET void NAME(add_seven)(uint64_t *counter, const source *beams, int32_t bits)
 {
     for (int i = 0; i < VECTORS; i++) {
         VEC plane[7];
-        for (int beam = 0; beam < 7; beam++) {
-            const source *b = beams + beam;
-            plane[beam] = FUNNEL(AT(b->low, i), AT(b->high, i), b->shift) & AT(b->body, i);
-        }
+        for (int beam = 0; beam < 7; beam++)
+            plane[beam] = NAME(plane)(beams + beam, i);
         const VEC sum = XOR3(plane[0], plane[1], plane[2]), more = XOR3(plane[3], plane[4], plane[5]);
         const VEC carry1 = MAJORITY(plane[0], plane[1], plane[2]), carry2 = MAJORITY(plane[3], plane[4], plane[5]);
         const VEC carry3 = MAJORITY(sum, more, plane[6]);
@@ -97,12 +157,7 @@ static inline TARGET void NAME(add_seven)(uint64_t *counter, const source *beams
         n[VECTORS] = XOR3(n1, twos, carry);
         carry = MAJORITY(n1, twos, carry);
         n[2 * VECTORS] = XOR3(n2, fours, carry);
-        carry = MAJORITY(n2, fours, carry);
-        for (int32_t bit = 3; bit < bits && !IS_ZERO(carry); bit++) {
-            const VEC old = n[bit * VECTORS];
-            n[bit * VECTORS] = old ^ carry;
-            carry &= old;
-        }
+        NAME(ripple)(n, MAJORITY(n2, fours, carry), 3, bits);
     }
 }
 
@@ -127,25 +182,30 @@ static inline TARGET int32_t NAME(telling)(const count_job *job, const int32_t *
                                            const int32_t *end, const bodies *kept, source *found, int32_t count,
                                            uint32_t *everywhere)
 {
-    const size_t stride = (size_t)job->rows + 2 * TILE;
-    const uint64_t *all = kept->planes + (size_t)(job->slots + 2) * TILE;
+    const count_job map = *job; /* a copy, that what is written cannot change */
+    const bodies open = *kept;
+    const int32_t place[2] = {tile[0], tile[1]};
+    const size_t stride = (size_t)map.rows + 2 * TILE;
+    const uint64_t *all = open.planes + (size_t)(map.slots + 2) * TILE;
     const int32_t *beam = *next;
+    uint32_t all_over = 0;
     for (; beam < end && count < FOUND_MAX; beam += 3) {
-        const int32_t slot = beam[0], plane = kept->plane_of[slot];
-        const uint64_t *body = kept->planes + (size_t)plane * TILE;
+        const int32_t slot = beam[0], plane = open.plane_of[slot];
+        const uint64_t *body = open.planes + (size_t)plane * TILE;
         if (beam[1] == NO_HEAD) {
-            const int32_t free = plane == job->slots;
+            const int32_t free = plane == map.slots;
             found[count] = (source){all, all, 0, body};
-            *everywhere += (uint32_t)free;
-            count += !free && kept->columns[slot] != 0;
+            all_over += (uint32_t)free;
+            count += !free && open.columns[slot] != 0;
         } else {
-            const size_t at = seen_from(job, tile, beam + 1);
+            const size_t at = seen_from(&map, place, beam + 1);
             const uint64_t shift = (uint64_t)(beam[2] & 63);
-            found[count] = (source){job->grown + at, job->grown + at + stride, shift, body};
-            count += (columns_from(job->ending + at, stride, shift) & kept->columns[slot]) != 0;
+            found[count] = (source){map.grown + at, map.grown + at + stride, shift, body};
+            count += (columns_from(map.ending + at, stride, shift) & open.columns[slot]) != 0;
         }
     }
     *next = beam;
+    *everywhere += all_over;
     return count;
 }
 
@@ -164,10 +224,12 @@ static TARGET void NAME(count_list)(const count_job *job, const int32_t *tile, c
         memmove(found, found + added, (size_t)(count - added) * sizeof *found);
         count -= added;
     }
-    if (count > 0) {
+    if (count > 3) {
         while (count < 7)
             found[count++] = (source){none, none, 0, none};
         NAME(add_seven)(counter, found, job->bits);
+    } else if (count > 0) {
+        NAME(add_few)(counter, found, count, job->bits);
     }
     if (everywhere > 0)
         NAME(add_everywhere)(counter, free, everywhere, job->bits);
@@ -180,7 +242,8 @@ static TARGET void NAME(count_tile)(const count_job *job, int32_t number, const 
     uint64_t *counters = job->counters + (size_t)number * (size_t)job->headings * counter_size;
     for (int32_t batch = 0; batch < job->batch_count; batch++) {
         const int32_t *list = job->lists + (size_t)batch * (size_t)job->headings;
-        if (list[job->headings] - list[0] <= FEW && !can_tell(job, tile, list[0], list[job->headings], kept))
+        if (job->batch_count == 1 && list[job->headings] - list[0] <= FEW &&
+            !NAME(narrow)(job, tile, job->beams + 3 * (size_t)list[0], job->beams + 3 * (size_t)list[job->headings], kept))
             continue;
         for (int32_t group = job->batches[batch]; group < job->batches[batch + 1]; group++)
             if (job->blocked_by > 1)
