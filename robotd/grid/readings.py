@@ -18,14 +18,16 @@ def numbers_of(readings: Sequence[RangeReading]) -> NDArray[np.float64]:
     Raises:
         ValueError: a reading measured nothing.
     """
-    miss = ReadingStatus.MISS
-    flat: list[float | None] = []
-    for r in readings:
-        flat += (r.bearing_rad, r.range_m, r.origin_x_m, r.origin_y_m, r.status is miss)
-    numbers = np.empty((len(readings), 5))
+    miss, pack = ReadingStatus.MISS, _FIVE.pack
     try:
-        struct.pack_into(f"{len(flat)}d", numbers.data, 0, *flat)  # a third faster than numpy.fromiter
+        packed = [  # a third faster than numpy.fromiter
+            pack(r.bearing_rad, r.range_m, r.origin_x_m, r.origin_y_m, 1.0 if r.status is miss else 0.0)
+            for r in readings
+        ]
     except struct.error as error:
         unmeasured = next(reading.status for reading in readings if reading.range_m is None)
         raise ValueError(f"a {unmeasured} reading has no range") from error
-    return numbers
+    return np.frombuffer(bytearray().join(packed), np.float64).reshape(-1, 5)
+
+
+_FIVE = struct.Struct("5d")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from robotd.core.errors import TooLarge
 from robotd.core.reading import RangeReading
 from robotd.grid import kernels
-from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, BeamSettings, unpack
+from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, BeamSettings, turned, unpack
 from robotd.grid.readings import numbers_of
 from robotd.localization.prepared import PreparedMap
 
@@ -53,7 +53,7 @@ class RankGrid:
         self.spec = the_map.spec
         self.headings_rad = tuple(headings_rad)
         self.readings = 0
-        self._headings = np.array(self.headings_rad, np.float64)
+        self._headings = turned(np.array(self.headings_rad, np.float64))
         self._threads = threads
         self._map = the_map.packed
         reach_cells = 2 * max(the_map.spec.shape)
@@ -94,7 +94,7 @@ class RankGrid:
         numbers = numbers_of(readings)
         self._make_room(bits_of(total))
         beams = kernels.draw_beams(numbers, self._headings, self._how)
-        threads = self._threads if len(numbers) * len(self._headings) >= _WORTH_THREADS else 1
+        threads = self._threads if len(numbers) * len(self.headings_rad) >= _WORTH_THREADS else 1
         kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
         self.readings = total
 

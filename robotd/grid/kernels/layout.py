@@ -164,6 +164,11 @@ class BeamSettings:
     """Where bodies end at the latest; more than the grid is wide and high changes nothing."""
 
 
+def turned(headings_rad: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return headings as beams are drawn at: angle, sine and cosine, ``float64[3, headings]``."""
+    return np.stack((headings_rad, np.sin(headings_rad), np.cos(headings_rad)))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Beams:
     """Readings drawn on the grid at all headings; what shares a chain of cells is together.

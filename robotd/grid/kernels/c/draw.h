@@ -5,8 +5,7 @@ enum { NO_HEAD = -1073741824 };
 
 typedef struct {
     const double *readings;    /* [reading_count][5]: bearing, range [m], (x, y) of the beam's start [m], is a miss */
-    const double *headings;    /* [heading_count] */
-    const double *turned;      /* [2][heading_count]: their sines and cosines */
+    const double *headings;    /* [3][heading_count]: angle, its sine and cosine */
     const double *ahead;       /* [2][reading_count * heading_count]: sine and cosine of each beam's bearing in the map */
     int32_t reading_count;
     int32_t heading_count;

@@ -143,18 +143,18 @@ static span rows_touched(const insert_job *job, const beam *beams)
     return touched;
 }
 
+/* Eight cells at a time are passed over if they are as before; of the others each is put down, and counts if it changed. */
 static int64_t differences(const uint8_t *cells, const uint8_t *before, int64_t first, int64_t last, int64_t *changed)
 {
     int64_t found = 0;
-    for (int64_t i = first; i < last; i++) {
+    for (int64_t i = first; i < last;) {
         uint64_t now, then;
         while (i + 8 <= last && (memcpy(&now, cells + i, 8), memcpy(&then, before + i, 8), now == then))
             i += 8;
-        const int64_t end = i + 8 < last ? i + 8 : last;
-        for (; i < end; i++)
-            if (cells[i] != before[i])
-                changed[found++] = i;
-        i--;
+        for (const int64_t end = i + 8 < last ? i + 8 : last; i < end; i++) {
+            changed[found] = i;
+            found += cells[i] != before[i];
+        }
     }
     return found;
 }

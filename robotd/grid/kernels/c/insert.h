@@ -20,7 +20,7 @@ typedef struct {
     double *beams;             /* [count][6], for the kernel's own use */
     int64_t *hits;             /* [count], the same */
     uint8_t *before;           /* [rows][cols], the same */
-    int64_t *changed;          /* [min(rows * cols, count * (max(rows, cols) + 3))] */
+    int64_t *changed;          /* [1 + min(rows * cols, count * (max(rows, cols) + 3))] */
 } insert_job;
 
 /* Lower the cells that beams run through and raise those they end in (occupancy.py), and put the cells whose value

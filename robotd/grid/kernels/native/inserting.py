@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
 from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.native.buffers import floats, octets
+from robotd.grid.kernels.native.buffers import floats, longs, octets
 from robotd.grid.spec import GridSpec
 from robotd.grid.tables import UpdateTable
 
@@ -32,7 +32,7 @@ def insert_sweep(
     np.sin(bearings_rad, ahead[0])
     np.cos(bearings_rad, ahead[1])
     before = np.empty(cells.size, np.uint8)
-    changed = np.empty(min(cells.size, count * (max(rows, cols) + 3)), np.int64)
+    changed = np.empty(1 + min(cells.size, count * (max(rows, cols) + 3)), np.int64)
     job = ffi.new("insert_job *")
     job.cells = ffi.from_buffer("uint8_t[]", cells, require_writable=True)
     job.rows, job.cols, job.resolution_m = rows, cols, spec.resolution_m
@@ -42,6 +42,6 @@ def insert_sweep(
     job.readings, job.ahead, job.count, job.all_at_once = floats(readings), floats(ahead), count, at_once
     job.lower, job.higher = octets(tables[0]), octets(tables[1])
     job.beams, job.before = floats(beams), octets(before)
-    job.hits, job.changed = ffi.from_buffer("int64_t[]", hits), ffi.from_buffer("int64_t[]", changed)
+    job.hits, job.changed = longs(hits), longs(changed)
     found: NDArray[np.int64] = changed[: lib.insert_sweep(job)]
     return found.astype(np.intp, copy=False)

@@ -20,19 +20,19 @@ _DIRECTIONS = 1 << 30
 Ints = NDArray[np.int64]
 
 
-def draw_beams(readings: NDArray[np.float64], headings_rad: NDArray[np.float64], how: BeamSettings) -> Beams:
+def draw_beams(readings: NDArray[np.float64], headings: NDArray[np.float64], how: BeamSettings) -> Beams:
     """Draw every reading at every heading, each beam with the cells that ``localization/probe.py`` gives it.
 
     Args:
         readings: ``float64[n, 5]``: bearing [rad], range [m], x and y of the beam's start [m], all in the robot frame,
             and 1 for a miss or 0.
-        headings_rad: ``float64[headings]``.
+        headings: ``float64[3, headings]`` of :func:`~robotd.grid.kernels.layout.turned`.
         how: resolution and error radius.
 
     Returns:
         The beams. The kernel in C gives the same beams, in groups and slots that may be numbered otherwise.
     """
-    drawn = _Drawn.of(readings, headings_rad, how)
+    drawn = _Drawn.of(readings, headings, how)
     keys = np.rint(drawn.bearings_rad * (_DIRECTIONS / (2 * np.pi))).astype(np.int64) % _DIRECTIONS
     chains = _Chains.of(drawn, keys)
     if chains.differ.any():
@@ -40,7 +40,7 @@ def draw_beams(readings: NDArray[np.float64], headings_rad: NDArray[np.float64],
         differ = chains.differ[chains.group_of]
         keys[differ] = exact.reshape(-1)[differ] + _DIRECTIONS
         chains = _Chains.of(drawn, keys)
-    return _listed(drawn, chains, len(headings_rad))
+    return _listed(drawn, chains, headings.shape[1])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,9 +57,9 @@ class _Drawn:
     """``int32[n, 2]``."""
 
     @classmethod
-    def of(cls, readings: NDArray[np.float64], headings_rad: NDArray[np.float64], how: BeamSettings) -> "_Drawn":
+    def of(cls, readings: NDArray[np.float64], headings: NDArray[np.float64], how: BeamSettings) -> "_Drawn":
         bearing_rad, range_m, x_m, y_m, is_miss = readings[:, :, None].transpose(1, 0, 2)
-        sin, cos, one = np.sin(headings_rad), np.cos(headings_rad), np.ones_like(headings_rad)
+        (headings_rad, sin, cos), one = headings, np.ones(headings.shape[1])
         rows, cols = (sin * x_m + cos * y_m) / how.resolution_m, (cos * x_m - sin * y_m) / how.resolution_m
         bearings_rad = (bearing_rad + headings_rad).ravel()
         ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)

@@ -26,6 +26,7 @@ from robotd.grid.kernels.layout import (
     PackedMap,
     Words,
     pack,
+    turned,
 )
 from robotd.grid.readings import numbers_of
 from robotd.localization.probe import probe_of
@@ -139,7 +140,7 @@ def test_beams_are_the_probes_one_by_one(
     kernels: ModuleType, drawn: tuple[list[RangeReading], NDArray[np.float64]]
 ) -> None:
     readings, headings = drawn
-    assert listed(kernels.draw_beams(numbers_of(readings), headings, HOW), len(headings)) == expected_beams(
+    assert listed(kernels.draw_beams(numbers_of(readings), turned(headings), HOW), len(headings)) == expected_beams(
         readings, headings
     )
 
@@ -147,7 +148,7 @@ def test_beams_are_the_probes_one_by_one(
 @both
 def test_even_headings_and_bearings_share_one_chain_for_each_direction(kernels: ModuleType) -> None:
     readings = [RangeReading(0, math.tau * k / 60, ReadingStatus.OK, 3.0 + k) for k in range(60)]
-    beams = kernels.draw_beams(numbers_of(readings), np.array(even_headings(60)), HOW)
+    beams = kernels.draw_beams(numbers_of(readings), turned(np.array(even_headings(60))), HOW)
     assert len(beams.groups) - 1 == 60
 
 
@@ -157,7 +158,7 @@ def test_directions_that_differ_by_a_hair_share_a_chain_only_as_far_as_it_is_the
     ties = [RangeReading(0, math.atan2(1, 2) + hair, ReadingStatus.OK, 9.0) for hair in (0.0, 1e-12, -1e-12)]
     plain = [RangeReading(0, 0.3 + hair, ReadingStatus.OK, 9.0) for hair in (0.0, 1e-12, -1e-12)]
     for readings, least, most in ((ties, 2, 3), (plain, 1, 1)):
-        beams = kernels.draw_beams(numbers_of(readings), np.zeros(1), HOW)
+        beams = kernels.draw_beams(numbers_of(readings), turned(np.zeros(1)), HOW)
         assert listed(beams, 1) == expected_beams(readings, np.zeros(1))
         used = len(np.unique(beams.groups)) - 1  # a group that was split up is left without cells
         assert least <= used <= most
@@ -167,7 +168,7 @@ def test_directions_that_differ_by_a_hair_share_a_chain_only_as_far_as_it_is_the
 def test_a_sweep_too_large_for_one_batch_is_taken_in_several(kernels: ModuleType) -> None:
     readings = [RangeReading(0, 0.01 * k, ReadingStatus.OK, 0.3 + 0.01 * k) for k in range(600)]
     headings = np.array([0.0, 0.5, 1.1, 2.2])
-    beams = kernels.draw_beams(numbers_of(readings), headings, HOW)
+    beams = kernels.draw_beams(numbers_of(readings), turned(headings), HOW)
     assert len(beams.batches) > 2
     assert listed(beams, 4) == expected_beams(readings, headings)
 
@@ -237,7 +238,7 @@ def counted(
     counters: Words,
     **how: object,
 ) -> Words:
-    beams = kernels.draw_beams(numbers_of(readings), headings, HOW)
+    beams = kernels.draw_beams(numbers_of(readings), turned(headings), HOW)
     counters = counters.copy()
     kernels.count_feasible(counters, the_map, beams, **how)
     return counters
