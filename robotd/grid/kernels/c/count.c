@@ -126,40 +126,40 @@ static void complement(const count_job *job, int32_t tile)
         counters[i] = ~counters[i];
 }
 
-static void count_tile(const worker *self, int32_t tile)
+static void count_tile(const worker *self, int32_t tile, const bodies *kept)
 {
     const count_job *job = self->job;
     static const int32_t here[2] = {0, 0};
-    const size_t slots = (size_t)job->slots, number = (size_t)self->number;
-    uint64_t *planes = job->spare + number * ((slots + 3) * TILE + 2 * slots), *columns = planes + (slots + 3) * TILE;
-    const bodies kept = {planes, columns, (int32_t *)(columns + slots)};
-    uint64_t *last = kept.planes + slots * TILE;
-    memcpy(last, job->free + seen_from(job, job->tiles + 2 * tile, here), TILE * sizeof *last);
-    memset(last + TILE, 0, TILE * sizeof *last);
-    memset(last + 2 * TILE, 0xff, TILE * sizeof *last);
+    memcpy(kept->planes + (size_t)job->slots * TILE, job->free + seen_from(job, job->tiles + 2 * tile, here),
+           TILE * sizeof *kept->planes);
 #ifdef HAS_X86
     if (self->level == AVX512) {
-        count_tile_avx512(job, tile, &kept);
+        count_tile_avx512(job, tile, kept);
         return;
     }
     if (self->level == AVX2) {
-        count_tile_avx2(job, tile, &kept);
+        count_tile_avx2(job, tile, kept);
         return;
     }
 #endif
-    count_tile_portable(job, tile, &kept);
+    count_tile_portable(job, tile, kept);
 }
 
 static void *work(void *argument)
 {
     const worker *self = argument;
+    const size_t slots = (size_t)self->job->slots, size = (slots + 3) * TILE;
+    uint64_t *planes = self->job->spare + (size_t)self->number * (size + 2 * slots), *columns = planes + size;
+    const bodies kept = {planes, columns, (int32_t *)(columns + slots)};
+    memset(planes + (slots + 1) * TILE, 0, TILE * sizeof *planes);
+    memset(planes + (slots + 2) * TILE, 0xff, TILE * sizeof *planes);
     for (;;) {
         const int32_t tile = __atomic_fetch_add(self->next, 1, __ATOMIC_RELAXED);
         if (tile >= self->job->tile_count)
             return NULL;
         if (self->subtract)
             complement(self->job, tile);
-        count_tile(self, tile);
+        count_tile(self, tile, &kept);
         if (self->subtract)
             complement(self->job, tile);
     }

@@ -25,6 +25,14 @@ typedef struct {
     int32_t head[2];
 } beam;
 
+void find_bearings(const draw_job *job)
+{
+    double *bearing = job->ahead;
+    for (int32_t reading = 0; reading < job->reading_count; reading++)
+        for (int32_t heading = 0; heading < job->heading_count; heading++)
+            *bearing++ = job->readings[5 * (size_t)reading] + job->headings[heading];
+}
+
 static inline double nearest(double cells)
 {
     const double bounded = cells < -FAR_CELLS ? -FAR_CELLS : cells > FAR_CELLS ? FAR_CELLS : cells;
@@ -34,8 +42,9 @@ static inline double nearest(double cells)
 static inline beam draw(const draw_job *job, int32_t reading, int32_t heading)
 {
     const size_t headings = (size_t)job->heading_count, number = (size_t)reading * headings + (size_t)heading;
+    const size_t count = (size_t)job->reading_count * headings;
     const double *r = job->readings + 5 * (size_t)reading, *h = job->headings + heading;
-    const double ahead[2] = {job->ahead[number], job->ahead[(size_t)job->reading_count * headings + number]};
+    const double *bearing = job->ahead + number, ahead[2] = {bearing[count], bearing[2 * count]};
     const double turned_sin = h[headings], turned_cos = h[2 * headings];
     const double row = (turned_sin * r[2] + turned_cos * r[3]) / job->resolution_m;
     const double col = (turned_cos * r[2] - turned_sin * r[3]) / job->resolution_m;
@@ -47,7 +56,7 @@ static inline beam draw(const draw_job *job, int32_t reading, int32_t heading)
     b.step[1] = ahead[1] / dominant;
     b.start[0] = (int64_t)nearest(row);
     b.start[1] = (int64_t)nearest(col);
-    b.direction = (int64_t)rint((h[0] + r[0]) * (DIRECTIONS / TURN)) & ((int64_t)DIRECTIONS - 1);
+    b.direction = (int64_t)rint(*bearing * (DIRECTIONS / TURN)) & ((int64_t)DIRECTIONS - 1);
     b.length = (int32_t)fmax(ceil(free_cells * dominant), 1.0) + (b.start[0] != 0 || b.start[1] != 0);
     const int is_miss = r[4] > 0.0;
     b.head[0] = is_miss ? NO_HEAD : (int32_t)nearest(row + range_cells * ahead[0]);

@@ -6,7 +6,7 @@ enum { NO_HEAD = -1073741824 };
 typedef struct {
     const double *readings;    /* [reading_count][5]: bearing, range [m], (x, y) of the beam's start [m], is a miss */
     const double *headings;    /* [3][heading_count]: angle, its sine and cosine */
-    const double *ahead;       /* [2][reading_count * heading_count]: sine and cosine of each beam's bearing in the map */
+    double *ahead;             /* [3][reading_count * heading_count]: each beam's bearing in the map, its sine, its cosine */
     int32_t reading_count;
     int32_t heading_count;
     double resolution_m;
@@ -25,6 +25,9 @@ typedef struct {
     int32_t cell_count;
     int32_t longest;
 } draw_job;
+
+/* Add up the bearings; their sines and cosines come from NumPy. */
+void find_bearings(const draw_job *job);
 
 /* Draw the beams and put those of one direction and start into groups, at most 2 * beams. Returns how many numbers
  * draw_chains writes at most. */

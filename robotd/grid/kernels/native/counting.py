@@ -3,7 +3,7 @@
 import numpy as np
 
 from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.layout import TILE_ROWS, Beams, PackedMap, Words
+from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, Beams, PackedMap, Words
 from robotd.grid.kernels.native.buffers import ints, words
 
 INSTRUCTION_SETS = ("portable", "avx2", "avx512")
@@ -31,13 +31,12 @@ def count_feasible(
     Raises:
         ValueError: this processor lacks those instructions.
     """
-    tiles, headings, bits, _ = counters.shape
-    workers = min(threads, _THREADS_MAX)
-    slots = beams.slots
+    (tiles, headings, bits, _), (_, word_count, row_count) = counters.shape, the_map.planes.shape
+    workers, slots = min(threads, _THREADS_MAX), beams.slots
     spare = np.empty(workers * ((slots + 3) * TILE_ROWS + 2 * slots), np.uint64)
     job = ffi.new("count_job *")
     job.planes, job.blocked_by = words(the_map.planes), the_map.blocked_by
-    job.words, job.rows = the_map.words, the_map.rows
+    job.words, job.rows = word_count - 2 * PAD_WORDS, row_count - 2 * TILE_ROWS
     job.tiles, job.tile_count = ints(the_map.tiles), tiles
     job.drawn, job.headings, job.bits = ints(beams.numbers), headings, bits
     job.counters, job.spare = words(counters), words(spare)
