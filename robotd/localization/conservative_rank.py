@@ -74,9 +74,8 @@ class ConservativeRankGrid(RankGrid):
     def _count_numbers(self, numbers: NDArray[np.float64], *, subtract: bool) -> None:
         drawn = _DrawnReadings.of(numbers, self._headings, self._sure)
         for beams in drawn.fan_beams():
-            kernels.count_fans(
-                self._counters, self._map, drawn.grown, beams, subtract=subtract, threads=self._threads_for(beams.beams)
-            )
+            threads = self._threads_for(len(beams.beams))
+            kernels.count_fans(self._counters, self._map, drawn.grown, beams, subtract=subtract, threads=threads)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,7 +95,7 @@ class _DrawnReadings:
 
     @classmethod
     def of(
-        cls, numbers: NDArray[np.float64], headings_rad: NDArray[np.float64], the_map: ConservativeMap
+        cls, numbers: NDArray[np.float64], headings: NDArray[np.float64], the_map: ConservativeMap
     ) -> "_DrawnReadings":
         resolution_m, bounds = the_map.spec.resolution_m, the_map.bounds
         bearing, range_cells, x, y, is_miss = (numbers / [1.0, *[resolution_m] * 3, 1.0]).T[:, :, None]
@@ -104,7 +103,7 @@ class _DrawnReadings:
         away = np.hypot(x + range_cells * np.cos(bearing), y + range_cells * np.sin(bearing))
         steps = np.where(is_miss > 0.0, 0, head_radius_steps(away, error_cells, bounds.heading_error_rad))
         radii, radius = np.unique(steps, return_inverse=True)
-        sin, cos, one = np.sin(headings_rad), np.cos(headings_rad), np.ones_like(headings_rad)
+        (headings_rad, sin, cos), one = headings, np.ones(headings.shape[1])
         bearings_rad = (bearing + headings_rad).ravel()
         starts = np.stack(((sin * x + cos * y).ravel(), (cos * x - sin * y).ravel()), axis=1)
         ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)

@@ -93,10 +93,18 @@ class RankGrid:
         total = self.readings + (-len(readings) if subtract else len(readings))
         numbers = numbers_of(readings)
         self._make_room(bits_of(total))
-        beams = kernels.draw_beams(numbers, self._headings, self._how)
-        threads = self._threads if len(numbers) * len(self.headings_rad) >= _WORTH_THREADS else 1
-        kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
+        self._count_numbers(numbers, subtract=subtract)
         self.readings = total
+
+    def _count_numbers(self, numbers: NDArray[np.float64], *, subtract: bool) -> None:
+        """Count readings ``float64[n, 5]``, for which the counters have room."""
+        beams = kernels.draw_beams(numbers, self._headings, self._how)
+        threads = self._threads_for(len(numbers) * len(self.headings_rad))
+        kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
+
+    def _threads_for(self, beams: int) -> int:
+        """Return how many threads are worth starting."""
+        return self._threads if beams >= _WORTH_THREADS else 1
 
     def _make_room(self, bits: int) -> None:
         """Widen the counters so that they hold numbers of so many bits."""

@@ -254,8 +254,8 @@ FAR_CELLS = 1 << 28
 """Heads that are farther away count as being so far."""
 NO_HEAD = -(1 << 30)
 """In place of a head's row and column: the reading is a miss, and only its body counts."""
-SLOTS = 2048
-"""Half a mebibyte for each thread: a batch fits into the second-level cache with room to spare."""
+SLOTS = 4096
+"""A mebibyte for each thread; a batch fills no more of it than differs from body to body."""
 
 
 NOWHERE = int(np.iinfo(np.int32).max)

@@ -112,19 +112,27 @@ static inline TARGET VEC NAME(plane)(const source *beam, int i)
     return FUNNEL(AT(beam->low, i), AT(beam->high, i), beam->shift) & AT(beam->body, i);
 }
 
-/* counter += carry, from a bit on. */
-static inline TARGET void NAME(ripple)(VEC *n, VEC carry, int32_t bit, int32_t bits)
+/* counter += carry, from a bit on; all vectors together, since what a branch does is hard to foresee. */
+static inline TARGET void NAME(ripple)(uint64_t *counter, VEC *carry, int32_t bit, int32_t bits)
 {
-    for (; bit < bits && !IS_ZERO(carry); bit++) {
-        const VEC old = n[bit * VECTORS];
-        n[bit * VECTORS] = old ^ carry;
-        carry &= old;
+    for (; bit < bits; bit++) {
+        VEC *n = (VEC *)counter + bit * VECTORS, all = {0};
+        for (int i = 0; i < VECTORS; i++)
+            all |= carry[i];
+        if (IS_ZERO(all))
+            return;
+        for (int i = 0; i < VECTORS; i++) {
+            const VEC old = n[i];
+            n[i] = old ^ carry[i];
+            carry[i] &= old;
+        }
     }
 }
 
 /* counter += 3 beams or fewer: what add_seven does of more. */
 static inline TARGET void NAME(add_few)(uint64_t *counter, const source *beams, int32_t count, int32_t bits)
 {
+    VEC carries[VECTORS];
     for (int i = 0; i < VECTORS; i++) {
         const VEC none = {0}, first = NAME(plane)(beams, i);
         const VEC second = count > 1 ? NAME(plane)(beams + 1, i) : none;
@@ -134,13 +142,15 @@ static inline TARGET void NAME(add_few)(uint64_t *counter, const source *beams, 
         const VEC carry = n0 & ones;
         n[0] = n0 ^ ones;
         n[VECTORS] = XOR3(n1, twos, carry);
-        NAME(ripple)(n, MAJORITY(n1, twos, carry), 2, bits);
+        carries[i] = MAJORITY(n1, twos, carry);
     }
+    NAME(ripple)(counter, carries, 2, bits);
 }
 
 /* counter += 7 beams: carry-save adders make a number of three bits of their planes, and it ripples up the counter. */
 static inline TARGET void NAME(add_seven)(uint64_t *counter, const source *beams, int32_t bits)
 {
+    VEC carries[VECTORS];
     for (int i = 0; i < VECTORS; i++) {
         VEC plane[7];
         for (int beam = 0; beam < 7; beam++)
@@ -157,8 +167,9 @@ static inline TARGET void NAME(add_seven)(uint64_t *counter, const source *beams
         n[VECTORS] = XOR3(n1, twos, carry);
         carry = MAJORITY(n1, twos, carry);
         n[2 * VECTORS] = XOR3(n2, fours, carry);
-        NAME(ripple)(n, MAJORITY(n2, fours, carry), 3, bits);
+        carries[i] = MAJORITY(n2, fours, carry);
     }
+    NAME(ripple)(counter, carries, 3, bits);
 }
 
 /* counter += times, wherever the robot may stand. */
@@ -196,7 +207,7 @@ static inline TARGET int32_t NAME(telling)(const count_job *job, const int32_t *
             const int32_t free = plane == map.slots;
             found[count] = (source){all, all, 0, body};
             all_over += (uint32_t)free;
-            count += !free && open.columns[slot] != 0;
+            count += !free & (open.columns[slot] != 0);
         } else {
             const size_t at = seen_from(&map, place, beam + 1);
             const uint64_t shift = (uint64_t)(beam[2] & 63);

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "draw.h"
+#include "rounding.h"
 
 #define FAR_CELLS 268435456.0
 #define DIRECTIONS 1073741824.0
@@ -33,10 +34,9 @@ void find_bearings(const draw_job *job)
             *bearing++ = job->readings[5 * (size_t)reading] + job->headings[heading];
 }
 
-static inline double nearest(double cells)
+static inline int64_t nearest(double cells)
 {
-    const double bounded = cells < -FAR_CELLS ? -FAR_CELLS : cells > FAR_CELLS ? FAR_CELLS : cells;
-    return floor(bounded + 0.5);
+    return floor_of(greatest_of(least_of(cells, FAR_CELLS), -FAR_CELLS) + 0.5);
 }
 
 static inline beam draw(const draw_job *job, int32_t reading, int32_t heading)
@@ -49,15 +49,16 @@ static inline beam draw(const draw_job *job, int32_t reading, int32_t heading)
     const double row = (turned_sin * r[2] + turned_cos * r[3]) / job->resolution_m;
     const double col = (turned_cos * r[2] - turned_sin * r[3]) / job->resolution_m;
     const double range_cells = r[1] / job->resolution_m;
-    const double dominant = fmax(fabs(ahead[0]), fabs(ahead[1]));
-    const double free_cells = fmax(fmin(range_cells - job->error_radius_cells, job->reach_cells), 0.0);
+    const double dominant = greatest_of(fabs(ahead[0]), fabs(ahead[1]));
+    const double free_cells = greatest_of(least_of(range_cells - job->error_radius_cells, job->reach_cells), 0.0);
+    const int64_t steps = ceiling_of(free_cells * dominant);
     beam b;
     b.step[0] = ahead[0] / dominant;
     b.step[1] = ahead[1] / dominant;
-    b.start[0] = (int64_t)nearest(row);
-    b.start[1] = (int64_t)nearest(col);
-    b.direction = (int64_t)rint(*bearing * (DIRECTIONS / TURN)) & ((int64_t)DIRECTIONS - 1);
-    b.length = (int32_t)fmax(ceil(free_cells * dominant), 1.0) + (b.start[0] != 0 || b.start[1] != 0);
+    b.start[0] = nearest(row);
+    b.start[1] = nearest(col);
+    b.direction = nearest_of(*bearing * (DIRECTIONS / TURN)) & ((int64_t)DIRECTIONS - 1);
+    b.length = (int32_t)(steps > 1 ? steps : 1) + (b.start[0] != 0 || b.start[1] != 0);
     const int is_miss = r[4] > 0.0;
     b.head[0] = is_miss ? NO_HEAD : (int32_t)nearest(row + range_cells * ahead[0]);
     b.head[1] = is_miss ? NO_HEAD : (int32_t)nearest(col + range_cells * ahead[1]);
@@ -73,9 +74,7 @@ static inline uint64_t mixed(uint64_t hash, int64_t value)
 /* Return the group of a key, a new one if nobody had it before. */
 static int32_t group_of(const draw_job *job, const int64_t *key, int32_t *count)
 {
-    uint64_t hash = 0;
-    for (int i = 0; i < 5; i++)
-        hash = mixed(hash, key[i]);
+    const uint64_t hash = mixed(mixed((uint64_t)key[0], key[1] ^ key[2] * 3), key[3] ^ key[4]);
     for (uint64_t at = hash >> 20;; at++) {
         int32_t *entry = job->table + (at & (uint64_t)(job->table_size - 1));
         if (*entry < 0) {
@@ -109,7 +108,7 @@ static int is_one_chain(const draw_job *job, int32_t group)
     if (s[0] == s[2] && s[1] == s[3])
         return 1;
     for (int32_t k = 0; k < job->sizes[group]; k++)
-        if (floor(0.5 + k * s[0]) != floor(0.5 + k * s[2]) || floor(0.5 + k * s[1]) != floor(0.5 + k * s[3]))
+        if (floor_of(0.5 + k * s[0]) != floor_of(0.5 + k * s[2]) || floor_of(0.5 + k * s[1]) != floor_of(0.5 + k * s[3]))
             return 0;
     return 1;
 }
@@ -187,8 +186,8 @@ static void chain(const draw_job *job, int32_t group, int32_t *cells)
     const int64_t *start = job->keys + 5 * (size_t)group + 2;
     const int32_t lead = start[0] != 0 || start[1] != 0;
     for (int32_t i = 0; i < job->sizes[group]; i++) {
-        cells[3 * i] = i < lead ? 0 : (int32_t)(start[0] + (int64_t)floor(0.5 + (i - lead) * steps[0]));
-        cells[3 * i + 1] = i < lead ? 0 : (int32_t)(start[1] + (int64_t)floor(0.5 + (i - lead) * steps[1]));
+        cells[3 * i] = i < lead ? 0 : (int32_t)(start[0] + floor_of(0.5 + (i - lead) * steps[0]));
+        cells[3 * i + 1] = i < lead ? 0 : (int32_t)(start[1] + floor_of(0.5 + (i - lead) * steps[1]));
         cells[3 * i + 2] = -1;
     }
 }
@@ -222,16 +221,18 @@ static int32_t *list_beams(const draw_job *job, const int32_t *groups, const int
     const int32_t headings = job->heading_count, beam_count = job->reading_count * headings;
     const size_t list_count = (size_t)batches * (size_t)headings;
     memset(lists, 0, (list_count + 1) * sizeof *lists);
-    for (int32_t i = 0; i < beam_count; i++)
-        lists[(size_t)job->batch_of[job->drawn[4 * i]] * (size_t)headings + (size_t)(i % headings)]++;
+    for (int32_t i = 0, heading = 0; i < beam_count; i++, heading = heading + 1 < headings ? heading + 1 : 0)
+        lists[(size_t)job->batch_of[job->drawn[4 * (size_t)i]] * (size_t)headings + (size_t)heading]++;
     int32_t total = 0;
     for (size_t i = 0; i <= list_count; i++) {
         total += lists[i];
         lists[i] = total;
     }
+    int32_t heading = headings;
     for (int32_t i = beam_count - 1; i >= 0; i--) { /* from the end: then every list's bound arrives at its beginning */
         const int32_t *d = job->drawn + 4 * (size_t)i;
-        int32_t *b = beams + 3 * (size_t)--lists[(size_t)job->batch_of[d[0]] * (size_t)headings + (size_t)(i % headings)];
+        heading = heading > 0 ? heading - 1 : headings - 1;
+        int32_t *b = beams + 3 * (size_t)--lists[(size_t)job->batch_of[d[0]] * (size_t)headings + (size_t)heading];
         b[0] = chains[3 * (size_t)(groups[d[0]] + d[1] - 1) + 2];
         b[1] = d[2];
         b[2] = d[3];

@@ -1,4 +1,4 @@
-"""Arrays as the C side sees them: pointers that keep their array alive; partial functions, since they cost the least."""
+"""Arrays as the C side sees them: pointers that keep their array alive; partial functions, which cost least."""
 
 from collections.abc import Callable
 from functools import partial

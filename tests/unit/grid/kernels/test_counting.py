@@ -166,7 +166,7 @@ def test_directions_that_differ_by_a_hair_share_a_chain_only_as_far_as_it_is_the
 
 @both
 def test_a_sweep_too_large_for_one_batch_is_taken_in_several(kernels: ModuleType) -> None:
-    readings = [RangeReading(0, 0.01 * k, ReadingStatus.OK, 0.3 + 0.01 * k) for k in range(600)]
+    readings = [RangeReading(0, 0.01 * k, ReadingStatus.OK, 0.3 + 0.01 * k) for k in range(1200)]
     headings = np.array([0.0, 0.5, 1.1, 2.2])
     beams = kernels.draw_beams(numbers_of(readings), turned(headings), HOW)
     assert len(beams.batches) > 2
