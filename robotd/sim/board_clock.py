@@ -6,6 +6,7 @@ adapters here stand between a board and its plant.
 
 from dataclasses import dataclass, replace
 
+from firmware_proto.common import Fault
 from robotd.sim.noise import stream
 from robotd.sim.plant import DrivePlant, HeadPlant, ScannerPlant, ShotAnswer
 
@@ -76,6 +77,11 @@ class DriveOnClock:
         """Battery voltage [mV]."""
         return self._plant.battery_mv
 
+    @property
+    def broken(self) -> Fault:
+        """What is wrong at this moment."""
+        return self._plant.broken
+
 
 class HeadOnClock:
     """A head plant as its board times it."""
@@ -107,6 +113,11 @@ class HeadOnClock:
         """When the motion under way will be done."""
         arrives_us = self._plant.arrives_us
         return None if arrives_us is None else self._clock.board_us(arrives_us) + 1
+
+    @property
+    def broken(self) -> Fault:
+        """What is wrong at this moment."""
+        return self._plant.broken
 
 
 class LaserOnClock:

@@ -11,6 +11,7 @@ import math
 import random
 from dataclasses import dataclass
 
+from firmware_proto.common import Fault
 from robotd.core.angles import FULL_TURN_RAD
 from robotd.core.pose import Pose2
 from robotd.sim.noise import NoiseSettings
@@ -84,6 +85,8 @@ class Body:
     def __init__(
         self, walls: Walls, start: Pose2, settings: BodySettings, noise: NoiseSettings, randomness: random.Random
     ) -> None:
+        self.broken = Fault.NONE
+        """What is wrong with it, for whoever wants to see what comes of that."""
         self._walls = walls
         self._settings = settings
         self._noise = noise

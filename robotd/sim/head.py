@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from firmware_proto.common import Fault
 from robotd.core.angles import FULL_TURN_RAD, wrap_rad
 
 _US_PER_S = 1e6
@@ -39,6 +40,8 @@ class Head:
     """The plant behind the pan/tilt board; lives in true time [us]. Each axis turns at constant speed."""
 
     def __init__(self, settings: HeadSettings) -> None:
+        self.broken = Fault.NONE
+        """What is wrong with it, for whoever wants to see what comes of that."""
         self._settings = settings
         pan_limit_rad = min(settings.pan_limit_rad, math.pi)
         self.limits_rad = (-pan_limit_rad, pan_limit_rad, settings.tilt_min_rad, settings.tilt_max_rad)

@@ -5,6 +5,7 @@ import contextlib
 from collections.abc import Callable, Coroutine
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
+from firmware_proto.common import BoardState, Fault
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import TransportError
 from robotd.hardware.transport.transport import Transport
@@ -35,6 +36,14 @@ class HostedBoard(Protocol):
 @runtime_checkable
 class OwnBoard(HostedBoard, Protocol):
     """One of our own boards, whatever its firmware is written in."""
+
+    @property
+    def state(self) -> BoardState:
+        """Where in its life the board is; ``FAULT`` lies over the state beneath it."""
+
+    @property
+    def faults(self) -> Fault:
+        """The latched faults."""
 
     def reboot(self, boot_id: int) -> None:
         """Lose power and come back: motors cut, everything forgotten, bytes under way lost."""

@@ -7,6 +7,7 @@ board's own, in microseconds, and only ever grow.
 from dataclasses import dataclass
 from typing import Protocol
 
+from firmware_proto.common import Fault
 from firmware_proto.rangefinder import ShotStatus
 
 
@@ -38,6 +39,10 @@ class DrivePlant(Protocol):
     def battery_mv(self) -> int:
         """Battery voltage [mV]."""
 
+    @property
+    def broken(self) -> Fault:
+        """``MOTOR``, ``BATTERY``: what is wrong at this moment."""
+
 
 class HeadPlant(Protocol):
     """A pan/tilt head."""
@@ -61,6 +66,10 @@ class HeadPlant(Protocol):
     @property
     def arrives_us(self) -> int | None:
         """When the motion under way will be done; None at rest."""
+
+    @property
+    def broken(self) -> Fault:
+        """``MOTOR``: what is wrong at this moment."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ aimed elsewhere it stays as aimed, and the laser answers that it cannot see ther
 import enum
 import math
 
+from firmware_proto.common import Fault
 from firmware_proto.rangefinder import ShotStatus
 from robotd.core.pose import Pose2
 from robotd.sim.body import Body, BodySettings
@@ -88,6 +89,7 @@ class RecordedHead:
 
     def __init__(self, place: Place) -> None:
         self.limits_rad = (-math.pi, math.pi, 0.0, 0.0)
+        self.broken = Fault.NONE
         self._place = place
         self._angles_rad = (0.0, 0.0)
 

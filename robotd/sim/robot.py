@@ -11,7 +11,7 @@ from robotd.sim.boards.board import Board
 from robotd.sim.body import Body, BodySettings
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.head import Head, HeadSettings
-from robotd.sim.host import HostedBoard
+from robotd.sim.host import HostedBoard, OwnBoard
 from robotd.sim.laser import Laser, LaserSettings
 from robotd.sim.noise import NoiseSettings, stream
 from robotd.sim.plant import DrivePlant, HeadPlant, ScannerPlant
@@ -83,13 +83,24 @@ class SimulatedRobot:
         if clearance_m(world.walls, (self.start.x_m, self.start.y_m)) < settings.body.radius_m:
             raise ConfigError(f"a robot of radius {settings.body.radius_m} m does not fit there", key="start")
         self._body = Body(world.walls, self.start, settings.body, noise, stream(seed, "drive"))
-        head = Head(settings.head)
-        laser = Laser(
-            world.walls, self._body, head, settings=settings.laser, noise=noise, randomness=stream(seed, "rangefinder")
+        self._head = Head(settings.head)
+        self._laser = Laser(
+            world.walls,
+            self._body,
+            self._head,
+            settings=settings.laser,
+            noise=noise,
+            randomness=stream(seed, "rangefinder"),
         )
         self.clocks = clocks_of_seed(seed, noise.clock_skew_ppm)
         self.boards = board_by_device(
-            self._body, head, laser, clocks=self.clocks, seed=seed, boot=boot, dialects=dialects or Dialects()
+            self._body,
+            self._head,
+            self._laser,
+            clocks=self.clocks,
+            seed=seed,
+            boot=boot,
+            dialects=dialects or Dialects(),
         )
 
     @property
@@ -127,8 +138,20 @@ def board_by_device(
     }
 
 
+def board_of(robot: EmulatedRobot, device: str) -> OwnBoard:
+    """Return a board that speaks our own protocol, whatever its firmware is written in.
+
+    Raises:
+        ConfigError: the device speaks another dialect.
+    """
+    board = robot.boards[device]
+    if not isinstance(board, OwnBoard):
+        raise ConfigError("the device speaks its maker's protocol", key=device)
+    return board
+
+
 def own_board(robot: EmulatedRobot, device: str) -> Board:
-    """Return a board that speaks our own protocol: for tests that look inside.
+    """Return a board that speaks our own protocol, in Python: for tests that look inside.
 
     Raises:
         ConfigError: the device speaks another dialect.

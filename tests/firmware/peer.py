@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 
 from firmware_proto.c_devices import dictionary_in
-from firmware_proto.common import BoardKind
+from firmware_proto.common import BoardKind, Fault
 from firmware_proto.rangefinder import ShotStatus
 from robotd.sim.boards.board import Board
 from robotd.sim.boards.drive import DriveBoard
@@ -89,6 +89,10 @@ class ScriptedPlant:
     @property
     def battery_mv(self) -> int:
         return self.numbers[5]
+
+    @property
+    def broken(self) -> Fault:
+        return Fault(self.numbers[7])
 
     def aim(self, pan_rad: float, tilt_rad: float) -> None:
         self.calls.append(f"aim {round(pan_rad * _PER_RAD)} {round(tilt_rad * _PER_RAD)}")

@@ -10,6 +10,7 @@ from firmware_proto.common import (
     Clear,
     Configure,
     Disarm,
+    Fault,
     Hello,
     Identify,
     Kill,
@@ -156,9 +157,12 @@ class _Life:
                 counts = [dice.randrange(-(1 << 31), 1 << 31) for _ in range(2)]
                 speeds = [dice.choice([0, 0, dice.randrange(-32768, 32768)]) for _ in range(2)]
                 bumpers = dice.choice([*[0] * 12, 1, 3, dice.randrange(1 << 16)])
-                numbers = [*counts, *speeds, bumpers, dice.randrange(1 << 16)]
+                broken = dice.choice([*[Fault.NONE] * 9, Fault.MOTOR, Fault.BATTERY, Fault.MOTOR | Fault.BATTERY])
+                numbers = [*counts, *speeds, bumpers, dice.randrange(1 << 16), 0, broken]
             case BoardKind.PANTILT:
-                numbers = [dice.randrange(-30_000, 30_000), dice.randrange(-9000, 6000), dice.randrange(400_000)]
+                angles = [dice.randrange(-30_000, 30_000), dice.randrange(-9000, 6000)]
+                broken = dice.choice([*[Fault.NONE] * 9, Fault.MOTOR])
+                numbers = [*angles, dice.randrange(400_000), 0, 0, 0, 0, broken]
             case BoardKind.RANGEFINDER:
                 status = dice.choice([ShotStatus.OK, *ShotStatus])
                 takes_us = dice.choice([1, 4000, 50_000, dice.randrange(1, 120) * 1000])

@@ -76,7 +76,9 @@ def test_what_breaks_stops_the_device_and_cannot_be_cleared_until_it_is_mended(
         moving,
         heard(80_000, Clear()),
     ]
-    told = told_by_c(peer, kind, "\n".join(script) + "\n")
+    text = "\n".join(script) + "\n"
+    told = told_by_c(peer, kind, text)
+    assert first_difference(text, told, told_by_python(kind, text)) is None
     latched = (BoardState.FAULT, fault)
     assert ends(told) == [(BoardState.ARMED, Fault.NONE)] * 2 + [latched] * 2 + [(BoardState.CONFIGURED, Fault.NONE)]
     assert stop in told[2][0]

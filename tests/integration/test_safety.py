@@ -4,11 +4,13 @@ import asyncio
 import contextlib
 from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
-from firmware_proto.common import BoardState, Fault
+from firmware_proto.common import BoardState, Fault, Kill
+from firmware_proto.framing import RawFrame, encode_frame
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
 from robotd.config import Config
@@ -26,7 +28,10 @@ from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
 from robotd.recording.entries import BytesEntry
 from robotd.recording.preroll import PrerollJournal
-from robotd.sim.robot import DEVICES, SimulatedRobot, own_board
+from robotd.sim.body import Body
+from robotd.sim.emulators.catalogue import Dialects, Firmware
+from robotd.sim.head import Head
+from robotd.sim.robot import DEVICES, SimulatedRobot, board_of, own_board
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
 from tests.integration.living import in_directory, until_ready
@@ -98,13 +103,12 @@ class Rig:
 
     @property
     def states(self) -> dict[str, BoardState]:
-        return {name: own_board(self.robot, name).state for name in self.robot.boards}
+        return {name: board_of(self.robot, name).state for name in self.robot.boards}
 
     @property
     def is_quiet(self) -> bool:
         """Base at rest, head still, laser dark."""
-        pantilt, rangefinder = own_board(self.robot, "pantilt"), own_board(self.robot, "rangefinder")
-        return self.robot.at_rest and pantilt._plant.arrives_us is None and not rangefinder._lit  # type: ignore[attr-defined]  # looks inside the emulators
+        return self.robot.at_rest and self.robot._head.arrives_us is None and not self.robot._laser._on
 
     def start(self, mission: Mission) -> int:
         return self.daemon.control.start(mission, LEASE_S)
@@ -151,8 +155,8 @@ def daemon_on(
 
 
 @contextlib.asynccontextmanager
-async def rig(directory: Path) -> AsyncIterator[Rig]:
-    robot = SimulatedRobot(load_world("laboratory"), seed=4)
+async def rig(directory: Path, boards: Firmware = Firmware.PYTHON) -> AsyncIterator[Rig]:
+    robot = SimulatedRobot(load_world("laboratory"), seed=4, dialects=Dialects(boards=boards))
     journal = new_journal(in_directory(Config(), directory))
     compute, plugs = Holding(), dict[str, Plug]()
     async with connectors(robot) as connects:
@@ -262,16 +266,29 @@ def unplug(device: str) -> Callable[[Rig], Awaitable[None]]:
 
 def reboot(device: str) -> Callable[[Rig], Awaitable[None]]:
     async def lose_power(rig: Rig) -> None:
-        own_board(rig.robot, device).reboot(4711)
+        board_of(rig.robot, device).reboot(4711)
 
     return lose_power
 
 
-def latch(device: str, fault: Fault) -> Callable[[Rig], Awaitable[None]]:
-    async def report(rig: Rig) -> None:
-        own_board(rig.robot, device)._latch(fault, cut=True)
+async def bumped(rig: Rig) -> None:
+    own_board(rig.robot, "drive")._latch(Fault.BUMPER, cut=True)
 
-    return report
+
+def breaks(plant_of: Callable[[Rig], Body | Head], fault: Fault) -> Callable[[Rig], Awaitable[None]]:
+    """For a moment, which is enough to latch it."""
+
+    async def break_it(rig: Rig) -> None:
+        plant_of(rig).broken = fault
+        await asyncio.sleep(SOON_S)
+        plant_of(rig).broken = Fault.NONE
+
+    return break_it
+
+
+async def killed(rig: Rig) -> None:
+    """Somebody else's hand on the wire of the laser."""
+    rig.plugs["rangefinder"].write(encode_frame(RawFrame(Kill.TYPE, 0xABCD, b"")))
 
 
 async def silent_client(rig: Rig) -> None:
@@ -297,9 +314,10 @@ WRONGS: dict[str, tuple[Callable[[Rig], Awaitable[None]], Mode]] = {
     "garbled stop": (stop_is_garbled, Mode.DISARMED),
     **{f"{device} unplugged": (unplug(device), Mode.DISARMED) for device in DEVICES},
     **{f"{device} rebooted": (reboot(device), Mode.DISARMED) for device in DEVICES},
-    "bumper": (latch("drive", Fault.BUMPER), Mode.FAULT),
-    "head motor": (latch("pantilt", Fault.MOTOR), Mode.FAULT),
-    "laser killed": (latch("rangefinder", Fault.KILLED), Mode.FAULT),
+    "bumper": (bumped, Mode.FAULT),
+    "battery": (breaks(lambda rig: rig.robot._body, Fault.BATTERY), Mode.FAULT),
+    "head motor": (breaks(lambda rig: rig.robot._head, Fault.MOTOR), Mode.FAULT),
+    "laser killed": (killed, Mode.FAULT),
     "daemon ends": (daemon_ends, Mode.DISARMED),
 }
 
@@ -330,11 +348,19 @@ async def check_arming_works_again(rig: Rig) -> None:
     assert set(rig.states.values()) == {BoardState.ARMED}
 
 
-@pytest.mark.parametrize("activity", ACTIVITIES)
-@pytest.mark.parametrize("wrong", WRONGS)
-async def test_it_comes_to_rest(activity: Callable[[Rig], Awaitable[None]], wrong: str, tmp_path: Path) -> None:
+needs_c = pytest.mark.skipif(find_spec("robotd.sim.firmware._native") is None, reason="there was no C compiler")
+CASES = [
+    *((wrong, activity, Firmware.PYTHON) for wrong in WRONGS for activity in ACTIVITIES),
+    *(pytest.param(wrong, driving, Firmware.C, marks=needs_c) for wrong in WRONGS if wrong != "bumper"),
+]
+
+
+@pytest.mark.parametrize(("wrong", "activity", "boards"), CASES)
+async def test_it_comes_to_rest(
+    wrong: str, activity: Callable[[Rig], Awaitable[None]], boards: Firmware, tmp_path: Path
+) -> None:
     happens, mode = WRONGS[wrong]
-    async with rig(tmp_path) as it:
+    async with rig(tmp_path, boards) as it:
         await activity(it)
         it.began_ns = now_ns()
         await happens(it)
@@ -371,14 +397,15 @@ async def test_a_silent_client_loses_its_robot_when_the_lease_ends(
         await check_arming_works_again(it)
 
 
+@pytest.mark.parametrize("boards", [Firmware.PYTHON, pytest.param(Firmware.C, marks=needs_c)])
 @pytest.mark.parametrize("activity", ACTIVITIES)
 async def test_a_killed_daemon_leaves_a_robot_that_stops_itself(
-    activity: Callable[[Rig], Awaitable[None]], tmp_path: Path
+    activity: Callable[[Rig], Awaitable[None]], boards: Firmware, tmp_path: Path
 ) -> None:
-    async with rig(tmp_path) as it:
+    async with rig(tmp_path, boards) as it:
         await activity(it)
         await daemon_is_killed(it)
         await asyncio.sleep(REST_WITHIN_S)
         assert it.robot.at_rest
         if activity is driving:
-            assert own_board(it.robot, "drive").faults is Fault.DEADMAN
+            assert board_of(it.robot, "drive").faults == Fault.DEADMAN

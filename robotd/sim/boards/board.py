@@ -269,6 +269,12 @@ class Board(ABC):
         else:
             self._halt()
 
+    def _latch_broken(self, broken: Fault) -> None:
+        """Latch what is wrong beneath and not latched yet; a broken motor must not be ramped."""
+        newly = broken & ~self._faults
+        if newly:
+            self._latch(newly, cut=Fault.MOTOR in newly)
+
     def _latch(self, fault: Fault, *, cut: bool = False) -> None:
         self._faults |= fault
         self._rest(cut=cut)

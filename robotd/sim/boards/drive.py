@@ -52,13 +52,13 @@ class DriveBoard(Board):
         was_moving = self._moving
         self._moving = self._wanted or any(self._velocity())
         pressed = self._plant.bumpers
-        if pressed == self._bumpers:
-            return
         newly = pressed & ~self._bumpers
-        self._bumpers = pressed
-        self._outbox.tell(self._drive_report())
+        if pressed != self._bumpers:
+            self._bumpers = pressed
+            self._outbox.tell(self._drive_report())
         if newly and (was_moving or self._moving):  # the wall it hit may have stopped it already
             self._latch(Fault.BUMPER, cut=True)
+        self._latch_broken(self._plant.broken)
 
     def _velocity(self) -> tuple[int, int]:
         speed_mps, turn_radps = self._plant.velocity

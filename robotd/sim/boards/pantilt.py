@@ -66,8 +66,11 @@ class PanTiltBoard(Board):
             yield self._plant.arrives_us
 
     def _observe(self) -> None:
-        if self._motion is not Motion.TURNING:
-            return
+        if self._motion is Motion.TURNING:
+            self._look_whether_there()
+        self._latch_broken(self._plant.broken)
+
+    def _look_whether_there(self) -> None:
         arrives_us = self._plant.arrives_us
         if arrives_us is None or arrives_us <= self._now_us:
             self._motion = Motion.DONE

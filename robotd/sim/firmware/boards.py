@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from firmware_proto.common import Fault
 from firmware_proto.rangefinder import ShotStatus
 from robotd.sim.boards.drive import signed16, signed32
 from robotd.sim.boards.pantilt import PER_RAD, limits_of, tenth_mrad
@@ -80,10 +79,6 @@ def _result(context: Any, _now_us: int, shot: Any, _ask_us: Any) -> bool:
     return True
 
 
-def _nothing_breaks(_context: Any) -> int:
-    return Fault.NONE
-
-
 call_back(
     "drive",
     advance=lambda context, now_us: ffi.from_handle(context).advance(now_us),
@@ -95,7 +90,7 @@ call_back(
     velocity=_velocity,
     bumpers=lambda context: ffi.from_handle(context).bumpers & _U16_MAX,
     battery_mv=lambda context: min(max(ffi.from_handle(context).battery_mv, 0), _U16_MAX),
-    broken=_nothing_breaks,
+    broken=lambda context: ffi.from_handle(context).broken,
 )
 call_back(
     "pantilt",
@@ -104,7 +99,7 @@ call_back(
     halt=lambda context: ffi.from_handle(context).halt(),
     angles=_angles,
     arrives_us=lambda context: ffi.from_handle(context).arrives_us or _AT_REST,
-    broken=_nothing_breaks,
+    broken=lambda context: ffi.from_handle(context).broken,
 )
 call_back(
     "rangefinder",

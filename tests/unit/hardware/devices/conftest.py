@@ -4,7 +4,12 @@ import asyncio
 import random
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
+from importlib.util import find_spec
 
+import pytest
+
+from firmware_proto.framing import RawFrame, encode_frame
+from firmware_proto.schema import Message
 from robotd.core.errors import TransportError
 from robotd.hardware.devices.board_device import BoardDevice
 from robotd.hardware.devices.board_drive import BoardDrive
@@ -15,11 +20,24 @@ from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, Ran
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Connect, Transport
+from robotd.sim.emulators.catalogue import Dialects, Firmware
+from robotd.sim.host import OwnBoard
 from robotd.sim.noise import NOISELESS
-from robotd.sim.robot import SimSettings, SimulatedRobot
+from robotd.sim.robot import SimSettings, SimulatedRobot, board_of
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
 from tests.unit.hardware.conftest import FaultyLine
+
+BOARDS = Firmware.PYTHON
+"""What the firmware of the next rig's boards is written in."""
+
+
+@pytest.fixture(params=Firmware)
+def either_firmware(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a test run on boards whose firmware is Python, and on boards whose firmware is C."""
+    if request.param is Firmware.C and find_spec("robotd.sim.firmware._native") is None:
+        pytest.skip("there was no C compiler for the firmware")
+    monkeypatch.setattr(f"{__name__}.BOARDS", request.param)
 
 
 class Rig:
@@ -41,6 +59,13 @@ class Rig:
 
         return Wiring(connect, NoTap(), random.Random(device))
 
+    def board(self, device: str) -> OwnBoard:
+        return board_of(self.robot, device)
+
+    def say(self, device: str, message: Message) -> None:
+        """Put a request on the wire that is not the daemon's."""
+        self.lines[device].write(encode_frame(RawFrame(message.TYPE, 0xABCD, message.to_payload())))
+
     async def wait(self, device: Device, link: LinkState) -> DeviceStatus:
         with device.status_changes.subscribe() as changes:
             while device.status.link is not link:
@@ -52,7 +77,8 @@ class Rig:
 async def rig(
     *, armed: bool = True, sim: SimSettings | None = None, pantilt: PanTiltSettings | None = None
 ) -> AsyncIterator[Rig]:
-    robot = SimulatedRobot(load_world("laboratory"), seed=1, settings=sim or SimSettings(noise=NOISELESS))
+    settings = sim or SimSettings(noise=NOISELESS)
+    robot = SimulatedRobot(load_world("laboratory"), seed=1, settings=settings, dialects=Dialects(boards=BOARDS))
     async with connectors(robot) as connect:
         rig = Rig(robot, connect, pantilt or PanTiltSettings())
         tasks = [asyncio.create_task(device.run()) for device in rig.devices]

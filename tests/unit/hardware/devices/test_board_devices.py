@@ -9,7 +9,7 @@ from typing import TypeVar
 import pytest
 
 from firmware_proto.common import Arm, BoardState, Fault
-from firmware_proto.pantilt import Aim, AimReport, Motion
+from firmware_proto.pantilt import Aim, AimReadback, AimReport, Motion, ReadAim
 from firmware_proto.schema import REPLY
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S, now_ns
@@ -25,12 +25,13 @@ from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
-from robotd.sim.boards.pantilt import PanTiltBoard, tenth_mrad
 from robotd.sim.head import HeadSettings
 from robotd.sim.noise import NOISELESS
-from robotd.sim.robot import SimSettings, own_board
+from robotd.sim.robot import SimSettings
 from tests.unit.hardware.conftest import lose
 from tests.unit.hardware.devices.conftest import nowhere, rig
+
+pytestmark = pytest.mark.usefixtures("either_firmware")
 
 T = TypeVar("T")
 MS = 1_000_000
@@ -82,7 +83,7 @@ async def test_devices_come_up_ready_and_disarmed() -> None:
 async def test_arming_reaches_the_board_and_the_status() -> None:
     async with rig(armed=False) as r:
         await r.drive.arm()
-        assert (r.drive.status.armed, own_board(r.robot, "drive").state.name) == (True, "ARMED")
+        assert (r.drive.status.armed, r.board("drive").state.name) == (True, "ARMED")
 
 
 async def test_stop_now_disarms_and_the_status_follows_the_board() -> None:
@@ -90,7 +91,7 @@ async def test_stop_now_disarms_and_the_status_follows_the_board() -> None:
         with r.drive.status_changes.subscribe() as changes:
             r.drive.stop_now()
             assert not (await changes.get()).armed
-        assert own_board(r.robot, "drive").state is BoardState.CONFIGURED
+        assert r.board("drive").state is BoardState.CONFIGURED
 
 
 async def test_a_stop_that_gets_lost_is_said_again_until_the_board_has_heard_it() -> None:
@@ -98,10 +99,10 @@ async def test_a_stop_that_gets_lost_is_said_again_until_the_board_has_heard_it(
         r.lines["drive"].garbled_stops = 3
         r.drive.stop_now()
         await asyncio.sleep(0.3)
-        assert (r.drive.status.armed, own_board(r.robot, "drive").state.name) == (False, "CONFIGURED")
+        assert (r.drive.status.armed, r.board("drive").state.name) == (False, "CONFIGURED")
         await r.drive.arm()
         await asyncio.sleep(0.3)
-        assert (r.drive.status.armed, own_board(r.robot, "drive").state.name) == (True, "ARMED")
+        assert (r.drive.status.armed, r.board("drive").state.name) == (True, "ARMED")
 
 
 @pytest.mark.parametrize("was_armed_before_it_was_lost", [False, True])
@@ -111,9 +112,9 @@ async def test_a_board_that_somebody_else_armed_is_stopped(was_armed_before_it_w
             r.lines["drive"].close()
             await r.wait(r.drive, LinkState.ABSENT)
             await r.wait(r.drive, LinkState.READY)
-        own_board(r.robot, "drive")._beneath = BoardState.ARMED
+        r.say("drive", Arm())
         await asyncio.sleep(0.1)
-        assert own_board(r.robot, "drive").state is BoardState.CONFIGURED
+        assert r.board("drive").state is BoardState.CONFIGURED
 
 
 async def test_an_absent_device_refuses_everything_but_stop() -> None:
@@ -149,7 +150,27 @@ async def test_a_latched_fault_shows_forbids_arming_and_can_be_cleared() -> None
         await r.drive.clear_faults()
         assert r.drive.status.faults == ()
         await r.drive.arm()
-        assert own_board(r.robot, "drive").faults is Fault.NONE
+        assert r.board("drive").faults is Fault.NONE
+
+
+async def test_what_breaks_stops_the_device_and_stays_a_fault_until_it_is_mended() -> None:
+    async with rig() as r:
+        for device, plant, fault in (
+            (r.drive, r.robot._body, Fault.BATTERY),
+            (r.drive, r.robot._body, Fault.MOTOR),
+            (r.pantilt, r.robot._head, Fault.MOTOR),
+        ):
+            plant.broken = fault
+            await asyncio.sleep(0.1)
+            assert (device.status.faults, device.status.armed) == ((str(fault.name).lower(),), False)
+            await device.clear_faults()
+            await asyncio.sleep(0.1)
+            assert device.status.faults
+            plant.broken = Fault.NONE
+            await device.clear_faults()
+            await asyncio.sleep(0.1)
+            assert device.status.faults == ()
+            await device.arm()
 
 
 async def test_a_status_is_published_only_when_something_changed() -> None:
@@ -165,7 +186,7 @@ async def test_an_arm_that_got_lost_leaves_no_trace_of_a_lie() -> None:
         r.lines["drive"].from_board = lose(10**9, Arm.TYPE | REPLY)
         with pytest.raises(LinkTimeout):
             await r.drive.arm()
-        assert r.drive.status.armed == (own_board(r.robot, "drive").state is BoardState.ARMED)
+        assert r.drive.status.armed == (r.board("drive").state is BoardState.ARMED)
 
 
 # The drive
@@ -194,7 +215,7 @@ async def test_the_drive_goes_where_it_is_told_and_says_so() -> None:
 async def test_a_restart_of_the_drive_board_makes_no_jump_in_odometry() -> None:
     async with rig() as r:
         there = await drive_for(r.drive, Twist2(0.2, 0.0), 1.0)
-        own_board(r.robot, "drive").reboot(boot_id=77)
+        r.board("drive").reboot(boot_id=77)
         await r.wait(r.drive, LinkState.ABSENT)
         await r.wait(r.drive, LinkState.READY)
         assert (await next_of(r.drive.odometry)).in_odom == there.in_odom
@@ -235,9 +256,7 @@ async def test_the_zeros_of_the_mount_are_applied_both_ways() -> None:
         assert limits.tilt_min_rad == pytest.approx(math.radians(-47) - 0.1, abs=1e-3)
         aim = await r.pantilt.aim(0.5, 0.0, timeout_s=5.0)
         assert (aim.pan_rad, aim.tilt_rad) == pytest.approx((0.5, 0.0), abs=0.001)
-        board = own_board(r.robot, "pantilt")
-        assert isinstance(board, PanTiltBoard)
-        assert tenth_mrad(board._plant) == pytest.approx((2_000, 1_000), abs=10)
+        assert r.robot._head.angles_rad == pytest.approx((0.2, 0.1), abs=0.001)
 
 
 async def test_a_head_without_end_pans_all_round_whatever_its_zero() -> None:
@@ -302,7 +321,7 @@ async def test_a_head_that_is_too_slow_is_halted_without_a_fault() -> None:
             await r.pantilt.aim(2.0, 0.0, timeout_s=0.1)
         assert now_ns() - began_ns == pytest.approx(100 * MS, abs=MS)
         await asyncio.sleep(1.0)
-        assert (own_board(r.robot, "pantilt").state, r.pantilt.status.faults) == (BoardState.CONFIGURED, ())
+        assert (r.board("pantilt").state, r.pantilt.status.faults) == (BoardState.CONFIGURED, ())
 
 
 async def test_an_aim_ends_at_once_when_the_head_is_lost() -> None:
@@ -331,4 +350,4 @@ async def test_a_repeated_aim_turns_the_head_once() -> None:
         r.lines["pantilt"].from_board = lose(1, Aim.TYPE | REPLY)
         await r.pantilt.aim(0.5, 0.0, timeout_s=5.0)
         assert dict(r.pantilt.status.counters)["retries"] == 1
-        assert own_board(r.robot, "pantilt")._aim_seq == 0  # type: ignore[attr-defined]  # a PanTiltBoard
+        assert (await r.pantilt._talk().ask(ReadAim(), AimReadback)).aim_seq == 0

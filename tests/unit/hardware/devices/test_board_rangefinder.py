@@ -4,15 +4,18 @@ import asyncio
 
 import pytest
 
-from firmware_proto.common import Fault
-from firmware_proto.rangefinder import Shoot, Shot, ShotStatus
+from firmware_proto.common import Kill
+from firmware_proto.rangefinder import ShotStatus
 from robotd.core.clock import now_ns
 from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
 from robotd.sim.laser import LaserSettings
 from robotd.sim.noise import NOISELESS
-from robotd.sim.robot import SimSettings, own_board
+from robotd.sim.plant import ShotAnswer
+from robotd.sim.robot import SimSettings
 from tests.unit.hardware.devices.conftest import rig
+
+pytestmark = pytest.mark.usefixtures("either_firmware")
 
 MS = 1_000_000
 
@@ -22,7 +25,7 @@ async def test_a_shot_has_its_range_with_bias_its_strength_and_its_time() -> Non
         await r.rangefinder.switch_laser(on=True)
         before_ns = now_ns()
         shot = await r.rangefinder.shoot(timeout_s=1.0)
-        truth_m = own_board(r.robot, "rangefinder")._plant._plant.true_range_m()  # type: ignore[attr-defined]  # a Laser on a clock
+        truth_m = r.robot._laser.true_range_m()
         assert shot.status is ReadingStatus.OK
         assert shot.range_m == pytest.approx(truth_m + 0.01, abs=0.0006)
         assert abs(shot.time_ns - before_ns) < MS
@@ -47,15 +50,15 @@ async def test_a_shot_in_the_dark_is_a_result() -> None:
 )
 async def test_each_status_of_the_instrument_has_its_meaning(code: int, status: ReadingStatus) -> None:
     async with rig() as r:
-        board = own_board(r.robot, "rangefinder")
-        board._handlers[Shoot] = lambda request, seq: Shot(board._now_us, 0, 0, code)
+        r.robot._laser.shoot = lambda at_us: ShotAnswer(code, 0.0, 0, 1000)  # type: ignore[arg-type,method-assign]  # 99 is none
+        await r.rangefinder.switch_laser(on=True)
         assert (await r.rangefinder.shoot(timeout_s=1.0)).status is status
 
 
 async def test_an_unanswered_shot_is_a_timeout_and_a_lost_line_is_an_error() -> None:
     async with rig(sim=SimSettings(noise=NOISELESS, laser=LaserSettings(takes_us=50_000))) as r:
         await r.rangefinder.switch_laser(on=True)
-        own_board(r.robot, "rangefinder").take_output = bytes  # type: ignore[method-assign]  # says nothing any more
+        r.board("rangefinder").take_output = bytes  # type: ignore[method-assign]  # says nothing any more
         shot = await r.rangefinder.shoot(timeout_s=0.2)
         assert (shot.status, shot.range_m, shot.strength) == (ReadingStatus.TIMEOUT, None, None)
         shooting = asyncio.create_task(r.rangefinder.shoot(timeout_s=0.2))
@@ -67,5 +70,5 @@ async def test_an_unanswered_shot_is_a_timeout_and_a_lost_line_is_an_error() -> 
 
 async def test_a_refused_shot_is_a_result() -> None:
     async with rig() as r:
-        own_board(r.robot, "rangefinder")._latch(Fault.KILLED)
+        r.say("rangefinder", Kill())
         assert (await r.rangefinder.shoot(timeout_s=0.2)).status is ReadingStatus.DEVICE_ERROR

@@ -55,6 +55,7 @@ class Still:
     battery_mv = 24_000
     angles_rad = (0.0, 0.0)
     arrives_us = None
+    broken = Fault.NONE
 
     def advance(self, to_us: int) -> None:
         pass

@@ -34,6 +34,7 @@ class Base:
     bumpers: int = 0
     counts: tuple[int, int] = (0, 0)
     battery_mv: int = 24_000
+    broken: Fault = Fault.NONE
     hits_at_us: int | None = None
     told: list[str] = field(default_factory=list)
 

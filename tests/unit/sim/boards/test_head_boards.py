@@ -40,6 +40,7 @@ class Head:
     limits_rad: tuple[float, float, float, float] = (-2.77507, 2.77507, -0.82, 0.54)
     angles_rad: tuple[float, float] = (0.0, 0.0)
     arrives_us: int | None = None
+    broken: Fault = Fault.NONE
     now_us: int = 0
     aims: list[tuple[float, float]] = field(default_factory=list)
 
