@@ -47,7 +47,7 @@ def region_in_words(region: Region) -> str:
 
 def estimate_in_words(estimate: PoseEstimate) -> str:
     """Return an estimate: its state first, then what it rests on; never a pose that is not unique."""
-    support = f"{estimate.best_rank} of {estimate.readings} readings explained"
+    support = f"{estimate.best_rank or 'too few'} of {estimate.readings} readings explained"
     so_far = "" if estimate.final else ", so far"
     if estimate.best is not None:
         extra = "" if estimate.state is PoseState.PREDICTED else f" ({support}{so_far})"
@@ -64,7 +64,7 @@ def estimate_in_short(estimate: PoseEstimate) -> str:
     >>> estimate_in_short(lost)
     'lost, 20/100 explained'
     """
-    support = f"{estimate.best_rank}/{estimate.readings}"
+    support = f"{estimate.best_rank or 'too few'}/{estimate.readings}"
     if estimate.best is not None:
         return f"{estimate.state} ({estimate.best.x_m:.2f}, {estimate.best.y_m:.2f}) m"
     if estimate.regions:

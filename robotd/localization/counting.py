@@ -21,13 +21,16 @@ from robotd.localization.search import best_poses
 _FEW_HEADINGS = 32
 """So many are counted as the readings come: 256 x 256 cells then take 10 MB."""
 
+_POSES_MAX = 1 << 15
+"""More answers than this are none; a place that is one has some hundred."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
     """The poses of high rank."""
 
     best_rank: int
-    """The greatest there is (the paper's kappa)."""
+    """The greatest there is (the paper's kappa); 0 if it is less than what was asked for: that is sooner known."""
     poses: NDArray[np.intp]
     """``intp[n, 3]``, ``(heading, row, col)``, ascending; none if the best explains too few readings, or if there are
     more of greatest rank than can be told."""
@@ -78,7 +81,7 @@ class Count:
     def _counted(self, ranks: RankGrid, slack: int, least_rank: int) -> Found:
         best_rank = ranks.best_rank
         if best_rank < max(1, least_rank):
-            return _none(best_rank)
+            return NOTHING
         poses = ranks.cells_of_rank(max(1, best_rank - slack))
         return Found(best_rank, poses, ranks.rank_at(poses))
 
@@ -86,26 +89,21 @@ class Count:
         prior = None if self._within is None else self._within.disk(self._map.ternary.spec)
         numbers, headings_rad = numbers_of(self.readings), np.array(self.headings_rad)
 
-        def search(slack: int, least_rank: int) -> Found:
-            found = best_poses(
-                self._map.searched,
-                numbers,
-                headings_rad,
-                slack=slack,
-                least_rank=max(1, least_rank),
-                prior=prior,
-                threads=self._threads,
-            )
-            is_all = found.least_rank <= max(1, found.best_rank - slack)
-            return Found(found.best_rank, found.poses.astype(np.intp), found.ranks, is_all)
-
-        found = search(slack, least_rank)
-        return found if found.best_rank else _none(search(0, 1).best_rank)
-
-
-def _none(best_rank: int) -> Found:
-    return Found(best_rank, np.zeros((0, 3), np.intp), np.zeros(0, np.uint16))
+        found = best_poses(
+            self._map.searched,
+            numbers,
+            headings_rad,
+            slack=slack,
+            least_rank=max(1, least_rank),
+            prior=prior,
+            limit=_POSES_MAX,
+            threads=self._threads,
+        )
+        if found.best_rank == 0:
+            return NOTHING
+        is_all = found.least_rank <= max(1, found.best_rank - slack)
+        return Found(found.best_rank, found.poses.astype(np.intp), found.ranks, is_all)
 
 
-NOTHING = _none(0)
-"""Before there are enough readings."""
+NOTHING = Found(0, np.zeros((0, 3), np.intp), np.zeros(0, np.uint16))
+"""No pose explains as many readings as were asked for."""

@@ -97,7 +97,7 @@ class PoseEstimate:
     regions: tuple[Region, ...]
     """The answers that remain, best first; one when ``localized``, none when ``lost`` or ``predicted``."""
     best_rank: int
-    """Readings explained at the best cells (the paper's kappa)."""
+    """Readings explained at the best cells (the paper's kappa); 0 if no pose explains enough to be an answer."""
     readings: int
     """Readings it is built from (the paper's m)."""
     final: bool

@@ -19,8 +19,8 @@ class LocalizationSettings:
     """The paper's eps: how far an obstacle on the map may lie from the head of a reading."""
     heading_error_rad: float = 0.0175
     """How far the heading that odometry gives may be off: headings up to so far away are tried too."""
-    heading_step_rad: float = 0.00875
-    """Step between the headings that are tried."""
+    heading_step_rad: float = 0.00873
+    """Step between the headings that are tried; half a degree, as the beams of many scanners lie."""
     localized_share: float = 0.5
     """Share of the readings that the best pose must explain; below it the robot is lost."""
     rival_share: float = 0.15

@@ -93,10 +93,10 @@ async def _begin_map(context: MissionContext, mission: MapMission, report: Repor
 
 def describe(estimate: PoseEstimate) -> str:
     """Return an estimate in one line for people."""
-    share = f"{estimate.best_rank} of {estimate.readings} readings"
+    share = f"{estimate.best_rank or 'too few'} of {estimate.readings} readings"
     if estimate.best is not None:
         return f"{estimate.state} at {pose_text(estimate.best)}: {share}"
     if not estimate.regions:
-        return f"{estimate.state}: no pose explains more than {share}"
+        return f"{estimate.state}: no pose is believed; the best explain {share}"
     regions = len(estimate.regions) + estimate.regions_left_out
     return f"{estimate.state}: {regions} regions explain up to {share}"

@@ -81,7 +81,7 @@ def _localize_at(parts: Rig, console: Console, number: int, probe_m: tuple[float
     error = "no unique pose" if trial.error_m is None else f"{1000 * trial.error_m:.0f} mm off"
     console.print(
         f"  {number:3} at ({trial.truth.x_m:7.2f}, {trial.truth.y_m:7.2f}) m: {estimate.state}, {error},"
-        f" {estimate.best_rank} of {estimate.readings} readings, {len(estimate.regions)} regions"
+        f" {estimate.best_rank or 'too few'} of {estimate.readings} readings, {len(estimate.regions)} regions"
     )
     return trial
 

@@ -103,7 +103,7 @@ def print_trials(console: Console, trials: list[Trial]) -> None:
             "-" if best is None else f"{best.x_m:.3f}, {best.y_m:.3f}",
             "-" if error_m is None else f"{1000 * error_m:.0f}",
             heading,
-            f"{trial.estimate.best_rank} / {trial.estimate.readings}",
+            f"{trial.estimate.best_rank or 'too few'} / {trial.estimate.readings}",
             str(len(trial.estimate.regions)),
             trial.estimate.state.value,
         )

@@ -30,7 +30,8 @@ def draw_failures(directory: Path, report: LogReport) -> None:
 def _map(title: str, report: LogReport, case: Case) -> Axes:
     estimate, spec, cells = case.estimate, report.grid.spec, report.grid.cells
     off = "" if case.error_m is None else f", {case.error_m:.2f} m off"
-    note = f"{estimate.best_rank} of {estimate.readings} readings explained, {len(estimate.regions)} regions{off}"
+    share = f"{estimate.best_rank or 'too few'} of {estimate.readings} readings explained"
+    note = f"{share}, {len(estimate.regions)} regions{off}"
     axes = paper(title, known_box(spec, cells), note)
     evidence(axes, spec, cells, opacity=0.6)
     return axes

@@ -1,7 +1,6 @@
 """Counted as they come or searched when asked: the same poses, with the same ranks."""
 
 import math
-from functools import partial
 
 import numpy as np
 import pytest
@@ -17,7 +16,6 @@ from robotd.localization.area import Area
 from robotd.localization.counting import Count
 from robotd.localization.rank import even_headings
 from robotd.localization.ready_map import ReadyMap
-from robotd.localization.search import best_poses
 from robotd.localization.settings import LocalizationSettings
 
 SPEC = GridSpec(0.1, -0.5, 0.3, (14, 17))
@@ -80,8 +78,7 @@ def test_a_reading_that_measured_nothing_is_refused_either_way() -> None:
 
 
 def test_more_poses_than_can_be_told_are_said_to_be_not_all(monkeypatch: pytest.MonkeyPatch) -> None:
-    few = partial(best_poses, limit=10)
-    monkeypatch.setattr("robotd.localization.counting.best_poses", few)
+    monkeypatch.setattr("robotd.localization.counting._POSES_MAX", 10)
     count = Count(ready(np.zeros(SPEC.shape, np.uint8)), even_headings(99), None, threads=1)
     count.add(RangeReading(0, 0.0, ReadingStatus.MISS, 0.3))
     found = count.best(0, 1)
