@@ -12,9 +12,10 @@ along a wall no reading can tell: ``map_error_m`` is added for that. A direction
 """
 
 import enum
+import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,7 +83,15 @@ class PoseBox:
 
     def begun_at(self, start: Pose2) -> "PoseBox":
         """Return the same box with another start."""
-        return replace(self, start=start)
+        return PoseBox(
+            start,
+            self.x_min_m,
+            self.x_max_m,
+            self.y_min_m,
+            self.y_max_m,
+            self.heading_min_rad,
+            self.heading_max_rad,
+        )
 
     @classmethod
     def around(cls, start: Pose2, half_m: float, half_rad: float) -> "PoseBox":
@@ -101,23 +110,25 @@ class PoseBox:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Heads:
-    """Where the readings of a sweep end, in the robot frame."""
+    """Where the readings of a sweep end, in the robot frame, and which way they go."""
 
     at_cells: NDArray[np.float64]
     """``float64[hits, 2]``: x, y."""
     is_hit: NDArray[np.bool_]
     """``bool[m]``: which readings these are; misses have no head."""
+    beams: NDArray[np.float64]
+    """``float64[m, 4]``: x, y of the start [cells], cosine and sine of the bearing; of hits and misses."""
 
     @classmethod
     def of(cls, readings: NDArray[np.float64], resolution_m: float) -> "Heads":
         """Take them from ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`."""
-        is_hit = readings[:, 4] == 0.0
-        hits = readings if is_hit.all() else readings[is_hit]
-        at_cells = np.empty((len(hits), 2))
-        at_cells[:, 0] = hits[:, 2] + hits[:, 1] * np.cos(hits[:, 0])
-        at_cells[:, 1] = hits[:, 3] + hits[:, 1] * np.sin(hits[:, 0])
-        at_cells /= resolution_m
-        return cls(at_cells, is_hit)
+        bearing_rad, range_, x, y, is_miss = columns = np.ascontiguousarray(readings.T)
+        columns[1:4] /= resolution_m
+        cosine, sine, is_hit = np.cos(bearing_rad), np.sin(bearing_rad), is_miss == 0.0
+        beams, at_cells = np.empty((len(readings), 4)), np.empty((len(readings), 2))
+        beams[:, 0], beams[:, 1], beams[:, 2], beams[:, 3] = x, y, cosine, sine
+        at_cells[:, 0], at_cells[:, 1] = x + range_ * cosine, y + range_ * sine
+        return cls(at_cells if is_hit.all() else at_cells[is_hit], is_hit, beams)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,7 +191,7 @@ def refine_heads(
         _in_cells(boxes, spec),
         settings.outlier_m / spec.resolution_m,
     )
-    return _in_metres(fits, heads.is_hit, spec, settings)
+    return _in_metres(fits, heads, _Units.of(spec, settings))
 
 
 def expected_ranges(
@@ -194,41 +205,68 @@ def expected_ranges(
         poses: ``float64[n, 3]``: x, y [m] and heading [rad], map frame.
         blocked_by: how many blocking cells a beam must meet to be stopped, 1 or 2.
     """
-    spec = field.spec
-    beams, at = np.empty((len(readings), 4)), np.empty((len(poses), 4))
-    beams[:, :2] = readings[:, 2:4] / spec.resolution_m
-    beams[:, 2], beams[:, 3] = np.cos(readings[:, 0]), np.sin(readings[:, 0])
+    return ranges_along(field, Heads.of(readings, field.spec.resolution_m).beams, poses, blocked_by)
+
+
+def ranges_along(
+    field: WallField, beams: NDArray[np.float64], poses: NDArray[np.float64], blocked_by: int
+) -> ExpectedRanges:
+    """Do as :func:`expected_ranges` with the beams of :class:`Heads`."""
+    spec, at = field.spec, np.empty((len(poses), 4))
     at[:, :2] = spec.positions_at(poses[:, :2])[:, ::-1]
-    at[:, 2], at[:, 3] = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+    np.cos(poses[:, 2], at[:, 2])
+    np.sin(poses[:, 2], at[:, 3])
     ways, stops = kernels.cast_beams(field.skips, beams, at, blocked_by)
-    return ExpectedRanges(ways * spec.resolution_m, stops == ENDS)
+    ways *= spec.resolution_m
+    return ExpectedRanges(ways, stops == ENDS)
 
 
 def _in_cells(boxes: Sequence[PoseBox], spec: GridSpec) -> NDArray[np.float64]:
     """Return boxes as the kernel takes them, ``float64[n, 9]``."""
+    x_m, y_m, size_m = spec.origin_x_m, spec.origin_y_m, spec.resolution_m
     rows = [
         (
-            *(box.start.x_m, box.start.y_m, box.start.heading_rad),
-            *(box.x_min_m, box.y_min_m, box.heading_min_rad),
-            *(box.x_max_m, box.y_max_m, box.heading_max_rad),
+            *((box.start.x_m - x_m) / size_m, (box.start.y_m - y_m) / size_m, box.start.heading_rad),
+            *((box.x_min_m - x_m) / size_m, (box.y_min_m - y_m) / size_m, box.heading_min_rad),
+            *((box.x_max_m - x_m) / size_m, (box.y_max_m - y_m) / size_m, box.heading_max_rad),
         )
         for box in boxes
     ]
-    cells = np.array(rows, np.float64).reshape(-1, 3, 3)
-    cells[:, :, 0] = (cells[:, :, 0] - spec.origin_x_m) / spec.resolution_m
-    cells[:, :, 1] = (cells[:, :, 1] - spec.origin_y_m) / spec.resolution_m
-    return cells.reshape(-1, 9)
+    return np.array(rows, np.float64).reshape(-1, 9)
 
 
-def _in_metres(fits: Fits, is_hit: NDArray[np.bool_], spec: GridSpec, settings: RefinementSettings) -> RefinedPoses:
-    map_error = np.array([settings.map_error_m, settings.map_error_m, settings.map_error_rad])
-    scale = np.array([spec.resolution_m, spec.resolution_m, 1.0])
-    beyond_m = np.full((len(fits.poses), len(is_hit)), math.nan)
-    beyond_m[:, is_hit] = fits.beyond * spec.resolution_m
+@dataclass(frozen=True, slots=True, eq=False)
+class _Units:
+    """What takes a pose in cells to one in metres, and its covariance; made once for a map."""
+
+    resolution_m: float
+    scale: NDArray[np.float64]
+    """``float64[3]``."""
+    origin: NDArray[np.float64]
+    """``float64[3]``."""
+    squared: NDArray[np.float64]
+    """``float64[3, 3]``: the scale of a covariance."""
+    map_error: NDArray[np.float64]
+    """``float64[3, 3]``: what the map adds to it."""
+
+    @staticmethod
+    @functools.lru_cache(maxsize=8)
+    def of(spec: GridSpec, settings: RefinementSettings) -> "_Units":
+        scale = np.array([spec.resolution_m, spec.resolution_m, 1.0])
+        origin = np.array([spec.origin_x_m, spec.origin_y_m, 0.0])
+        map_error = np.array([settings.map_error_m, settings.map_error_m, settings.map_error_rad])
+        return _Units(spec.resolution_m, scale, origin, scale[:, None] * scale, np.diag(map_error**2))
+
+
+def _in_metres(fits: Fits, heads: Heads, units: _Units) -> RefinedPoses:
+    beyond_m = fits.beyond * units.resolution_m
+    if len(heads.at_cells) < len(heads.is_hit):
+        of_hits, beyond_m = beyond_m, np.full((len(fits.poses), len(heads.is_hit)), math.nan)
+        beyond_m[:, heads.is_hit] = of_hits
     return RefinedPoses(
-        poses=fits.poses * scale + np.array([spec.origin_x_m, spec.origin_y_m, 0.0]),
-        covariances=fits.covariances * (scale[:, None] * scale) + np.diag(map_error * map_error),
-        residual_m=np.sqrt(fits.quality[:, 1]) * spec.resolution_m,
+        poses=fits.poses * units.scale + units.origin,
+        covariances=fits.covariances * units.squared + units.map_error,
+        residual_m=np.sqrt(fits.quality[:, 1]) * units.resolution_m,
         weight=fits.quality[:, 0],
         beyond_m=beyond_m,
     )

@@ -7,7 +7,7 @@ all. Heads know nothing of what lies on the way to them, so they may come to lie
 pose explains too few readings, or leaves too great a residual, to be settled, and rivals on the lattice are refined,
 too: the one that explains the most is the answer.
 
-With 300 readings and 0.3 m, 10 degrees that takes some 0.18 ms if it is settled at once, else 0.5 ms; counting feasible
+With 300 readings and 0.3 m, 10 degrees that takes some 0.15 ms if it is settled at once, else 0.5 ms; counting feasible
 poses in the same box takes 0.3 ms, and its best cell has to be refined all the same.
 """
 
@@ -30,7 +30,7 @@ from robotd.localization.refinement import (
     PoseBox,
     RefinedPoses,
     RefinementSettings,
-    expected_ranges,
+    ranges_along,
     refine_heads,
 )
 
@@ -196,9 +196,9 @@ class _Search:
         boxes = [self.prior.begun_at(start) for start in starts]
         poses = refine_heads(self.field, self.heads, boxes, self.refinement)
         explained = self._explained(poses)
-        shares = explained.mean(axis=1)
-        number = int(shares.argmax())
-        return _Candidate(poses, number, float(shares[number]), explained[number])
+        counts = explained.sum(axis=1)
+        number = int(counts.argmax())
+        return _Candidate(poses, number, int(counts[number]) / len(self.readings), explained[number])
 
     def _lattice(self) -> Lattice:
         spec, prior, start = self.field.spec, self.prior, self.prior.start
@@ -215,9 +215,9 @@ class _Search:
     def _explained(self, poses: RefinedPoses) -> NDArray[np.bool_]:
         """Return which readings each pose explains, ``bool[n, m]``."""
         settings = self.settings
-        ways_m = expected_ranges(self.field, self.readings, poses.poses, settings.blocked_by).ranges_m
-        unblocked = ways_m >= self.readings[:, 1] - settings.unblocked_within_m
-        explained: NDArray[np.bool_] = unblocked & ~(np.abs(poses.beyond_m) > settings.explained_within_m)
+        ways_m = ranges_along(self.field, self.heads.beams, poses.poses, settings.blocked_by).ranges_m
+        explained: NDArray[np.bool_] = ways_m >= self.readings[:, 1] - settings.unblocked_within_m
+        explained &= ~(np.abs(poses.beyond_m) > settings.explained_within_m)
         return explained
 
 
