@@ -14,6 +14,11 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from robotd.core.clock import VirtualClockLoop
+from tests.property_cases import (  # noqa: F401  # hooks: pytest finds them here
+    pytest_runtest_call,
+    pytest_runtest_logreport,
+    pytest_terminal_summary,
+)
 
 settings.register_profile(
     "house",
