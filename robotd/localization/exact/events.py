@@ -30,8 +30,10 @@ class Piece:
         highs = [end.y_float + end.y_error for end in (border.start, border.end)]
         if isinstance(border.support, HalfCircle):
             (y, y_error), reach = approximation(border.support.y), math.sqrt(sum(approximation(border.support.r2)))
-            lows.append(y - y_error - (0.0 if border.support.upper else reach))
-            highs.append(y + y_error + (reach if border.support.upper else 0.0))
+            if border.support.upper:
+                highs.append(y + y_error + reach)
+            else:
+                lows.append(y - y_error - reach)
         slack = _MARGIN * (1.0 + max(*map(abs, lows), *map(abs, highs)))
         return cls(border, bit, min(lows) - slack, max(highs) + slack)
 

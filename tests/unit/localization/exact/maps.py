@@ -18,14 +18,27 @@ SHAPES = [
     [(0, 0), (3, 0), (3, 3), (2, 3), (2, 1), (1, 1), (1, 3), (0, 3)],
     [(0, 0), (4, 3), (1, 7)],
 ]
+FRAME = [(0, 0), (6, 0), (6, 6), (0, 6)]
+HOLES = [
+    [[(1, 1), (5, 1), (5, 5), (1, 5)]],
+    [[(0, 0), (3, 1), (1, 3)]],
+    [[(0, 3), (2, 2), (2, 4)], [(2, 2), (4, 1), (4, 3)]],
+    [[(1, 1), (3, 1), (3, 3), (1, 3)], [(3, 3), (5, 3), (5, 5), (3, 5)]],
+]
+"""Holes of a frame: apart from it, in its corner, on its side and in each other's corners."""
 
 
 @st.composite
 def polygons(draw: st.DrawFn) -> Polygon:
     dx, dy = draw(st.integers(0, 5)), draw(st.integers(0, 5))
-    flip = draw(st.booleans())
-    shape = draw(st.sampled_from(SHAPES))
-    return Polygon(ring_of([(y + dx, x + dy) if flip else (x + dx, y + dy) for x, y in shape], draw(arithmetics)))
+    flip, arithmetic = draw(st.booleans()), draw(arithmetics)
+
+    def placed(shape: list[tuple[int, int]]) -> Ring:
+        return ring_of([(y + dx, x + dy) if flip else (x + dx, y + dy) for x, y in shape], arithmetic)
+
+    if draw(st.integers(0, 3)):
+        return Polygon(placed(draw(st.sampled_from(SHAPES))))
+    return Polygon(placed(FRAME), tuple(map(placed, draw(st.sampled_from(HOLES)))))
 
 
 def inside(arithmetic: Arithmetic) -> Ring:

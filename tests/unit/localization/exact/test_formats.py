@@ -19,6 +19,7 @@ from robotd.localization.exact.rationals import rational
 from robotd.localization.exact.readings import beams_of
 from robotd.localization.exact.surds import sqrt
 from robotd.localization.exact.sweep import arrange
+from robotd.sim.world import WORLDS_DIR, load_world, world_names
 
 GEOJSON = """{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
 {"type": "MultiPolygon", "coordinates": [[[[0,0],[3,0],[3,3],[0,3],[0,0]],[[1,1],[1,2.1],[2,2.1],[2,1],[1,1]]],
@@ -97,6 +98,14 @@ def test_a_simulated_world_is_a_room_with_obstacles() -> None:
     assert not contains(obstacles, Point(rational("1.2"), rational("1.2")))
     assert contains(obstacles, Point(rational(-100), rational(3)))
     assert contains(obstacles, Point(rational("6.5"), rational(4)))
+
+
+@pytest.mark.parametrize("name", world_names())
+def test_every_simulated_world_is_a_map(name: str) -> None:
+    start = load_world(name).start
+    obstacles = map_of_toml((WORLDS_DIR / f"{name}.toml").read_text(encoding="utf-8"))
+    assert obstacles.far
+    assert not contains(obstacles, Point(rational(start.x_m), rational(start.y_m)))
 
 
 @settings(max_examples=40, deadline=None)

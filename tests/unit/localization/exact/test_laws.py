@@ -13,7 +13,7 @@ from robotd.localization.exact.locate import contains
 from robotd.localization.exact.minkowski import grown
 from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.points import Point
-from robotd.localization.exact.polygons import Polygon, edge_count, ring_of, solid
+from robotd.localization.exact.polygons import Polygon, Ring, edge_count, ring_of, solid
 from robotd.localization.exact.rationals import DEFAULT, Arithmetic, Rational, rational
 from robotd.localization.exact.regions import regions
 from robotd.localization.exact.smallest_error import smallest_error
@@ -76,12 +76,15 @@ def test_the_choice_of_axes_does_not_matter(
 
 
 def with_split_edges(polygon: Polygon) -> Polygon:
-    ring = polygon.outer
+    return Polygon(split(polygon.outer), tuple(map(split, polygon.holes)))
+
+
+def split(ring: Ring) -> Ring:
     halves = [
         Point((one.x + other.x) / 2, (one.y + other.y) / 2)
         for one, other in zip(ring, (*ring[1:], ring[0]), strict=True)
     ]
-    return Polygon(tuple(point for pair in zip(ring, halves, strict=True) for point in pair))
+    return tuple(point for pair in zip(ring, halves, strict=True) for point in pair)
 
 
 @settings(max_examples=25, deadline=None)
