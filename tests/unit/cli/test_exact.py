@@ -1,6 +1,7 @@
 """``robotctl exact`` answers without a daemon, in text, in JSON and in a picture."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -56,6 +57,22 @@ def test_with_an_error_radius_it_is_an_area_which_is_drawn(
     pixels = imread(picture)
     blue = (pixels[..., 2] > 0.6) & (pixels[..., 0] < 0.2)
     assert 10 < blue.sum() < 3000  # 0.2 m by 0.2 m of 8 m by 6 m, or a dot
+
+
+def test_the_example_of_the_quick_start_is_answered_as_it_says(
+    files: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = (Path(__file__).parents[3] / "docs" / "quickstart.md").read_text(encoding="utf-8")
+    for file, language in zip(files, ("toml", "csv"), strict=True):
+        (example,) = re.findall(rf"```{language}\n(outline_m.*?|bearing_deg.*?)```", page, re.DOTALL)
+        Path(file).write_text(example, encoding="utf-8")
+    regions = []
+    for arguments in (["--eps-m", "0"], []):
+        assert main(["exact", *files, *arguments, "--json"]) == 0
+        (region,) = json.loads(capsys.readouterr().out)["regions"]
+        regions.append((region["rank"], region["kind"], region["box_m"]))
+    assert regions[0] == (4, "point", [1.0, 2.0, 1.0, 2.0])
+    assert regions[1] == (4, "area", pytest.approx([0.95, 1.95, 1.05, 2.05]))
 
 
 def test_an_unknown_heading_is_found(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
