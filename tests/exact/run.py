@@ -72,7 +72,7 @@ def _measured(out: Path) -> list[str]:
     lines += _table("Lemma 2 (ii), fig. 13", ("m", "crossings", "crossings / m^2"), crossings)
     names = ("n", "m", "borders of all FP(M, z)", "borders / m n^2", "crossings", "crossings / m^2 n^2")
     both = ((*row[:3], f"{row[3]:.4f}", row[4], f"{row[5]:.5f}") for row in growth.lemma_2())
-    return lines + _table("Lemma 2, fig. 13's readings on fig. 12's map", names, both)
+    return lines + _table("Lemmas 1 and 2, fig. 13's readings on fig. 12's map", names, both)
 
 
 def _laboratory(out: Path) -> list[str]:
