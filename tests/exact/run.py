@@ -22,9 +22,9 @@ _READ = """*N* are the borders that the sweeps are given, *s* the points where b
 Predicates are all comparisons of points, sides of curves, orders of curves and intersections that were asked, counted:
 over (N + s) log N they must not grow. The promise is the theorem's: (n + s) log n for one reading, (m n^2 + s) log m n
 for an overlay of several; n^2 is what D and E of one reading may have at worst, and on maps of scattered obstacles they
-have far less, so time over it falls with n. It may rise with m: the part of it that is spent on s, which grows with m^2,
-is small beside m n^2 here, and only where s outweighs that would the two grow alike. The time of one predicate is not the same throughout: it rises by up to a
-half from the smallest sweeps to the largest."""
+have far less, so time over it falls with n. It may rise with m: what is spent on s grows with m^2, and here s is small
+beside m n^2, so it does not yet show in the promise. The time of one predicate is not the same throughout: it rises by
+up to a half from the smallest sweeps to the largest."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
