@@ -5,6 +5,7 @@ as they come (:mod:`.rank`), and asking costs next to nothing. Where it is not, 
 gigabytes: then the readings are kept, and asking searches (:mod:`.search`).
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -21,7 +22,7 @@ from robotd.localization.search import best_poses
 _FEW_HEADINGS = 32
 """So many are counted as the readings come: 256 x 256 cells then take 10 MB."""
 
-_POSES_MAX = 1 << 15
+POSES_MAX = 1 << 15
 """More answers than this are none; a place that is one has some hundred."""
 
 
@@ -72,6 +73,11 @@ class Count:
             numbers_of(readings)
         self.readings.extend(readings)
 
+    def answers(self) -> Found:
+        """Return the poses that explain most readings, and all that come as near to them as the settings say."""
+        settings, readings = self._map.settings, len(self.readings)
+        return self.best(math.ceil(settings.rival_share * readings), math.ceil(settings.localized_share * readings))
+
     def best(self, slack: int, least_rank: int) -> Found:
         """Return the poses that explain ``slack`` readings fewer than the best, if that explains ``least_rank``."""
         return (
@@ -96,7 +102,7 @@ class Count:
             slack=slack,
             least_rank=max(1, least_rank),
             prior=prior,
-            limit=_POSES_MAX,
+            limit=POSES_MAX,
             threads=self._threads,
         )
         if found.best_rank == 0:

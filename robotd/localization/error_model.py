@@ -5,6 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+_NEVER = 600.0
+"""Less than exp(-this) is no number that can be divided by."""
+
 
 @dataclass(frozen=True, slots=True)
 class ErrorModel:
@@ -48,5 +51,5 @@ class ErrorModel:
 
     def anywhere(self, range_m: NDArray[np.float64], is_hit: NDArray[np.bool_]) -> NDArray[np.float64]:
         """Return how likely readings are where nobody has looked: for hits the density [1/m], for misses the chance."""
-        passed = np.exp(-self.unknown_per_m * range_m)
+        passed = np.exp(-np.minimum(self.unknown_per_m * range_m, _NEVER))
         return np.where(is_hit, self.unknown_per_m * passed, passed)

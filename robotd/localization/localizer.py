@@ -22,9 +22,12 @@ from robotd.localization.judgement import Judgement
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.regions import pieces_of
 from robotd.localization.second_look import SecondLook, second_look
+from robotd.localization.unexcluded import Unexcluded
 
 _ALIKE_M, _ALIKE_RAD = 0.1, 0.03
 """So much aside and so much turned are as far from a place."""
+_UNIQUE_M = 1.0
+"""In the conservative mode, a region that is longer is no one place."""
 
 
 class Localizer:
@@ -53,7 +56,12 @@ class Localizer:
             headings_rad: the robot's possible headings in the map frame, ascending; one if odometry knows it.
             within: where on the map it is, if that is known; then no other place is an answer.
         """
-        self._count = Count(self._map, headings_rad, within, threads=self._threads)
+        sure, share, threads = self._map.sure, self._settings.outlier_share, self._threads
+        self._count: Count | Unexcluded
+        if sure is None:
+            self._count = Count(self._map, headings_rad, within, threads=threads)
+        else:
+            self._count = Unexcluded(sure, headings_rad, within, outlier_share=share, threads=threads)
 
     def add(self, *readings: RangeReading) -> None:
         """Count measured readings, hits or misses; many at once cost less than one after the other.
@@ -70,10 +78,11 @@ class Localizer:
             time_ns: when the robot was there.
             final: whether the sweep is whole.
         """
-        found, numbers = self._find(), numbers_of(self._count.readings)
+        enough, numbers = len(self._count.readings) >= self._settings.readings_min, numbers_of(self._count.readings)
+        found = self._count.answers() if enough else NOTHING
         poses = self._in_metres(found.poses)
         look = second_look(self._map.likelihood, numbers, poses, found.ranks, self._judgement.second_look)
-        state = look.state if found.is_all else PoseState.AMBIGUOUS
+        state = self._state(found, look)
         regions, left_out = self._regions(found, poses, look, state, numbers)
         return PoseEstimate(
             time_ns=time_ns,
@@ -91,12 +100,22 @@ class Localizer:
             bearings_rad=tuple(reading.bearing_rad for reading in self._count.readings),
         )
 
-    def _find(self) -> Found:
-        settings, readings = self._settings, len(self._count.readings)
-        if readings < settings.readings_min:
-            return NOTHING
-        slack, least_rank = settings.rival_share * readings, settings.localized_share * readings
-        return self._count.best(math.ceil(slack), math.ceil(least_rank))
+    def _state(self, found: Found, look: SecondLook) -> PoseState:
+        """Return what may be claimed; in the conservative mode belief excludes nothing, only proof does."""
+        if not found.is_all:
+            return PoseState.AMBIGUOUS
+        if self._map.sure is None:
+            return look.state
+        if len(found.poses) == 0:
+            return PoseState.LOST
+        is_one = self._is_one_place(found.poses)
+        return PoseState.LOCALIZED if is_one else PoseState.AMBIGUOUS
+
+    def _is_one_place(self, poses: NDArray[np.intp]) -> bool:
+        """Whether poses are all connected, and no corridor or room full of them."""
+        pieces = pieces_of(poses, np.zeros(len(poses), np.uint16), self._count.headings_rad, 1)
+        cells = _UNIQUE_M / self._map.ternary.spec.resolution_m
+        return pieces.left_out == 0 and float(np.hypot(*np.ptp(poses[:, 1:], axis=0))) <= cells
 
     def _in_metres(self, poses: NDArray[np.intp]) -> NDArray[np.float64]:
         """Return poses ``(heading, row, col)`` as x, y [m] and heading [rad]."""

@@ -6,6 +6,8 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
+from robotd.localization.conservative import ErrorBounds, SureObstacles
+from robotd.localization.conservative_rank import ConservativeMap
 from robotd.localization.error_model import ErrorModel
 from robotd.localization.likelihood import Likelihood
 from robotd.localization.obstacles import Obstacles, UnknownCells
@@ -29,6 +31,8 @@ class ReadyMap:
     """For refinement."""
     likelihood: Likelihood
     """For the second look."""
+    sure: ConservativeMap | None
+    """For the conservative mode; None if it is not asked for."""
 
     @classmethod
     def of(
@@ -42,7 +46,7 @@ class ReadyMap:
         searched = SearchMap.of(obstacles, ternary.spec, error_radius_cells)
         walls = WallField.of(ternary.spec, ternary.occupied, obstacles.blocking)
         likelihood = Likelihood.of(grid.spec, grid.cells, error_model or ErrorModel())
-        return cls(ternary, settings, prepared, searched, walls, likelihood)
+        return cls(ternary, settings, prepared, searched, walls, likelihood, _sure(ternary, settings))
 
     def updated(self, grid: OccupancyGrid, changed: CellWindow) -> "ReadyMap":
         """Return the map of a grid that differs from the one this is of in a window alone.
@@ -58,9 +62,17 @@ class ReadyMap:
         radius_cells = int(self.prepared.error_radius_cells)
         searched = self.searched.updated(prepared.obstacles, changed.grown(radius_cells, ternary.spec.shape).slices)
         likelihood = Likelihood.of(grid.spec, grid.cells, self.likelihood.model)
-        return ReadyMap(ternary, self.settings, prepared, searched, walls, likelihood)
+        sure = _sure(ternary, self.settings)
+        return ReadyMap(ternary, self.settings, prepared, searched, walls, likelihood, sure)
 
     def _prepared(self, ternary: TernaryMap, unknown: UnknownCells, changed: CellWindow) -> PreparedMap:
         radius_cells = self.prepared.error_radius_cells
         obstacles = self.prepared.obstacles.updated(ternary, unknown, radius_cells, changed)
         return self.prepared.updated(obstacles, changed.grown(int(radius_cells), ternary.spec.shape))
+
+
+def _sure(ternary: TernaryMap, settings: LocalizationSettings) -> ConservativeMap | None:
+    if not settings.conservative:
+        return None
+    bounds = ErrorBounds(settings.range_error_m, settings.heading_step_rad / 2)
+    return ConservativeMap.of(SureObstacles.of_map(ternary), ternary.spec, bounds)

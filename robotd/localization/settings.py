@@ -35,22 +35,32 @@ class LocalizationSettings:
     """How many obstacle cells a beam must meet before its end to be blocked: 1 as in the paper, or 2, so that a beam
     that grazes along a wall is not."""
 
+    conservative: bool = False
+    """Whether no place is excluded but by proof: the true one is then always among the answers, as long as ranges err
+    by no more than ``range_error_m``, the heading by no more than half a step from one that is tried, and cells that
+    were seen are right. Slower, and more often ambiguous."""
+    outlier_share: float = 0.1
+    """In the conservative mode, so many of the readings may err by more."""
+
     def __post_init__(self) -> None:
         """Refuse impossible values."""
-        if not self.range_error_m >= 0.0:
-            raise ValueError(f"range_error_m must not be negative, got {self.range_error_m}")
-        if not self.heading_error_rad >= 0.0:
-            raise ValueError(f"heading_error_rad must not be negative, got {self.heading_error_rad}")
+        for name, least in (
+            ("range_error_m", 0.0),
+            ("heading_error_rad", 0.0),
+            ("readings_min", 1),
+            ("regions_max", 1),
+        ):
+            if not getattr(self, name) >= least:
+                raise ValueError(f"{name} must be at least {least}, got {getattr(self, name)}")
+        for name in ("rival_share", "outlier_share"):
+            if not 0.0 <= getattr(self, name) < 1.0:
+                raise ValueError(f"{name} must lie in [0, 1), got {getattr(self, name)}")
         if not self.heading_step_rad > 0.0:
             raise ValueError(f"heading_step_rad must be positive, got {self.heading_step_rad}")
         if not 0.0 < self.localized_share <= 1.0:
             raise ValueError(f"localized_share must lie in (0, 1], got {self.localized_share}")
-        if not 0.0 <= self.rival_share < 1.0:
-            raise ValueError(f"rival_share must lie in [0, 1), got {self.rival_share}")
-        if self.readings_min < 1:
-            raise ValueError(f"readings_min must be at least 1, got {self.readings_min}")
-        if self.regions_max < 1:
-            raise ValueError(f"regions_max must be at least 1, got {self.regions_max}")
+        if self.conservative and self.heading_step_rad > math.pi / 4:
+            raise ValueError(f"heading_step_rad must be at most pi / 4 where conservative, got {self.heading_step_rad}")
         if self.blocked_by not in {1, 2}:
             raise ValueError(f"blocked_by must be 1 or 2, got {self.blocked_by}")
 

@@ -78,7 +78,7 @@ def test_a_reading_that_measured_nothing_is_refused_either_way() -> None:
 
 
 def test_more_poses_than_can_be_told_are_said_to_be_not_all(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robotd.localization.counting._POSES_MAX", 10)
+    monkeypatch.setattr("robotd.localization.counting.POSES_MAX", 10)
     count = Count(ready(np.zeros(SPEC.shape, np.uint8)), even_headings(99), None, threads=1)
     count.add(RangeReading(0, 0.0, ReadingStatus.MISS, 0.3))
     found = count.best(0, 1)

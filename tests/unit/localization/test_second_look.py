@@ -267,3 +267,9 @@ def test_one_of_two_rooms_that_exist_twice_is_seldom_taken_for_sure() -> None:
         result = look(TWINS, scan(TWINS.boxes, here, rng, 0.015, 0.02), everywhere(mapped(TWINS), here, others))
         sure += result.state is PoseState.LOCALIZED
     assert sure <= 1
+
+
+def test_ranges_of_kilometres_are_weighed_like_others() -> None:
+    far = [RangeReading(0, 0.1 * k, ReadingStatus.OK, 10_000.0) for k in range(30)]
+    result = look(PLAIN, far, everywhere(mapped(PLAIN), HERE))
+    assert result.state is PoseState.LOST

@@ -1,0 +1,105 @@
+"""The poses that one stop's readings do not exclude: what the conservative mode asks, after any reading.
+
+Unlike :mod:`.counting`, which asks for the best, this asks for all poses whose rank is no less than the true one's can
+be (:mod:`.conservative`): all readings but those that may break their bounds.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from robotd.core.reading import RangeReading
+from robotd.grid.readings import numbers_of
+from robotd.localization.area import Area
+from robotd.localization.conservative_rank import ConservativeMap, ConservativeRankGrid
+from robotd.localization.counting import NOTHING, POSES_MAX, Found
+from robotd.localization.rank import bits_of
+
+_FEW_HEADINGS = 32
+"""So many are counted as the readings come; more are counted when somebody asks, in batches."""
+_MEMORY_BYTES = 1 << 28
+_HALF_DIAGONAL = math.sqrt(0.5)
+
+
+class Unexcluded:
+    """The readings of one stop against all its poses."""
+
+    def __init__(
+        self,
+        the_map: ConservativeMap,
+        headings_rad: Sequence[float],
+        within: Area | None,
+        *,
+        outlier_share: float,
+        threads: int,
+    ) -> None:
+        """Begin with no readings.
+
+        Args:
+            the_map: the map.
+            headings_rad: the headings to try, ascending; the true one lies within the map's bound of one of them.
+            within: where the robot is; None is anywhere.
+            outlier_share: of the readings, these may break their bounds.
+            threads: how many threads may share the work; no answer depends on it.
+        """
+        self.headings_rad = tuple(headings_rad)
+        self.readings: list[RangeReading] = []
+        self._map = the_map
+        self._within = within
+        self._outlier_share = outlier_share
+        self._threads = threads
+        self._kept = self._grid(self.headings_rad) if len(self.headings_rad) <= _FEW_HEADINGS else None
+
+    def add(self, *readings: RangeReading) -> None:
+        """Take measured readings.
+
+        Raises:
+            ValueError: a reading measured nothing; then none is taken.
+        """
+        if self._kept is not None:
+            self._kept.add(*readings)
+        else:
+            numbers_of(readings)
+        self.readings.extend(readings)
+
+    def answers(self) -> Found:
+        """Return all poses that are not excluded.
+
+        O(headings x readings x cells), and a multiple of what :class:`~robotd.localization.rank.RankGrid` takes.
+        """
+        least_rank = max(1, len(self.readings) - math.floor(self._outlier_share * len(self.readings)))
+        best, count, found = 0, 0, []
+        for first, ranks in self._grids():
+            best, count = max(best, ranks.best_rank), count + ranks.count_of_rank(least_rank)
+            if count > POSES_MAX:
+                return Found(best, NOTHING.poses, NOTHING.ranks, is_all=False)
+            poses = ranks.cells_of_rank(least_rank)
+            found.append((poses + np.array([first, 0, 0]), ranks.rank_at(poses)))
+        if count == 0:
+            return NOTHING
+        poses, counts = (np.concatenate(part) for part in zip(*found, strict=True))
+        return self._inside(Found(best, poses, counts))
+
+    def _grids(self) -> Iterator[tuple[int, ConservativeRankGrid]]:
+        """Yield grids that count all readings, each of some headings, and the number of its first heading."""
+        if self._kept is not None:
+            yield 0, self._kept
+            return
+        per_heading = self._map.prepared.packed.counter_bytes(1, bits_of(len(self.readings)))
+        batch = max(1, _MEMORY_BYTES // max(1, per_heading))
+        for first in range(0, len(self.headings_rad), batch):
+            ranks = self._grid(self.headings_rad[first : first + batch])
+            ranks.add(*self.readings)
+            yield first, ranks
+
+    def _grid(self, headings_rad: Sequence[float]) -> ConservativeRankGrid:
+        return ConservativeRankGrid(self._map, headings_rad, threads=self._threads)
+
+    def _inside(self, found: Found) -> Found:
+        """Leave out cells of which no point is where the robot is known to be."""
+        if self._within is None:
+            return found
+        disk = self._within.disk(self._map.spec)
+        inside = np.hypot(found.poses[:, 1] - disk.row, found.poses[:, 2] - disk.col) <= disk.radius + _HALF_DIAGONAL
+        return Found(found.best_rank, found.poses[inside], found.ranks[inside]) if inside.any() else NOTHING
