@@ -1,21 +1,46 @@
 """Compile the C where there is a compiler: kernels, firmware; everything else is in pyproject.toml."""
 
 import sys
-from typing import Any
+import tempfile
+from pathlib import Path
 
 from setuptools import setup
 from setuptools.command.build_ext import build_ext
 
 
 class BuildIfPossible(build_ext):
-    """A machine without a compiler gets the NumPy twins, and boards in Python only; it is told so."""
+    """A machine without a compiler gets the NumPy twins, and boards in Python only; where there is one, C must compile.
 
-    def build_extension(self, ext: Any) -> None:
+    What an earlier build left where this one puts its own goes first: old code must not pass for new.
+    """
+
+    def build_extensions(self) -> None:
         """Compile, or say in one line why not."""
-        try:
-            super().build_extension(ext)
-        except Exception as error:  # whatever a missing or broken compiler raises, robotd works without
-            print(f"robotd: {ext.name} is not compiled, its twin in Python will be used: {error}", file=sys.stderr)
+        if self.inplace or self.editable_mode:
+            self._forget()
+        missing = self._missing()
+        if missing is None:
+            super().build_extensions()
+            return
+        self.extensions.clear()
+        print(f"robotd: nothing is compiled, the twins in Python will be used: {missing}", file=sys.stderr)
+
+    def _forget(self) -> None:
+        for ext in self.extensions:
+            package, _, name = ext.name.rpartition(".")
+            for old in Path(*package.split(".")).glob(f"{name}.*so"):
+                old.unlink()
+
+    def _missing(self) -> str | None:
+        """Return what keeps the simplest of extensions from being compiled; None if nothing does."""
+        with tempfile.TemporaryDirectory() as directory:
+            source = Path(directory, "probe.c")
+            source.write_text("#include <Python.h>\nint probe(void) { return 0; }\n", encoding="ascii")
+            try:
+                self.compiler.compile([str(source)], output_dir=directory)
+            except Exception as error:  # whatever a missing or broken compiler raises
+                return str(error)
+        return None
 
 
 setup(

@@ -5,17 +5,21 @@ import dataclasses
 import importlib.util
 import platform
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import zmq
 from serial.tools import list_ports
 
+import robotd
 from robotd import __version__, config
 from robotd.cli.terminal import print_json, print_pairs
 from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.errors import ConfigError
 from robotd.grid import kernels
+
+_ROOT = Path(robotd.__file__).parents[1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +39,24 @@ class ConfigFound:
 
 
 @dataclass(frozen=True, slots=True)
+class CompiledFound:
+    """A library that was compiled at installation, or was not."""
+
+    module: str
+    found: bool
+    newer_source: str | None
+    """A file of its source that was changed since it was compiled; only a clone has them."""
+
+    def __str__(self) -> str:
+        """Return one line."""
+        if not self.found:
+            return "not compiled"
+        if self.newer_source is None:
+            return "compiled"
+        return f"compiled from older source than {self.newer_source}: run pip install -e . again"
+
+
+@dataclass(frozen=True, slots=True)
 class Findings:
     """Everything that ``doctor`` looks at."""
 
@@ -43,6 +65,9 @@ class Findings:
     numpy: str
     pyzmq: str
     kernels: kernels.KernelsInUse
+    compiled_kernels: CompiledFound
+    compiled_boards: CompiledFound
+    """The firmware of our own boards, for ``robotctl sim --boards c``."""
     plots: bool
     """Whether pictures can be drawn."""
     serial_ports: tuple[str, ...]
@@ -65,10 +90,21 @@ def examine() -> Findings:
         numpy=np.__version__,
         pyzmq=f"{zmq.pyzmq_version()} (libzmq {zmq.zmq_version()})",
         kernels=kernels.IN_USE,
+        compiled_kernels=_compiled("robotd.grid.kernels._native", _ROOT / "robotd/grid/kernels/c"),
+        compiled_boards=_compiled("robotd.sim.firmware._native", _ROOT / "firmware_proto/c"),
         plots=importlib.util.find_spec("matplotlib") is not None,
         serial_ports=tuple(sorted(f"{port.device} {port.description}" for port in list_ports.comports())),
         config=_config(),
     )
+
+
+def _compiled(module: str, source: Path) -> CompiledFound:
+    spec = importlib.util.find_spec(module)
+    if spec is None or spec.origin is None:
+        return CompiledFound(module, found=False, newer_source=None)
+    compiled_s = Path(spec.origin).stat().st_mtime
+    changed = [file for file in sorted(source.glob("*.[ch]")) if file.stat().st_mtime > compiled_s]
+    return CompiledFound(module, found=True, newer_source=str(changed[0]) if changed else None)
 
 
 def _config() -> ConfigFound:
@@ -89,7 +125,8 @@ def _doctor(arguments: argparse.Namespace) -> int:
         print_json(document)
     else:
         print_pairs(findings.lines())
-    return FAILED if findings.config.problems else OK
+    is_stale = findings.compiled_kernels.newer_source or findings.compiled_boards.newer_source
+    return FAILED if findings.config.problems or is_stale else OK
 
 
 VERBS = (

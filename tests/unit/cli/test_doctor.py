@@ -1,12 +1,15 @@
 """``doctor`` tells what is installed, which kernels are in use, and what is wrong with the configuration."""
 
 import json
+import os
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from robotd import __version__
+from robotd.cli import doctor
 from robotd.cli.main import main
 from robotd.grid import kernels
 
@@ -42,3 +45,29 @@ def test_a_configuration_with_mistakes_is_a_failure_that_names_them(
     monkeypatch.setenv("ROBOTD_CONFIG", str(file))
     assert main(["doctor"]) == 1
     assert "buad" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("age_s", "code"), [(-10.0, 0), (10.0, 1)])
+def test_a_library_older_than_its_source_is_a_failure_that_names_the_source(
+    age_s: float, code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROBOTD_CONFIG", str(tmp_path / "absent.toml"))
+    library, source = tmp_path / "robotd/lib.so", tmp_path / "firmware_proto/c/frame.c"
+    for file in (library, source):
+        file.parent.mkdir(parents=True)
+        file.touch()
+    now_s = library.stat().st_mtime
+    os.utime(source, (now_s + age_s, now_s + age_s))
+    monkeypatch.setattr(doctor, "_ROOT", tmp_path)
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: SimpleNamespace(origin=str(library)))
+    assert main(["doctor"]) == code
+    assert ("frame.c: run pip install -e . again" in capsys.readouterr().out) == bool(code)
+
+
+def test_what_was_not_compiled_is_said_and_no_failure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROBOTD_CONFIG", str(tmp_path / "absent.toml"))
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    assert main(["doctor"]) == 0
+    assert "not compiled" in capsys.readouterr().out

@@ -41,6 +41,5 @@ builder.set_source(
         "-Wno-psabi",
     ],
     extra_link_args=["-pthread"],
-    optional=True,
     py_limited_api=True,
 )
