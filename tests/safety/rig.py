@@ -99,7 +99,7 @@ class Rig:
 
 
 def give_precedence(pid: int) -> None:
-    """Let a process that leads a session go before others, where this is allowed.
+    """Let a process and its session go before others, where this is allowed.
 
     Between sessions niceness counts for nothing if the kernel shares processors out among sessions, as most do.
     """
