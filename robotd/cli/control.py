@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable
 
 from robotd.cli.connection import connect
+from robotd.cli.metrics import exposition
 from robotd.cli.terminal import err, out, print_json, print_pairs, print_table
 from robotd.cli.verb import OK, Verb
 from robotd.cli.wording import as_json
@@ -16,11 +17,17 @@ from robotd.server.client import Client
 def _status(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client:
         status = client.status()
-    if arguments.json:
+    if arguments.metrics:
+        print(exposition(status), end="")
+    elif arguments.json:
         print_json(as_json(status))
     else:
         _print_status(status)
     return OK
+
+
+def _status_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--metrics", action="store_true", help="print state and counters for Prometheus, as text")
 
 
 def _print_status(status: Status) -> None:
@@ -70,7 +77,14 @@ def _arm(client: Client) -> None:
 
 
 VERBS = (
-    Verb("status", "show the whole robot in one look", "robotctl status --json", _status, asks_daemon=True),
+    Verb(
+        "status",
+        "show the whole robot in one look",
+        "robotctl status --json",
+        _status,
+        _status_arguments,
+        asks_daemon=True,
+    ),
     Verb(
         "arm",
         "allow motion",

@@ -148,7 +148,15 @@ class BoardDevice:
             ("timeouts", link.timeouts),
             ("refused", link.refused),
             ("unmatched", link.unmatched),
+            *self._clock(),
         )
+
+    def _clock(self) -> tuple[tuple[str, int], ...]:
+        """Return how much faster the board's clock runs than ours, and how well that is known."""
+        best = None if self._session is None else self._session.clock.best
+        if best is None:
+            return ()
+        return (("clock_fast_ppb", round((1.0 / best.rate - 1.0) * 1e9)), ("clock_round_trip_us", best.round_trip_us))
 
 
 def fault_names(faults: int) -> tuple[str, ...]:

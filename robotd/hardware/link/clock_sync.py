@@ -35,6 +35,8 @@ class ClockFit:
     host_ns: int
     rate: float
     """Host nanoseconds per board nanosecond."""
+    round_trip_us: int = 0
+    """The shortest seen lately; the offset is wrong by half of it at most."""
 
     def at(self, board_us: int) -> int:
         """Return the host's time at a time of the board [ns]."""
@@ -63,6 +65,7 @@ def fit(samples: tuple[ClockSample, ...]) -> ClockFit:
         board_ns=first.board_ns + round(middle),
         host_ns=first.host_ns + round(middle) + round(_mean(weights, gained)),
         rate=1.0 + drift,
+        round_trip_us=shortest_ns // _NS_PER_US,
     )
 
 

@@ -1,6 +1,7 @@
 """The command line as such: every verb explains itself, and every failure is one line and an exit code."""
 
 import json
+import re
 import shlex
 import subprocess
 import sys
@@ -173,6 +174,22 @@ def test_status_for_people_and_for_programs(client: Any, capsys: pytest.CaptureF
     document = json.loads(capsys.readouterr().out)
     assert (document["event"], document["mode"], document["battery_v"]) == ("status", "idle", 24.5)
     assert [device["link"] for device in document["devices"]] == ["ready", "absent"]
+
+
+def test_metrics_are_lines_that_a_collector_reads(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["status", "--metrics"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert all(
+        re.fullmatch(r'# (HELP|TYPE) robotd_\w+ .+|robotd_\w+(\{(\w+="\w+",?)+\})? -?[\d.e+]+', one) for one in lines
+    )
+    for line in (
+        'robotd_mode{mode="idle"} 1',
+        'robotd_mode{mode="fault"} 0',
+        'robotd_device_ready{device="pantilt"} 0',
+        'robotd_line{device="drive",what="frames"} 1203',
+        "robotd_battery_volts 24.5",
+    ):
+        assert line in lines
 
 
 @pytest.mark.parametrize("verb", ["arm", "disarm", "clear"])

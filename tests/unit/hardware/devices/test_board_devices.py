@@ -4,6 +4,7 @@ import asyncio
 import math
 import random
 from contextlib import suppress
+from dataclasses import replace
 from typing import TypeVar
 
 import pytest
@@ -171,6 +172,15 @@ async def test_what_breaks_stops_the_device_and_stays_a_fault_until_it_is_mended
             await asyncio.sleep(0.1)
             assert device.status.faults == ()
             await device.arm()
+
+
+async def test_the_boards_clock_is_in_the_status() -> None:
+    async with rig(sim=SimSettings(noise=replace(NOISELESS, clock_skew_ppm=50.0))) as r:
+        await asyncio.sleep(20.0)
+        counted = dict(r.drive.status.counters)
+        assert abs(r.robot.clocks["drive"].skew_ppb) > 5000
+        assert counted["clock_fast_ppb"] == pytest.approx(r.robot.clocks["drive"].skew_ppb, abs=2000)
+        assert 0 <= counted["clock_round_trip_us"] < 1000
 
 
 async def test_a_status_is_published_only_when_something_changed() -> None:

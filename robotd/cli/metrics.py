@@ -1,0 +1,56 @@
+"""The robot's state and counters in the text format of Prometheus, for a collector of files.
+
+The daemon has no network and serves no pages. Whoever watches many robots lets a timer run this into a file::
+
+    robotctl status --metrics > /var/lib/prometheus/node-exporter/robotd.prom
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+
+from robotd.hardware.devices.device import DeviceStatus, LinkState
+from robotd.mission.events import Status
+from robotd.mission.modes import Mode
+
+_Sample = tuple[dict[str, str], float]
+
+
+def exposition(status: Status) -> str:
+    """Return the lines that say what a status says."""
+    devices = status.devices
+    families = (
+        _family("mode", "gauge", "What the robot is at: 1 for that mode.", _modes(status)),
+        _family("device_ready", "gauge", "Whether there is a device to talk to.", _each(devices, _is_ready)),
+        _family("device_armed", "gauge", "Whether it may move.", _each(devices, lambda one: one.armed)),
+        _family("device_faults", "gauge", "Latched faults.", _each(devices, lambda one: len(one.faults))),
+        _family(
+            "line", "gauge", "What was counted on the line since start, and what its clock does.", _counters(devices)
+        ),
+        _family("battery_volts", "gauge", "Of the base.", [] if status.battery_v is None else [({}, status.battery_v)]),
+    )
+    return "".join(families)
+
+
+def _family(name: str, kind: str, meaning: str, samples: Iterable[_Sample]) -> str:
+    lines = [f"robotd_{name}{_labels(labels)} {value:.12g}\n" for labels, value in samples]
+    head = f"# HELP robotd_{name} {meaning}\n# TYPE robotd_{name} {kind}\n"
+    return head + "".join(lines) if lines else ""
+
+
+def _labels(labels: dict[str, str]) -> str:
+    return "{" + ",".join(f'{name}="{value}"' for name, value in labels.items()) + "}" if labels else ""
+
+
+def _modes(status: Status) -> Iterator[_Sample]:
+    return (({"mode": mode.value}, float(mode is status.mode)) for mode in Mode)
+
+
+def _each(devices: tuple[DeviceStatus, ...], value: Callable[[DeviceStatus], float]) -> Iterator[_Sample]:
+    return (({"device": one.name}, float(value(one))) for one in devices)
+
+
+def _is_ready(device: DeviceStatus) -> bool:
+    return device.link is LinkState.READY
+
+
+def _counters(devices: tuple[DeviceStatus, ...]) -> Iterator[_Sample]:
+    return (({"device": one.name, "what": what}, float(count)) for one in devices for what, count in one.counters)
