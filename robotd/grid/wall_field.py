@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from robotd.grid import kernels
 from robotd.grid.kernels.fitting import REACH_CELLS, SKIP_MAX
 from robotd.grid.spec import GridSpec
-from robotd.grid.window import CellWindow
+from robotd.grid.window import CellWindow, influence
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,21 +47,9 @@ class WallField:
         if changed.is_empty:
             return self
         codes, skips = self.codes.copy(), self.skips.copy()
-        here, there, part = _influence(changed, REACH_CELLS, self.spec.shape)
+        here, there, part = influence(changed, REACH_CELLS, self.spec.shape)
         codes[here] = kernels.wall_codes(np.ascontiguousarray(walls[part]))[there]
-        here, there, part = _influence(changed, SKIP_MAX, self.spec.shape)
+        here, there, part = influence(changed, SKIP_MAX, self.spec.shape)
         ends = np.ascontiguousarray(walls[part])
         skips[1:-1, 1:-1][here] = kernels.skip_codes(ends, blocking[part] & ~ends)[1:-1, 1:-1][there]
         return replace(self, codes=codes, skips=skips)
-
-
-Part = tuple[slice, slice]
-
-
-def _influence(changed: CellWindow, reach: int, shape: tuple[int, int]) -> tuple[Part, Part, Part]:
-    """Return the cells that a window can influence, in the map and in the part that can influence them, and that."""
-    influenced = changed.grown(reach, shape)
-    part = influenced.grown(reach, shape)
-    row, col = influenced.first_row - part.first_row, influenced.first_col - part.first_col
-    rows, cols = influenced.shape
-    return influenced.slices, (slice(row, row + rows), slice(col, col + cols)), part.slices

@@ -78,3 +78,24 @@ class CellWindow:
     def slices(self) -> tuple[slice, slice]:
         """Return what an array of cells is indexed with."""
         return slice(self.first_row, self.end_row), slice(self.first_col, self.end_col)
+
+
+Part = tuple[slice, slice]
+
+
+def influence(changed: CellWindow, reach: int, shape: tuple[int, int]) -> tuple[Part, Part, Part]:
+    """Return what must be made anew where each cell depends on those within reach of it, and of what.
+
+    Args:
+        changed: the cells that changed.
+        reach: how far cells are depended on, over sides or corners.
+        shape: of the map.
+
+    Returns:
+        The cells to make anew, in the map; the same in the part of the map that they depend on; and that part.
+    """
+    influenced = changed.grown(reach, shape)
+    part = influenced.grown(reach, shape)
+    row, col = influenced.first_row - part.first_row, influenced.first_col - part.first_col
+    rows, cols = influenced.shape
+    return influenced.slices, (slice(row, row + rows), slice(col, col + cols)), part.slices

@@ -18,8 +18,10 @@ from numpy.typing import NDArray
 
 from robotd.grid import kernels
 from robotd.grid.kernels.chances import IN_UNKNOWN, ChanceMap
+from robotd.grid.kernels.fitting import SKIP_MAX
 from robotd.grid.spec import GridSpec
 from robotd.grid.tables import NO_INFORMATION, SURELY_OCCUPIED
+from robotd.grid.window import CellWindow, influence
 from robotd.localization.elsewhere import elsewhere
 from robotd.localization.error_model import ErrorModel
 
@@ -48,15 +50,34 @@ class Likelihood:
     spec: GridSpec
     model: ErrorModel
     chances: ChanceMap
-    vacant_m2: float
-    """How much room the robot has."""
+    vacant_cells: int
+    """In so many the robot may be."""
 
     @classmethod
     def of(cls, spec: GridSpec, cells: NDArray[np.uint8], model: ErrorModel) -> "Likelihood":
         """Prepare a map: ``uint8[rows, cols]``, the evidence of the occupancy grid, which is copied. O(cells)."""
         own = np.array(cells, np.uint8, order="C")
-        vacant_m2 = float(np.count_nonzero(own < NO_INFORMATION)) * spec.resolution_m**2
-        return cls(spec, model, ChanceMap(own, skips_of(own), _stops(model, spec.resolution_m)), vacant_m2)
+        chances = ChanceMap(own, skips_of(own), _stops(model, spec.resolution_m))
+        return cls(spec, model, chances, _vacant(own))
+
+    def updated(self, cells: NDArray[np.uint8], changed: CellWindow) -> "Likelihood":
+        """Return the likelihood on a map that differs from this one's in a window alone; this one stays as it is.
+
+        The result is as if made anew. O(cells of the window, and of a rim round it), and a copy.
+        """
+        if changed.is_empty:
+            return self
+        own, skips = np.array(cells, np.uint8, order="C"), self.chances.skips.copy()
+        here, there, part = influence(changed, SKIP_MAX, self.spec.shape)
+        skips[here] = skips_of(np.ascontiguousarray(own[part]))[there]
+        more = _vacant(own[changed.slices]) - _vacant(self.chances.cells[changed.slices])
+        chances = replace(self.chances, cells=own, skips=skips)
+        return replace(self, chances=chances, vacant_cells=self.vacant_cells + more)
+
+    @property
+    def vacant_m2(self) -> float:
+        """How much room the robot has."""
+        return self.vacant_cells * self.spec.resolution_m**2
 
     def with_model(self, model: ErrorModel) -> "Likelihood":
         """Return the likelihood on the same map for other errors."""
@@ -110,6 +131,10 @@ def skips_of(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
     over_vacant = kernels.skip_codes(~vacant, none)[1:-1, 1:-1]
     over_unknown = kernels.skip_codes(~unknown, none)[1:-1, 1:-1]
     return np.where(vacant, over_vacant, np.where(unknown, over_unknown, 1)).astype(np.uint8)
+
+
+def _vacant(cells: NDArray[np.uint8]) -> int:
+    return int(np.count_nonzero(cells < NO_INFORMATION))
 
 
 def _stops(model: ErrorModel, resolution_m: float) -> NDArray[np.float64]:

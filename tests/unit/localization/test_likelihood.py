@@ -5,8 +5,11 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from robotd.grid.spec import GridSpec
+from robotd.grid.window import CellWindow
 from robotd.localization.error_model import ErrorModel
 from robotd.localization.likelihood import Likelihood
 
@@ -20,6 +23,29 @@ def hallway(wall: int = 250) -> Likelihood:
     cells[:, :140] = 20
     cells[:, 100] = wall
     return Likelihood.of(SPEC, cells, ErrorModel())
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.integers(0, 2**32),
+    st.tuples(st.integers(0, 39), st.integers(0, 30)),
+    st.tuples(st.integers(0, 199), st.integers(0, 90)),
+)
+def test_a_likelihood_that_was_updated_is_as_if_made_anew(
+    seed: int, rows: tuple[int, int], cols: tuple[int, int]
+) -> None:
+    random = np.random.default_rng(seed)
+    kinds = np.array([20, 20, 20, 128, 200], np.uint8)
+    cells = np.repeat(np.repeat(random.choice(kinds, (4, 20)), 10, axis=0), 10, axis=1)
+    likelihood = Likelihood.of(SPEC, cells, ErrorModel())
+    before = likelihood.chances.skips.copy()
+    window = CellWindow(rows[0], min(40, sum(rows)), cols[0], min(200, sum(cols)))
+    cells[window.slices] = random.choice(kinds, window.shape)
+    updated, anew = likelihood.updated(cells, window), Likelihood.of(SPEC, cells, ErrorModel())
+    np.testing.assert_array_equal(updated.chances.cells, anew.chances.cells)
+    np.testing.assert_array_equal(updated.chances.skips, anew.chances.skips)
+    assert updated.vacant_cells == anew.vacant_cells
+    np.testing.assert_array_equal(likelihood.chances.skips, before)
 
 
 def logs(likelihood: Likelihood, *ranges_m: float, misses: bool = False, bearing_rad: float = 0.0) -> list[float]:

@@ -40,6 +40,7 @@ def arrays(ready: ReadyMap) -> list[Any]:
     return [
         *(planes.cells, planes.pooled, planes.near, planes.ground.free, planes.ground.blocking, planes.ground.grown),
         *(packed.free, packed.blocking, packed.grown, packed.tiles),
+        *(ready.likelihood.chances.cells, ready.likelihood.chances.skips, ready.likelihood.vacant_m2),
         *(ready.walls.codes, ready.walls.skips, ready.ternary.occupied, ready.ternary.vacant),
     ]
 
