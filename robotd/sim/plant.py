@@ -44,6 +44,25 @@ class DrivePlant(Protocol):
         """``MOTOR``, ``BATTERY``: what is wrong at this moment."""
 
 
+_WATCH_US = 10_000
+
+
+class BumperWatch:
+    """A moving base looks at its bumpers on a fixed grid, and once more when it has come to rest."""
+
+    def __init__(self, plant: DrivePlant) -> None:
+        self._plant = plant
+        self._was_moving = False
+        self.due_us: int | None = None
+        """When it looks next."""
+
+    def looked(self, now_us: int) -> None:
+        """Note that the plant was looked at."""
+        moves = any(self._plant.velocity)
+        self.due_us = (now_us // _WATCH_US + 1) * _WATCH_US if moves or self._was_moving else None
+        self._was_moving = moves
+
+
 class HeadPlant(Protocol):
     """A pan/tilt head."""
 

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
-from robotd.config import Config
+from robotd.cli.emulated import config_text
+from robotd.config import loads
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
@@ -19,11 +20,12 @@ from robotd.mission.events import Event
 from robotd.mission.modes import Mode
 from robotd.mission.requests import Mission
 from robotd.mission.stop_and_sweep import SweepSettings
-from robotd.recording.entries import Entry
+from robotd.recording.entries import BytesEntry, Entry
 from robotd.recording.preroll import PrerollJournal
+from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.cable import Cable
 from robotd.sim.faults.laid import cables, connects_of
-from robotd.sim.robot import SimulatedRobot, own_board
+from robotd.sim.robot import DEVICES, SimulatedRobot
 from robotd.sim.world import load_world
 from tests.integration.living import AtOnce, in_directory, until_ready
 
@@ -36,15 +38,17 @@ _PREROLL_BYTES = 64 * 1024
 class StopWatch:
     """Notes when a stop was put on a wire, and passes everything on to the journal."""
 
-    def __init__(self, journal: PrerollJournal) -> None:
+    def __init__(self, journal: PrerollJournal, daemon: Daemon) -> None:
         self.stops_ns: list[int] = []
+        self._stop_of = {device.name: getattr(device, "STOP", STOP_BYTES) for device in daemon.robot.devices}
         self._note = journal.note
         journal.note = self.note  # type: ignore[method-assign]  # the one ear through which every entry goes
 
     def note(self, entry: Entry) -> None:
-        data, way = getattr(entry, "data", b""), getattr(entry, "direction", None)
-        if way is Direction.TO_BOARD and STOP_BYTES in data:
-            self.stops_ns.append(entry.time_ns)
+        if isinstance(entry, BytesEntry) and entry.direction is Direction.TO_BOARD:
+            stop = self._stop_of[entry.device]
+            if stop and stop in entry.data:
+                self.stops_ns.append(entry.time_ns)
         self._note(entry)
 
     def first_after(self, began_ns: int) -> float | None:
@@ -74,8 +78,7 @@ class Bench:
     @property
     def is_moving(self) -> bool:
         """Whether the base or the head moves, or is asked to."""
-        head = own_board(self.robot, "pantilt")
-        return not self.robot.at_rest or head._plant.arrives_us is not None  # type: ignore[attr-defined]  # looks inside
+        return not self.robot.at_rest or self.robot._head.arrives_us is not None
 
     @property
     def is_alive(self) -> bool:
@@ -115,11 +118,12 @@ class Bench:
 
 
 @contextlib.asynccontextmanager
-async def bench(directory: Path) -> AsyncIterator[Bench]:
+async def bench(directory: Path, dialects: Dialects) -> AsyncIterator[Bench]:
     """Bring a daemon to life that records from its first moment."""
-    config = in_directory(Config(sweep=SweepSettings(readings=60)), directory)
+    text = config_text({device: f"/dev/emulated/{device}" for device in DEVICES}, dialects.settings())
+    config = in_directory(replace(loads(text), sweep=SweepSettings(readings=60)), directory)
     config = replace(config, recording=replace(config.recording, preroll_bytes=_PREROLL_BYTES))
-    robot = SimulatedRobot(load_world("laboratory"), seed=4)
+    robot = SimulatedRobot(load_world("laboratory"), seed=4, dialects=dialects)
     journal = new_journal(config)
     compute: Compute = AtOnce()  # type: ignore[assignment]  # object for any T: it hands back what it is given
     async with cables(robot) as laid:
@@ -127,7 +131,7 @@ async def bench(directory: Path) -> AsyncIterator[Bench]:
         await daemon.control.start_recording(None)
         with daemon.control.events.subscribe(depth=100_000) as events:
             parts = [asyncio.create_task(part, name=name) for name, part in daemon.parts().items()]
-            one = Bench(robot, daemon, laid, events, parts, StopWatch(journal))
+            one = Bench(robot, daemon, laid, events, parts, StopWatch(journal, daemon))
             one._others.append(asyncio.create_task(one.look_on()))
             try:
                 await until_ready(daemon)

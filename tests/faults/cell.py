@@ -12,19 +12,19 @@ from robotd.core.clock import NS_PER_S, now_ns, run_virtual
 from robotd.core.errors import RobotdError
 from robotd.mission.modes import Mode
 from robotd.recording.reader import read
+from robotd.sim.emulators.catalogue import OWN, Dialects
 from robotd.sim.faults.catalogue import FAULTS
-from robotd.sim.robot import own_board
+from robotd.sim.host import OwnBoard
 from tests.faults.bench import Bench, bench
 from tests.faults.states import STATES
 from tests.integration.living import until_ready
 
-LASTS_S = 3.0
 NOTICED_WITHIN_S = 1.1
 """A line may be silent for a second before it counts as lost."""
-REST_WITHIN_S = 1.9
-"""That, and the ramp from cruising speed."""
+BOUGHT_NOTICED_WITHIN_S = 2.8
+"""Bought devices speak when asked: they are asked after a second, up to three times."""
 REST_AFTER_STOP_S = 0.8
-"""The ramp alone: a client said stop."""
+"""The ramp from cruising speed."""
 READY_AGAIN_S = 10.0
 MEMORY_BYTES = 2_000_000
 """What a daemon may hold more, at any moment of a flood, than before it."""
@@ -46,24 +46,27 @@ class Outcome:
     failures: tuple[str, ...]
 
 
-def run_cell(fault: str, state: str, device: str, seed: int = 1) -> Outcome:
+def run_cell(fault: str, state: str, device: str, seed: int = 1, dialects: Dialects | None = None) -> Outcome:
     """Run one cell on the virtual clock."""
     with tempfile.TemporaryDirectory(prefix="robotd-faults-") as directory:
-        return run_virtual(_Cell(fault, state, device, seed).run(Path(directory)))
+        dialects = dialects or Dialects()
+        noticed_s = NOTICED_WITHIN_S if getattr(dialects, device) == OWN else BOUGHT_NOTICED_WITHIN_S
+        return run_virtual(_Cell(fault, state, device, seed, noticed_s).run(Path(directory), dialects))
 
 
 class _Cell:
-    def __init__(self, fault: str, state: str, device: str, seed: int) -> None:
+    def __init__(self, fault: str, state: str, device: str, seed: int, noticed_s: float) -> None:
         self._fault = fault
         self._state = state
         self._device = device
         self._rng = random.Random(f"{seed}/{fault}/{state}/{device}")
+        self._noticed_s = noticed_s
         self._failures: list[str] = []
 
-    async def run(self, directory: Path) -> Outcome:
+    async def run(self, directory: Path, dialects: Dialects) -> Outcome:
         stop_s, rest_s = None, 0.0
         try:
-            async with bench(directory) as it:
+            async with bench(directory, dialects) as it:
                 await STATES[self._state](it)
                 stop_s, rest_s = await self._while_it_lasts(it)
                 await self._afterwards(it)
@@ -81,14 +84,14 @@ class _Cell:
         if self._fault == "flood":
             tracemalloc.start()
         it.cables[self._device].set_fault(FAULTS[self._fault](self._rng))
-        await asyncio.sleep(LASTS_S)
+        await asyncio.sleep(self._noticed_s + REST_AFTER_STOP_S + 1.0)
         self._check_memory()
         stop_s = it.stops.first_after(began_ns) if may_move and not _may_move(it) else None
-        since_ns, bound_s = began_ns, REST_WITHIN_S
+        since_ns, bound_s = began_ns, self._noticed_s + REST_AFTER_STOP_S
         if may_move and self._fault in BEARABLE:
             since_ns, bound_s = await self._stop_at_last(it, began_ns, stop_s), REST_AFTER_STOP_S
         elif may_move:
-            self._check(stop_s is not None and stop_s <= NOTICED_WITHIN_S, f"stop after {stop_s} s")
+            self._check(stop_s is not None and stop_s <= self._noticed_s, f"stop after {stop_s} s")
         rest_s = max(0.0, (it.moved_ns - since_ns) / NS_PER_S)
         self._check(not it.is_moving, "it moves")
         self._check(rest_s <= bound_s, f"at rest after {rest_s:.3f} s")
@@ -99,7 +102,7 @@ class _Cell:
         stopped_ns = now_ns() if stop_s is None else began_ns + round(stop_s * NS_PER_S)
         if stop_s is None:
             await it.daemon.control.stop("enough")
-        await asyncio.sleep(REST_WITHIN_S)
+        await asyncio.sleep(self._noticed_s + REST_AFTER_STOP_S)
         return stopped_ns
 
     def _check_memory(self) -> None:
@@ -118,8 +121,9 @@ class _Cell:
         await asyncio.sleep(2.0)
         self._check(it.is_alive, "a part of the daemon ended")
         self._check(it.robot.truth == where and it.moved_ns == moved_ns, "it moved without being armed")
-        states = {name: own_board(it.robot, name).state for name in it.robot.boards}
+        states = {name: board.state for name, board in it.robot.boards.items() if isinstance(board, OwnBoard)}
         self._check(BoardState.ARMED not in states.values(), f"something is armed: {states}")
+        self._check(not any(one.status.armed for one in it.daemon.robot.devices), "something is believed to be armed")
         await self._check_map(it)
         await self._check_arming(it)
 

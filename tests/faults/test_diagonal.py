@@ -19,5 +19,6 @@ def test_the_robot_rests_and_everything_comes_back(fault: str, state: str, devic
 
 
 def test_a_fault_that_the_daemon_does_not_survive_would_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tests.faults.cell.REST_WITHIN_S", 0.5)
+    monkeypatch.setattr("tests.faults.cell.NOTICED_WITHIN_S", 0.2)
+    monkeypatch.setattr("tests.faults.cell.REST_AFTER_STOP_S", 0.5)
     assert "at rest after" in run_cell("unplug", "drive", "drive").failures[0]

@@ -19,7 +19,8 @@ from robotd.hardware.wire.dimetix import DimetixWire, Distance, ErrorCode, Faile
 _TENTH_MM_PER_M = 10_000
 _ANSWER_S = 1.0
 _TRIES = 3
-_IDLE_POLL_S = 2.0
+_IDLE_POLL_S = 1.0
+_SIGN_OF_LIFE_S = 0.5
 _MEASURES_S = 5.0
 """A dark target may take so long; then the measurement is cleared."""
 _LINE_END = b"\r\n"
@@ -99,7 +100,7 @@ class DimetixRangefinder(BoughtDevice[Message]):
         while True:
             await dialogue.until_idle(_IDLE_POLL_S)
             await dialogue.ask(
-                self._tongue.temperature, self._is(Value), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
+                self._tongue.temperature, self._is(Value), timeout_s=_SIGN_OF_LIFE_S, tries=_TRIES, despite_stops=True
             )
 
     def _report(self, heard: Heard[Message]) -> None:

@@ -25,7 +25,7 @@ ANSWER_S = 0.2
 TRIES = 3
 _REACH_M = 100.0
 """What is farther is no distance."""
-_IDLE_POLL_S = 2.0
+_IDLE_POLL_S = 1.0
 _KNOWN = ("LW20", "SF20")
 
 

@@ -24,7 +24,7 @@ from robotd.hardware.wire.scip import Parameters, Reply, ScipWire, Verdict
 _MM_PER_M = 1000.0
 _ANSWER_S = 0.5
 _TRIES = 3
-_IDLE_POLL_S = 2.0
+_IDLE_POLL_S = 1.0
 _STATUS = {
     Verdict.NOTHING: ReadingStatus.MISS,
     Verdict.TOO_NEAR: ReadingStatus.TOO_NEAR,

@@ -36,7 +36,7 @@ _TRIES = 3
 _MEASURES_S = 0.1
 """How long a trigger may stay without its reading; then it is sent once more."""
 _TRIGGERS = 2
-_IDLE_POLL_S = 2.0
+_IDLE_POLL_S = 1.0
 _VERSION_NUMBER = 0x01
 _STATUS = {
     Verdict.WEAK: ReadingStatus.WEAK,

@@ -106,6 +106,7 @@ class Dialogue(Generic[M]):
         self._lost: RobotdError | None = None
         self._silence_s: float | None = None
         self._bytes_came = asyncio.Event()
+        self._message_came = asyncio.Event()
 
     async def __aenter__(self) -> Self:
         self._wire.reset()
@@ -196,19 +197,19 @@ class Dialogue(Generic[M]):
         self._line.write_past_loop(data)
 
     async def until_lost(self, silence_s: float | None = None) -> NoReturn:
-        """Wait until the line is lost, or nothing came for so long; raise why.
+        """Wait until the line is lost, or nothing that is understood came for so long; raise why.
 
         Raises:
             TransportError: the line is lost.
-            LinkTimeout: nothing came for ``silence_s``.
+            LinkTimeout: no message came for ``silence_s``: noise is no sign of life.
         """
         if silence_s is None:
             await asyncio.wait({self._reader})
         while not self._reader.done():
-            self._bytes_came.clear()
+            self._message_came.clear()
             try:
                 async with asyncio.timeout(silence_s):
-                    came = asyncio.create_task(self._bytes_came.wait())
+                    came = asyncio.create_task(self._message_came.wait())
                     try:
                         await asyncio.wait({came, self._reader}, return_when=asyncio.FIRST_COMPLETED)
                     finally:
@@ -251,6 +252,7 @@ class Dialogue(Generic[M]):
                 self._heard_ns = chunk.time_ns
                 self._bytes_came.set()
                 for message in self._wire.feed(chunk.data):
+                    self._message_came.set()
                     self._take(Heard(message, chunk.time_ns))
         except RobotdError as error:
             raise self._lose(error) from error.__cause__

@@ -13,7 +13,7 @@ from robotd.hardware.wire.rflex import (
     RflexWire,
     frame,
 )
-from robotd.sim.plant import DrivePlant
+from robotd.sim.plant import BumperWatch, DrivePlant
 
 COUNTS_PER_M = 101_230.0
 COUNTS_PER_RAD = 35_343.888
@@ -29,6 +29,7 @@ class RflexEmulator:
 
     def __init__(self, plant: DrivePlant) -> None:
         self._plant = plant
+        self._bumper_watch = BumperWatch(plant)
         self._wire = RflexWire()
         self._said = bytearray()
         self._speeds = [0.0, 0.0]
@@ -59,8 +60,9 @@ class RflexEmulator:
 
     @property
     def next_event_us(self) -> int | None:
-        """When the next report is due."""
-        return self._report_us
+        """When the next report is due, or a moving base looks at its bumpers."""
+        due_us = (self._report_us, self._bumper_watch.due_us)
+        return min((at for at in due_us if at is not None), default=None)
 
     def take_output(self) -> bytes:
         """Return, once, what it has for the host."""
@@ -71,6 +73,7 @@ class RflexEmulator:
     def _pass(self, to_us: int) -> None:
         self._now_us = max(self._now_us, to_us)
         self._plant.advance(self._now_us)
+        self._bumper_watch.looked(self._now_us)
         bumpers = self._plant.bumpers
         if bumpers != self._bumpers and self._reports_switches:
             for panel in range(_PANELS):

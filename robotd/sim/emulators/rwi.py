@@ -4,7 +4,7 @@ import math
 import re
 
 from robotd.hardware.wire.rwi_ascii import BUMPERS_NONE, ITEMS, TICKS_PER_S
-from robotd.sim.plant import DrivePlant
+from robotd.sim.plant import BumperWatch, DrivePlant
 
 COUNTS_PER_M = 27_300.0
 COUNTS_PER_TURN = 1024.0
@@ -23,6 +23,7 @@ class RwiEmulator:
 
     def __init__(self, plant: DrivePlant) -> None:
         self._plant = plant
+        self._bumper_watch = BumperWatch(plant)
         self._typed = bytearray()
         self._said = bytearray()
         self._echoes = True
@@ -58,7 +59,8 @@ class RwiEmulator:
     @property
     def next_event_us(self) -> int | None:
         """When something falls due."""
-        return min((at for at in (self._watchdog_us, self._report_us) if at is not None), default=None)
+        due_us = (self._watchdog_us, self._report_us, self._bumper_watch.due_us)
+        return min((at for at in due_us if at is not None), default=None)
 
     def take_output(self) -> bytes:
         """Return, once, what it has for the host."""
@@ -69,6 +71,7 @@ class RwiEmulator:
     def _pass(self, to_us: int) -> None:
         self._now_us = max(self._now_us, to_us)
         self._plant.advance(self._now_us)
+        self._bumper_watch.looked(self._now_us)
         self._feel()
         if self._watchdog_us is not None and self._watchdog_us <= self._now_us:
             self._watchdog_us = None

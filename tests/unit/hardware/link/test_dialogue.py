@@ -251,7 +251,7 @@ async def test_a_lost_line_ends_what_is_under_way_and_what_waits_at_once() -> No
         t.dialogue.stop_now(STOP)  # never raises
 
 
-async def test_silence_is_noticed_and_whatever_comes_begins_it_anew() -> None:
+async def test_silence_is_noticed_whatever_noise_there_is_and_each_message_begins_it_anew() -> None:
     async with talk(lambda _: []) as t:
         waiting = asyncio.create_task(t.dialogue.until_lost(silence_s=1.0))
         for _ in range(3):
@@ -259,6 +259,8 @@ async def test_silence_is_noticed_and_whatever_comes_begins_it_anew() -> None:
             _say(t.far, "still here")
         assert not waiting.done()
         began_ns = now_ns()
+        await asyncio.sleep(0.5)
+        t.far.write(b"noise without an end")
         with pytest.raises(LinkTimeout, match="thing: silent for 1 s"):
             await waiting
         assert now_ns() - began_ns == pytest.approx(1.0 * NS_PER_S, rel=1e-6)
