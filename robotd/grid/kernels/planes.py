@@ -42,8 +42,8 @@ class Ground:
 class Planes:
     """What the search keeps; ``c/planes.h`` describes the arrays.
 
-    Bytes for every cell: 0.4 to 0.5 for ``cells``, 1 for ``near``, and for ``pooled`` 5 at 4096 x 4096 cells, 9 at
-    1024 x 1024 and 50 at 256 x 256, most of which stands for what lies outside and is seldom read.
+    Bytes for every cell: 0.4 to 0.5 for ``cells``, 1 for ``near``, and for ``pooled`` 6 at 4096 x 4096 cells, 11 at
+    1024 x 1024 and 53 at 256 x 256, most of which stands for what lies outside and is seldom read.
     """
 
     ground: Ground

@@ -23,4 +23,9 @@ def timings() -> Iterator[Timing]:
             place = (workload.TRUTH, workload.SPEC, tables)
             run = partial(module.insert_sweep, grid.cells, readings, *place, at_once=at_once)
             yield timed(f"{title}: cells, {name}", run, 50)
-        yield timed(f"{title}: insert()", partial(grid.insert, sweep, workload.TRUTH), 200, goal_ms=0.1)
+        blank = [OccupancyGrid(workload.SPEC, settings=GridSettings(policy=policy)) for _ in range(201)]
+        first = partial(lambda grids: next(grids).insert(sweep, workload.TRUTH), iter(blank))
+        yield timed(f"{title}: insert(), nothing known before", first, 200, goal_ms=0.1)
+        yield timed(
+            f"{title}: insert(), again and again", partial(grid.insert, sweep, workload.TRUTH), 200, goal_ms=0.1
+        )

@@ -159,11 +159,19 @@ static inline uint64_t gathered(uint64_t word, int32_t pool)
         return (word & UINT64_C(0x0001000100010001)) * UINT64_C(0x1000200040008000) >> 60;
     if (pool == 8)
         return (word & UINT64_C(0x0101010101010101)) * UINT64_C(0x0102040810204080) >> 56;
-    word &= UINT64_C(0x1111111111111111);
-    word = (word | word >> 3) & UINT64_C(0x0303030303030303);
-    word = (word | word >> 6) & UINT64_C(0x000f000f000f000f);
-    word = (word | word >> 12) & UINT64_C(0x000000ff000000ff);
-    return (word | word >> 24) & UINT64_C(0xffff);
+    if (pool == 4) {
+        word &= UINT64_C(0x1111111111111111);
+        word = (word | word >> 3) & UINT64_C(0x0303030303030303);
+        word = (word | word >> 6) & UINT64_C(0x000f000f000f000f);
+        word = (word | word >> 12) & UINT64_C(0x000000ff000000ff);
+        return (word | word >> 24) & UINT64_C(0xffff);
+    }
+    word &= UINT64_C(0x5555555555555555);
+    word = (word | word >> 1) & UINT64_C(0x3333333333333333);
+    word = (word | word >> 2) & UINT64_C(0x0f0f0f0f0f0f0f0f);
+    word = (word | word >> 4) & UINT64_C(0x00ff00ff00ff00ff);
+    word = (word | word >> 8) & UINT64_C(0x0000ffff0000ffff);
+    return (word | word >> 16) & UINT64_C(0xffffffff);
 }
 
 /* One row of cells goes to one row of blocks in all its column phases. */

@@ -42,8 +42,8 @@ static inline uint16_t *cell_plane(const search_map *map, int32_t which)
 }
 
 /* Pooled: words of 64 blocks, eight rows of blocks before the map, at least ten after it. */
-#define POOLS 3
-static const int32_t pools[POOLS] = {16, 8, 4};
+#define POOLS 4
+static const int32_t pools[POOLS] = {16, 8, 4, 2};
 #define BEYOND 8 /* outside the map, no farther away, planes may differ from what they are far away: the reach of keys */
 
 static inline int32_t block_rows(const search_map *map, int32_t pool)

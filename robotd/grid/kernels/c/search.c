@@ -16,7 +16,7 @@
 #define HOPES 64 /* so many bounds are made finer before the search, and so many windows of them tried */
 #define SEEDS 16
 #define STEPS 12
-#define FEW_WINDOWS 3 /* as many windows are looked at sooner than the blocks in them are bounded */
+#define FEW_WINDOWS 1 /* as many windows are looked at sooner than the blocks in them are bounded */
 
 static int32_t units_of(const search_job *job)
 {

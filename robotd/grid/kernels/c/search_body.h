@@ -3,6 +3,7 @@
  *   TARGET           the attribute that allows its instructions
  *   VECTOR           how many bytes a vector has
  *   FUNNEL(a, b, n)  the low 64 bits of (b, a) >> n, lane by lane, 0 <= n < 64
+ *   SLIDE(a, b, n)   the low 16 bits of (b, a) >> n, lane by lane, 0 <= n < 16
  *   XOR3(a, b, c)    a ^ b ^ c           MAJORITY(a, b, c)  two of them or more
  */
 
@@ -80,12 +81,11 @@ static TARGET void NAME(bound_tile)(const grid *of, const pooled_beam *beams, in
 /* What the cells of a window see at an offset. */
 static inline TARGET window NAME(seen)(const search_map *map, const uint16_t *plane, int32_t row, int32_t col)
 {
-    const int32_t stride = strip_size(map);
-    const int32_t strip = clamp(floor_div(col, WINDOW), -2, strips(map));
-    const uint16_t *at = plane + (ptrdiff_t)(strip + 2) * stride + clamp(row, -WINDOW, stride - 2 * WINDOW) + WINDOW;
-    const int shift = col & (WINDOW - 1);
-    const window low = *(const window *)at, high = *(const window *)(at + stride);
-    return low >> shift | high << 1 << (WINDOW - 1 - shift);
+    const size_t stride = (size_t)strip_size(map);
+    const uint32_t strip = (uint32_t)(floor_div(col, WINDOW) + 2), from = (uint32_t)(row + WINDOW);
+    const int is_near = strip <= (uint32_t)strips(map) + 2 && from <= stride - WINDOW;
+    const uint16_t *at = plane + (is_near ? strip * stride + from : 0); /* all that is far outside is like the corner */
+    return SLIDE(*(const window *)at, *(const window *)(at + stride), col & (WINDOW - 1));
 }
 
 static inline TARGET int NAME(any)(window cells)
@@ -247,5 +247,6 @@ static const kernel NAME(kernel) = {NAME(draw_heading), NAME(bound_tile), NAME(c
 #undef TARGET
 #undef VECTOR
 #undef FUNNEL
+#undef SLIDE
 #undef XOR3
 #undef MAJORITY

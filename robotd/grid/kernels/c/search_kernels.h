@@ -5,6 +5,7 @@
 #define TARGET
 #define VECTOR 16
 #define FUNNEL(a, b, n) ((a) >> (n) | ((b) + (b)) << (63 - (n)))
+#define SLIDE(a, b, n) ((a) >> (n) | (b) << 1 << (WINDOW - 1 - (n)))
 #define XOR3(a, b, c) XOR3_(a, b, c)
 #define MAJORITY(a, b, c) MAJORITY_(a, b, c)
 #include "search_body.h"
@@ -19,6 +20,9 @@
 #define FUNNEL(a, b, n)                                                                                                \
     ((VEC)_mm256_or_si256(_mm256_srl_epi64((__m256i)(a), _mm_cvtsi64_si128((long long)(n))),                           \
                           _mm256_sll_epi64((__m256i)(b), _mm_cvtsi64_si128((long long)(64 - (n))))))
+#define SLIDE(a, b, n)                                                                                                 \
+    ((window)_mm256_or_si256(_mm256_srl_epi16((__m256i)(a), _mm_cvtsi32_si128(n)),                                     \
+          _mm256_sll_epi16((__m256i)(b), _mm_cvtsi32_si128(WINDOW - (n)))))
 #define XOR3(a, b, c) XOR3_(a, b, c)
 #define MAJORITY(a, b, c) MAJORITY_(a, b, c)
 #include "search_body.h"
@@ -28,6 +32,7 @@
 #define TARGET __attribute__((target("avx512f,avx512bw,avx512vl,avx512vbmi2")))
 #define VECTOR 64
 #define FUNNEL(a, b, n) ((VEC)_mm512_shrdv_epi64((__m512i)(a), (__m512i)(b), _mm512_set1_epi64((long long)(n))))
+#define SLIDE(a, b, n) ((window)_mm256_shrdv_epi16((__m256i)(a), (__m256i)(b), _mm256_set1_epi16((short)(n))))
 #define XOR3(a, b, c) TERNARY(a, b, c, 0x96)
 #define MAJORITY(a, b, c) TERNARY(a, b, c, 0xE8)
 #include "search_body.h"

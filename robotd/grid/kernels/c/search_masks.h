@@ -39,11 +39,11 @@ static void reach(const uint64_t *counter, int32_t bits, int32_t least, uint64_t
 /* Which columns of a row of blocks have one in them that is set, for blocks so many times as large. */
 static uint64_t joined(uint64_t row, int32_t times)
 {
-    if (times >= 2)
-        row |= row >> 1;
-    if (times == 4)
-        row |= row >> 2;
-    return row & (times == 4 ? UINT64_C(0x1111111111111111) : times == 2 ? UINT64_C(0x5555555555555555) : ~UINT64_C(0));
+    static const uint64_t firsts[] = {~UINT64_C(0), UINT64_C(0x5555555555555555), UINT64_C(0x1111111111111111),
+                                      UINT64_C(0x0101010101010101)};
+    for (int32_t step = 1; step < times; step *= 2)
+        row |= row >> step;
+    return row & firsts[__builtin_ctz((uint32_t)times)];
 }
 
 /* Half a row of blocks, each of them twice, for a grid that is twice as fine. */
