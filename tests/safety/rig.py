@@ -146,6 +146,11 @@ def ms_since(began_ns: int, ended_ns: int) -> float:
 
 
 async def until(happens: Callable[[], object]) -> None:
-    """Look every millisecond whether something is so."""
-    while not happens():  # noqa: ASYNC110  # nobody tells: it is in another process, or in the physics
-        await asyncio.sleep(0.001)
+    """Look every millisecond whether something is so; if that takes too long, something else has stopped the robot.
+
+    Raises:
+        TimeoutError: it did.
+    """
+    async with asyncio.timeout(_PATIENCE_S):
+        while not happens():  # noqa: ASYNC110  # nobody tells: it is in another process, or in the physics
+            await asyncio.sleep(0.001)
