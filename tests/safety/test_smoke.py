@@ -1,5 +1,7 @@
 """A few trials of what ``make safety`` measures: every cause puts the stop on every wire of a real daemon."""
 
+from importlib.util import find_spec
+
 import pytest
 
 from robotd.core.clock import NS_PER_S
@@ -10,11 +12,16 @@ from tests.safety.run import measured, percentile
 TRIALS = {"lease expiry": 8, "client killed": 1, "loop stall": 8, "SIGTERM": 2, "daemon killed": 1, ON_C_BOARDS: 1}
 SOON_MS = 500.0
 """However busy the machine that runs the tests; how soon it really is, ``make safety`` says."""
+needs_c = pytest.mark.skipif(
+    find_spec("robotd.sim.firmware._native") is None, reason="there was no C compiler for the firmware"
+)
 
 
 @pytest.mark.real_clock
 @pytest.mark.shares_descriptors  # the server that forks clients lives until the tests end
-@pytest.mark.parametrize("cause", CAUSES)
+@pytest.mark.parametrize(
+    "cause", [pytest.param(cause, marks=needs_c if cause == ON_C_BOARDS else ()) for cause in CAUSES]
+)
 async def test_the_stop_is_on_the_wires_soon(cause: str) -> None:
     late_ms = await measured(cause, TRIALS[cause])
     assert len(late_ms) == TRIALS[cause]
