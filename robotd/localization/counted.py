@@ -6,7 +6,7 @@ memory is that of one batch: so maps of any size can be counted. The bounded sea
 gives the same answer sooner, by not counting what cannot be best.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,11 +55,9 @@ def count_all(
         ValueError: a reading measured nothing, or there are more than 65535.
         TooLarge: a single heading needs more memory than a rank grid may take.
     """
-    per_heading = the_map.packed.counter_bytes(1, bits_of(len(readings)))
-    batch = max(1, memory_bytes // max(1, per_heading))
     best, found = 0, []
-    for first in range(0, len(headings_rad), batch):
-        ranks = RankGrid(the_map, headings_rad[first : first + batch], threads=threads)
+    for first, batch_rad in heading_batches(the_map, len(readings), headings_rad, memory_bytes):
+        ranks = RankGrid(the_map, batch_rad, threads=threads)
         ranks.add(*readings)
         best = max(best, ranks.best_rank)
         poses = ranks.cells_of_rank(max(1, best - slack))
@@ -68,3 +66,15 @@ def count_all(
     counts = np.concatenate([np.empty(0, np.uint16), *(part for _, part in found)])
     near = counts >= max(1, best - slack)  # what came near the best of earlier headings may not come near the best
     return CountedPoses(best, poses[near], counts[near])
+
+
+def heading_batches(
+    the_map: PreparedMap, readings: int, headings_rad: Sequence[float], memory_bytes: int
+) -> Iterator[tuple[int, Sequence[float]]]:
+    """Yield headings in batches whose counters take no more than so much memory, each after its first one's number.
+
+    A batch has one heading at least, whatever that takes.
+    """
+    batch = max(1, memory_bytes // max(1, the_map.packed.counter_bytes(1, bits_of(readings))))
+    for first in range(0, len(headings_rad), batch):
+        yield first, headings_rad[first : first + batch]

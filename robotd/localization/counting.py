@@ -19,7 +19,7 @@ from robotd.localization.rank import RankGrid
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.search import best_poses
 
-_FEW_HEADINGS = 32
+FEW_HEADINGS = 32
 """So many are counted as the readings come: 256 x 256 cells then take 10 MB."""
 
 POSES_MAX = 1 << 15
@@ -58,7 +58,7 @@ class Count:
         self._map = the_map
         self._within = within
         self._threads = threads
-        is_counted = within is None and len(self.headings_rad) <= _FEW_HEADINGS
+        is_counted = within is None and len(self.headings_rad) <= FEW_HEADINGS
         self._ranks = RankGrid(the_map.prepared, self.headings_rad, threads=threads) if is_counted else None
 
     def add(self, *readings: RangeReading) -> None:

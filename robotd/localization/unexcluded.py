@@ -13,12 +13,9 @@ from robotd.core.reading import RangeReading
 from robotd.grid.readings import numbers_of
 from robotd.localization.area import Area
 from robotd.localization.conservative_rank import ConservativeMap, ConservativeRankGrid
-from robotd.localization.counting import NOTHING, POSES_MAX, Found
-from robotd.localization.rank import bits_of
+from robotd.localization.counted import MEMORY_BYTES, heading_batches
+from robotd.localization.counting import FEW_HEADINGS, NOTHING, POSES_MAX, Found
 
-_FEW_HEADINGS = 32
-"""So many are counted as the readings come; more are counted when somebody asks, in batches."""
-_MEMORY_BYTES = 1 << 28
 _HALF_DIAGONAL = math.sqrt(0.5)
 
 
@@ -49,7 +46,7 @@ class Unexcluded:
         self._within = within
         self._outlier_share = outlier_share
         self._threads = threads
-        self._kept = self._grid(self.headings_rad) if len(self.headings_rad) <= _FEW_HEADINGS else None
+        self._kept = self._grid(self.headings_rad) if len(self.headings_rad) <= FEW_HEADINGS else None
 
     def add(self, *readings: RangeReading) -> None:
         """Take measured readings.
@@ -86,10 +83,9 @@ class Unexcluded:
         if self._kept is not None:
             yield 0, self._kept
             return
-        per_heading = self._map.prepared.packed.counter_bytes(1, bits_of(len(self.readings)))
-        batch = max(1, _MEMORY_BYTES // max(1, per_heading))
-        for first in range(0, len(self.headings_rad), batch):
-            ranks = self._grid(self.headings_rad[first : first + batch])
+        batches = heading_batches(self._map.prepared, len(self.readings), self.headings_rad, MEMORY_BYTES)
+        for first, batch_rad in batches:
+            ranks = self._grid(batch_rad)
             ranks.add(*self.readings)
             yield first, ranks
 

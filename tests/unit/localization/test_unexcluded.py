@@ -99,8 +99,8 @@ def test_counted_in_batches_when_asked_or_as_readings_come_the_answers_are_the_s
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     kept = empty().answers()
-    monkeypatch.setattr(unexcluded, "_FEW_HEADINGS", 0)
-    monkeypatch.setattr(unexcluded, "_MEMORY_BYTES", 1)
+    monkeypatch.setattr(unexcluded, "FEW_HEADINGS", 0)
+    monkeypatch.setattr(unexcluded, "MEMORY_BYTES", 1)
     asked = empty().answers()
     assert len(kept.poses) > 100
     assert kept.best_rank == asked.best_rank == 2
