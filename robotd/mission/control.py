@@ -1,7 +1,9 @@
 """Everything that can be asked of the robot, in one place; the server and a replay both ask here.
 
-Each request that concerns the robot is noted in the journal before it is carried out (only a stop is on the wires
-first), so a replay can ask the same again.
+Each request that has an effect on the robot is noted in the journal before what it leads to (only a stop is on the
+wires first), so a replay can ask the same again. What is refused at once has none and is not noted: a client that is
+refused ten thousand times a minute must not fill the memory that recordings begin with. What fails halfway, as arming
+may, is noted.
 """
 
 import base64
@@ -22,6 +24,7 @@ from robotd.maps.store import MapEntry, MapStore
 from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MapChanged, Status
 from robotd.mission.map_in_use import MapInUse
+from robotd.mission.modes import Occasion
 from robotd.mission.requests import Mission
 from robotd.mission.supervisor import Supervisor
 from robotd.recording.preroll import PrerollJournal
@@ -59,34 +62,44 @@ class Control:
 
     async def arm(self) -> None:
         """Allow motion; see :meth:`Supervisor.arm`."""
+        self._supervisor.require_armable()
         self._journal.command(now_ns(), "arm", {})
         await self._supervisor.arm()
 
-    async def disarm(self) -> None:
-        """Stop and forbid motion."""
-        await self.stop("disarmed by request")
-
-    async def stop(self, reason: str) -> None:
-        """Stop everything and disarm; valid at any time."""
+    def halt(self, reason: str) -> None:
+        """Stop everything and disarm, at once; valid at any time."""
         self._supervisor.robot.stop_now()
         self._journal.command(now_ns(), "stop", {"reason": reason})
-        await self._supervisor.stop(reason)
+        self._supervisor.halt(Occasion.STOP, reason)
+
+    async def stopped(self) -> None:
+        """Wait until the mission that was stopped has ended."""
+        await self._supervisor.stopped()
+
+    async def stop(self, reason: str) -> None:
+        """Stop everything and disarm, and wait until what was under way has ended."""
+        self.halt(reason)
+        await self.stopped()
 
     async def clear(self) -> None:
         """Acknowledge latched faults; see :meth:`Supervisor.clear`."""
+        self._supervisor.require_clearable()
         self._journal.command(now_ns(), "clear", {})
         await self._supervisor.clear()
 
     def start(self, mission: Mission, lease_s: float) -> int:
         """Start a mission under a lease; see :meth:`Supervisor.start`."""
+        begun_ns = now_ns()
+        mission_id = self._supervisor.start(mission, lease_s)  # which takes its first step later: nothing is noted yet
         arguments = {"kind": type(mission).__name__, "mission": msgspec.to_builtins(mission), "lease_s": lease_s}
-        self._journal.command(now_ns(), "start", arguments)
-        return self._supervisor.start(mission, lease_s)
+        self._journal.command(begun_ns, "start", arguments)
+        return mission_id
 
     def renew(self, mission_id: int) -> None:
         """Keep a mission's lease alive; see :meth:`Supervisor.renew`."""
-        self._journal.command(now_ns(), "renew", {"mission_id": mission_id})
+        renewed_ns = now_ns()
         self._supervisor.renew(mission_id)
+        self._journal.command(renewed_ns, "renew", {"mission_id": mission_id})
 
     def whole_map(self) -> MapChanged:
         """Return every cell of the map in use.
@@ -131,13 +144,14 @@ class Control:
         return entry
 
     def _use(self, arguments: dict[str, Any], grid: OccupancyGrid) -> None:
-        self._journal.command(now_ns(), "use_map", arguments)
         place = MapInUse(arguments["map_id"], arguments["name"], grid, None)
         here = self._supervisor.robot.drive.odometry.latest
         if arguments["robot_in_map"] is not None:
             if here is None:
                 raise MissionError("there is no odometry yet to tie to the map")
             place.tie(msgspec.convert(arguments["robot_in_map"], Pose2), here.in_odom)
+        self._supervisor.require_replaceable_map()
+        self._journal.command(now_ns(), "use_map", arguments)
         self._supervisor.use(place)
 
     async def start_recording(self, path: str | None) -> str:

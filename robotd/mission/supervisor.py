@@ -130,10 +130,7 @@ class Supervisor:
             MissionError: the head or the rangefinder is absent, a fault is latched, or a mission is under way.
             DeviceError, LinkTimeout, TransportError: a device will not; all are disarmed again.
         """
-        self._require(Occasion.ARM)
-        devices = self._to_arm()
-        if self._faults:
-            raise MissionError(f"cannot arm: {'; '.join(self._faults)}: clear first")
+        devices = self.require_armable()
         try:
             async with asyncio.timeout(_DEVICE_TIMEOUT_S):
                 await self._arm_devices(devices)
@@ -146,12 +143,19 @@ class Supervisor:
         self._armed = devices
         self._apply(Occasion.ARM, "armed" if self.robot.drive in devices else "armed without a base: it can only look")
 
-    def _to_arm(self) -> tuple[Device, ...]:
-        """Return all devices; without a base the others, so that the robot can look round where it stands."""
+    def require_armable(self) -> tuple[Device, ...]:
+        """Return what to arm: all devices; without a base the others, so that the robot can look round where it stands.
+
+        Raises:
+            MissionError: it cannot be armed now; nothing was done yet.
+        """
+        self._require(Occasion.ARM)
         absent = self.robot.absent
         devices = self.robot.devices if self.robot.has_base else self.robot.devices[1:]
         if any(device.name in absent for device in devices):
             raise MissionError(f"cannot arm: {', '.join(absent)} absent")
+        if self._faults:
+            raise MissionError(f"cannot arm: {'; '.join(self._faults)}: clear first")
         return devices
 
     async def _arm_devices(self, devices: tuple[Device, ...]) -> None:
@@ -166,6 +170,10 @@ class Supervisor:
     async def stop(self, reason: str) -> None:
         """Stop everything and disarm; valid at any time."""
         self.halt(Occasion.STOP, reason)
+        await self.stopped()
+
+    async def stopped(self) -> None:
+        """Wait until the mission that was stopped has ended."""
         if self._mission is not None:
             await asyncio.wait((self._mission,))
 
@@ -176,13 +184,17 @@ class Supervisor:
             MissionError: the robot is armed.
             DeviceError, LinkTimeout, TransportError: a device will not.
         """
-        self._require(Occasion.CLEAR)
+        self.require_clearable()
         for device in self.robot.devices:
             if device.status.link is LinkState.READY:
                 await device.clear_faults()
         if self._faults:
             raise MissionError(f"faults remain: {'; '.join(self._faults)}")
         self._apply(Occasion.CLEAR, "faults cleared")
+
+    def require_clearable(self) -> None:
+        """Raise MissionError if faults cannot be acknowledged now; nothing was done yet."""
+        self._require(Occasion.CLEAR)
 
     def start(self, mission: Mission, lease_s: float) -> int:
         """Start a mission under a lease and return its number.
@@ -221,9 +233,13 @@ class Supervisor:
         Raises:
             MissionError: a mission is under way.
         """
+        self.require_replaceable_map()
+        self.adopt(place)
+
+    def require_replaceable_map(self) -> None:
+        """Raise MissionError if the map in use cannot be changed now."""
         if self._busy:
             raise MissionError("the map cannot be changed while a mission is under way")
-        self.adopt(place)
 
     def adopt(self, place: MapInUse) -> None:
         """Take over a map, from a mission or from the store, and tell everybody."""

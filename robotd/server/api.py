@@ -13,12 +13,15 @@ import msgspec
 from msgspec import Meta
 
 from robotd.core.pose import IDENTITY, Pose2
+from robotd.core.text import LONGEST, printable, printable_bytes
 from robotd.localization.area import Area
 from robotd.maps.store import MapEntry
 from robotd.mission.events import MissionProgress, Status
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
 from robotd.server.map_wire import MapPayload
 
+LONGEST_REASON = LONGEST
+"""Letters of the reason for a stop that are kept."""
 VERSION = 1
 """Major version of the wire: carried by every message, refused when it is not ours."""
 
@@ -198,7 +201,15 @@ class Stop(Command[Done], frozen=True):
     """Stop now; ahead of everything else, at any time."""
 
     cmd, result = "stop", Done
-    reason: Annotated[str, Meta(max_length=200)] = "stopped by a client"
+    reason: Annotated[str, Meta(max_length=LONGEST_REASON)] = "stopped by a client"
+
+    @classmethod
+    def because(cls, reason: object) -> "Stop":
+        """Return a stop for any reason: a text of whatever length and letters, bytes, nothing at all."""
+        text = (
+            printable_bytes(reason) if isinstance(reason, bytes) else printable("" if reason is None else str(reason))
+        )
+        return cls(text) if text.strip() else cls()
 
 
 class Clear(Command[Done], frozen=True):

@@ -130,8 +130,8 @@ class AsyncClient:
         await self.call(api.Disarm())
 
     async def stop(self, reason: str = "stopped by a client") -> None:
-        """Stop now."""
-        await self.call(api.Stop(reason))
+        """Stop now, for any reason: ``str`` of an exception will do, cut to the letters that are kept."""
+        await self.call(api.Stop.because(reason))
 
     async def clear(self) -> None:
         """Acknowledge latched faults."""

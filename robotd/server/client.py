@@ -131,8 +131,8 @@ class Client:
         self.call(api.Disarm())
 
     def stop(self, reason: str = "stopped by a client") -> None:
-        """Stop now."""
-        self.call(api.Stop(reason))
+        """Stop now, for any reason: ``str`` of an exception will do, cut to the letters that are kept."""
+        self.call(api.Stop.because(reason))
 
     def clear(self) -> None:
         """Acknowledge latched faults."""

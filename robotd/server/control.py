@@ -31,11 +31,11 @@ class Control(Protocol):
     async def arm(self) -> None:
         """Allow motion; cancelled when a stop overtakes it."""
 
-    async def disarm(self) -> None:
-        """Stop and forbid motion."""
+    def halt(self, reason: str) -> None:
+        """Stop everything and disarm; valid at any time. The stop is on the wire when this returns."""
 
-    async def stop(self, reason: str) -> None:
-        """Stop everything and disarm; valid at any time. The stop is on the wire before this first awaits."""
+    async def stopped(self) -> None:
+        """Wait until the mission that was stopped has ended."""
 
     async def clear(self) -> None:
         """Acknowledge latched faults; the robot stays disarmed."""

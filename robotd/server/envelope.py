@@ -1,11 +1,13 @@
 """Requests and replies as bytes, both ways, pure.
 
-A request is the msgpack map ``{v, id, cmd, args}``; a reply is ``{v, id, ok: true, result}`` or
-``{v, id, ok: false, error: {code, message}}``. What comes from a client is never trusted: size, nesting, duplicate
-keys, types, ranges and finiteness are checked before anything sees it, and what fails is answered, not raised.
+A request is the msgpack map ``{v, id, cmd, args}``; a reply is ``{v, id, ok: true, result}`` or ``{v, id, ok: false,
+error: {code, message}}``. What comes from a client is never trusted: size, nesting, duplicate keys, types, ranges and
+finiteness are checked before anything sees it, and what fails is answered, not raised. A stop is what
+:mod:`robotd.server.stopping` takes for one, whatever else is wrong with it.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +16,9 @@ import msgspec
 import numpy as np
 
 from robotd.core.errors import RemoteProtocolError, ServerError
-from robotd.server.api import COMMANDS, VERSION, Command, ErrorCode
+from robotd.core.text import printable
+from robotd.server.api import COMMANDS, VERSION, Command, ErrorCode, Stop
+from robotd.server.stopping import Pairs, means_stop, unpacked
 
 _MAX_DEPTH = 6
 _MAX_ITEMS = 2048
@@ -38,6 +42,8 @@ class BadRequest:
     id: int | None
     """Its number, if at least that could be read."""
     error: ServerError
+    means_stop: bool = False
+    """Whether it is a stop all the same, to be obeyed before it is answered."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +55,7 @@ class Reply:
 
 
 def decode_request(data: bytes, max_bytes: int) -> Request | BadRequest:
-    """Return what a client asks. Never raises; time and memory are bounded by ``max_bytes``."""
+    """Return what a client asks. Never raises; time and memory are bounded by the length of ``data``."""
     request_id = None
     try:
         fields = _unpack(data, max_bytes)
@@ -57,10 +63,38 @@ def decode_request(data: bytes, max_bytes: int) -> Request | BadRequest:
         _check(fields, _MAX_DEPTH)
         command = _command_of(fields)
     except ServerError as error:
-        return BadRequest(request_id, error)
+        return _stop_for_an_odd_reason(data) or _bad(request_id, error, means_stop=means_stop(data))
     if request_id is None:
-        return BadRequest(None, ServerError(ErrorCode.MALFORMED, "id must be a whole number from 0 to 2^63 - 1"))
+        nameless = ServerError(ErrorCode.MALFORMED, "id must be a whole number from 0 to 2^63 - 1")
+        return _bad(None, nameless, means_stop=means_stop(data))
     return Request(request_id, command)
+
+
+def refuse_frames(frames: Sequence[bytes]) -> BadRequest:
+    """Return what is answered to a request of several frames."""
+    error = ServerError(ErrorCode.MALFORMED, f"a request is one frame, this one has {len(frames)}")
+    return _bad(None, error, means_stop=any(map(means_stop, frames)))
+
+
+def _bad(request_id: int | None, error: ServerError, *, means_stop: bool) -> BadRequest:
+    note = "; it speaks of a stop, so the robot was stopped" if means_stop else ""
+    return BadRequest(request_id, ServerError(error.code, f"{error.message}{note}"), means_stop)
+
+
+def _stop_for_an_odd_reason(data: bytes) -> Request | None:
+    """Return a stop that is as it should be but for its reason: too long, bytes, no text at all."""
+    top = unpacked(data)
+    if not isinstance(top, Pairs) or len(top) != len(_KEYS):
+        return None
+    try:
+        fields = {key.decode(): value for key, value in top}
+        request_id, arguments = _id_of(fields), dict(fields["args"])
+    except (AttributeError, KeyError, TypeError, ValueError):
+        return None
+    is_one = (fields.get("cmd"), fields.get("v")) == (Stop.cmd.encode(), VERSION) and type(fields["v"]) is int
+    if request_id is None or not is_one or list(arguments) != [b"reason"]:
+        return None
+    return Request(request_id, Stop.because(arguments[b"reason"]))
 
 
 def encode_request(request_id: int, command: Command[Any]) -> bytes:
@@ -158,21 +192,31 @@ def _id_of(fields: dict[str, Any]) -> int | None:
 def _command_of(fields: dict[str, Any]) -> Command[Any]:
     version = fields.get("v")
     if type(version) is not int or version != VERSION:
-        raise ServerError(ErrorCode.UNSUPPORTED_VERSION, f"this server speaks version {VERSION}, got {version!r:.50}")
+        raise ServerError(ErrorCode.UNSUPPORTED_VERSION, f"this server speaks version {VERSION}, got {_shown(version)}")
     if unknown := [key for key in fields if key not in _KEYS]:
-        raise ServerError(ErrorCode.MALFORMED, f"unknown key {unknown[0]!r:.50}: a request has v, id, cmd and args")
+        raise ServerError(ErrorCode.MALFORMED, f"unknown key {_shown(unknown[0])}: a request has v, id, cmd and args")
     name = fields.get("cmd")
     kind = COMMANDS.get(name) if isinstance(name, str) else None
     if kind is None:
-        raise ServerError(ErrorCode.UNKNOWN_COMMAND, f"no command {name!r:.50}; there are {', '.join(COMMANDS)}")
+        raise ServerError(ErrorCode.UNKNOWN_COMMAND, f"no command {_shown(name)}; there are {', '.join(COMMANDS)}")
     try:
-        command: Command[Any] = msgspec.convert(fields.get("args", {}), kind, strict=True)
+        command: Command[Any] = msgspec.convert(_arguments_of(fields), kind, strict=True)
     except msgspec.ValidationError as error:
         raise ServerError(ErrorCode.BAD_ARGUMENT, f"{name}: {_in_words(error)}") from error
-    return command
+    return Stop.because(command.reason) if isinstance(command, Stop) else command
+
+
+def _arguments_of(fields: dict[str, Any]) -> Any:
+    """Return the arguments; nothing, nil and the empty list are none, which some languages cannot tell apart."""
+    arguments = fields.get("args")
+    return {} if arguments is None or arguments == [] else arguments
 
 
 def _in_words(error: msgspec.ValidationError) -> str:
     """Return what is wrong with which argument; msgspec names it last, as a path from ``$``."""
     what, _, path = str(error).partition(" - at `$")
-    return f"{path.strip('.`')}: {what}" if path else what
+    return printable(f"{path.strip('.`')}: {what}" if path else what)
+
+
+def _shown(value: object) -> str:
+    return printable(repr(value), 50)

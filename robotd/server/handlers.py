@@ -41,8 +41,8 @@ class Handlers:
             api.GetStatus: self._status,
             api.GetConfig: self._config,
             api.Arm: self._arm,
-            api.Disarm: self._disarm,
-            api.Stop: self._stop,
+            api.Disarm: self._stopped,
+            api.Stop: self._stopped,
             api.Clear: self._clear,
             api.MapStart: self._start,
             api.Localize: self._start,
@@ -55,6 +55,10 @@ class Handlers:
             api.RecordStart: self._record_start,
             api.RecordStop: self._record_stop,
         }
+
+    def halt(self, command: Command[Any]) -> None:
+        """Obey a command that stops the robot, at once; :meth:`carry_out` then waits for the mission's end."""
+        self._control.halt(command.reason if isinstance(command, api.Stop) else "disarmed by request")
 
     async def carry_out(self, command: Command[Any]) -> object:
         """Return what a command answers.
@@ -84,12 +88,8 @@ class Handlers:
         await self._control.arm()
         return Done()
 
-    async def _disarm(self, _: api.Disarm) -> Done:
-        await self._control.disarm()
-        return Done()
-
-    async def _stop(self, command: api.Stop) -> Done:
-        await self._control.stop(command.reason)
+    async def _stopped(self, _: api.Stop | api.Disarm) -> Done:
+        await self._control.stopped()
         return Done()
 
     async def _clear(self, _: api.Clear) -> Done:

@@ -21,6 +21,7 @@ from robotd.server.lock import lock_directory
 from robotd.server.outcomes import Outcomes
 from robotd.server.outlet import Outlet
 from robotd.server.publisher import DEPTH, Publisher
+from robotd.server.router import Router
 
 _SOCKET_MODE = 0o770
 _ROOM_TO_REFUSE = 4
@@ -107,7 +108,7 @@ class Server:
         settings = self._settings
         outcomes = Outcomes()
         commands = Commands(
-            router,
+            Router(router),
             Handlers(self._control, outcomes, self.session, settings.lease_s),
             max_bytes=settings.max_request_bytes,
             max_pending=settings.max_pending_requests,

@@ -76,16 +76,15 @@ class FakeControl:
         await self.arming.wait()
         self.armed = True
 
-    async def disarm(self) -> None:
-        self.calls.append("disarm")
-        self.armed = False
-
-    async def stop(self, reason: str) -> None:
+    def halt(self, reason: str) -> None:
         self.calls.append(f"stop: {reason}")
         self.armed = False
         self._stop_reason = reason
         if self._mission is not None:
             self._mission.cancel()
+
+    async def stopped(self) -> None:
+        if self._mission is not None:
             await asyncio.wait((self._mission,))
 
     async def clear(self) -> None:

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import os
 import signal
 import subprocess
 import sys
@@ -55,7 +56,7 @@ async def test_every_method_of_the_async_client(serving: Serving, tmp_path: Path
         assert (await robot.record_stop(), await robot.record_stop()) == ("there.mcap", None)
         await robot.disarm()
         await robot.stop("the end")
-        assert control.calls[-2:] == ["disarm", "stop: the end"]
+        assert control.calls[-2:] == ["stop: disarmed by request", "stop: the end"]
         with pytest.raises(ServerError, match="internal"):
             await robot.clear()
 
@@ -91,6 +92,33 @@ async def test_every_method_of_the_sync_client(serving: Serving, tmp_path: Path)
             LocalizeMission(0.25, tie=False),
             DriveMission(3.0, 4.0),
         ]
+
+
+@pytest.mark.parametrize("reason", ["x" * 50_000, "a\nb\x1b[2J", "half \ud800", "", str(ValueError("wheel"))])
+async def test_a_client_can_stop_for_any_reason(serving: Serving, tmp_path: Path, reason: str) -> None:
+    def use() -> None:
+        with Client(tmp_path) as robot:
+            robot.stop(reason)
+
+    async with serving() as control, AsyncClient(tmp_path) as robot:
+        await robot.arm()
+        await robot.stop(reason)
+        assert not control.armed
+        await asyncio.to_thread(use)
+        assert len(control.calls) == 3
+        assert control.calls[1] == control.calls[2]
+        assert control.calls[1].isprintable()
+        assert len(control.calls[1]) > len("stop: ")
+
+
+async def test_the_log_names_the_process_that_asked(
+    serving: Serving, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("INFO")
+    async with serving(), AsyncClient(tmp_path) as robot:
+        await robot.stop("enough")
+    asked = next(message for message in caplog.messages if "enough" in message)
+    assert asked.endswith(f"(uid {os.getuid()}, pid {os.getpid()}): stop reason=enough")
 
 
 async def test_a_mission_is_told_from_its_start_to_its_end(serving: Serving, tmp_path: Path) -> None:

@@ -1,12 +1,15 @@
 """Requests side by side, bounded, once each; and a stop before all of them. Virtual time, a socket of lists."""
 
 import asyncio
+import errno
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from typing import Any
 
+import msgpack
 import pytest
+import zmq
 
 from robotd.core.errors import MapError, ServerError
 from robotd.maps.store import MapEntry
@@ -16,19 +19,28 @@ from robotd.server.commands import Commands
 from robotd.server.envelope import Reply, decode_reply, encode_request
 from robotd.server.handlers import Handlers
 from robotd.server.outcomes import Outcomes
+from robotd.server.router import Router
 
 
 class ListSocket:
-    """Takes requests from a queue, keeps the replies."""
+    """Takes requests from a queue, keeps the replies; fails where a test says so."""
+
+    closed = False
 
     def __init__(self) -> None:
-        self.requests: asyncio.Queue[list[bytes]] = asyncio.Queue()
+        self.requests: asyncio.Queue[list[bytes] | zmq.ZMQError] = asyncio.Queue()
         self.sent: list[list[bytes]] = []
+        self.send_errors: list[zmq.ZMQError] = []
 
-    async def recv_multipart(self) -> list[bytes]:
-        return await self.requests.get()
+    async def recv_multipart(self, copy: bool) -> list[zmq.Frame]:
+        frames = await self.requests.get()
+        if isinstance(frames, zmq.ZMQError):
+            raise frames
+        return [zmq.Frame(frame, copy=True) for frame in frames]
 
     async def send_multipart(self, frames: list[bytes]) -> None:
+        if self.send_errors:
+            raise self.send_errors.pop()
         self.sent.append(frames)
 
     def ask(self, number: int, command: api.Command[Any], client: bytes = b"A") -> None:
@@ -51,7 +63,7 @@ async def served(control: Any) -> AsyncIterator[ListSocket]:
     socket = ListSocket()
     outcomes = Outcomes()
     commands = Commands(
-        socket,  # type: ignore[arg-type]  # the two methods it uses
+        Router(socket),  # type: ignore[arg-type]  # the two methods it uses
         Handlers(control, outcomes, "session", 0.5),
         max_bytes=65536,
         max_pending=4,
@@ -65,6 +77,138 @@ async def served(control: Any) -> AsyncIterator[ListSocket]:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
         await control.close()
+
+
+def stop_with(**fields: Any) -> bytes:
+    packed: bytes = msgpack.packb({"v": 1, "id": 7, "cmd": "stop", "args": {}} | fields)
+    return packed
+
+
+ODD_STOPS = {
+    "another version": [stop_with(v=2)],
+    "an extra key": [stop_with(urgent=True)],
+    "capitals": [stop_with(cmd="STOP")],
+    "no number": [msgpack.packb({"v": 1, "cmd": "stop"})],
+    "an unknown argument": [stop_with(args={"reason": "because", "hard": True})],
+    "cut": [stop_with()[:-3]],
+    "JSON": [b'{"v": 1, "id": 7, "cmd": "stop"}'],
+    "many frames": [stop_with(), b"x", b"y", b"z"],
+    "two frames": [b"x", stop_with()],
+    "as large as may be": [stop_with(args={"reason": "x", "trace": "y" * 200_000})],
+}
+
+
+@pytest.mark.parametrize("frames", ODD_STOPS.values(), ids=ODD_STOPS.keys())
+async def test_a_stop_is_obeyed_first_and_judged_afterwards(make_control: Any, frames: list[bytes]) -> None:
+    control = make_control()
+    control.armed = True
+    async with served(control) as socket:
+        socket.requests.put_nowait([b"A", *frames])
+        await asyncio.sleep(0.1)
+        assert not control.armed
+        assert [call.split(":")[0] for call in control.calls] == ["stop"]
+        (reply,) = socket.replies
+        assert isinstance(reply.result, ServerError)
+        assert "the robot was stopped" in reply.result.message
+
+
+@pytest.mark.parametrize(
+    "args", [[], None, {"reason": None}, {"reason": b"\xff"}, {"reason": "x" * 5000}, {"reason": 1.0}]
+)
+async def test_a_stop_for_an_odd_reason_is_a_good_one(make_control: Any, args: Any) -> None:
+    control = make_control()
+    control.armed = True
+    async with served(control) as socket:
+        socket.requests.put_nowait([b"A", stop_with(args=args)])
+        await asyncio.sleep(0.1)
+        assert (control.armed, socket.outcome) == (False, {7: "ok"})
+        assert len(control.calls[0]) <= len("stop: ") + api.LONGEST_REASON
+
+
+async def test_what_is_no_stop_stops_nothing(make_control: Any) -> None:
+    control = make_control()
+    control.armed = True
+    async with served(control) as socket:
+        socket.ask(1, api.MapLoad("stop"))
+        socket.ask(2, api.RecordStop())
+        socket.requests.put_nowait([b"A", stop_with(cmd="map_load", args={"name": "stop", "stop": 1})])
+        socket.requests.put_nowait([b"A", encode_request(3, api.MapLoad("stop"))[:-2]])
+        await asyncio.sleep(0.1)
+        assert control.armed
+        assert socket.outcome == {1: "ok", 2: "ok", 7: "bad_argument", None: "malformed"}
+
+
+async def test_a_stop_for_which_there_is_no_room_is_obeyed_and_answered(make_control: Any) -> None:
+    control = make_control()
+    control.armed = True
+    control.release.clear()
+    async with served(control) as socket:
+        for number in range(9):
+            socket.ask(number, api.Stop(), b"%d" % number)
+        await asyncio.sleep(0.1)
+        assert len(control.calls) == 9
+        assert socket.outcome == dict.fromkeys(range(9), "ok")
+
+
+async def test_a_stop_that_fails_in_the_daemon_does_not_end_what_takes_the_next(
+    make_control: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    control = make_control()
+    halt = control.halt
+    async with served(control) as socket:
+        monkeypatch.setattr(control, "halt", lambda reason: 1 / 0)
+        socket.ask(1, api.Stop())
+        await asyncio.sleep(0.1)
+        monkeypatch.setattr(control, "halt", halt)
+        socket.ask(2, api.Stop("again"))
+        await asyncio.sleep(0.1)
+        assert control.calls == ["stop: again"]
+
+
+@pytest.mark.parametrize("number", [errno.EAGAIN, errno.EMFILE, errno.ENOTSUP, errno.EHOSTUNREACH, errno.EINTR])
+async def test_no_error_of_the_socket_ends_the_daemon(make_control: Any, number: int) -> None:
+    async with served(make_control()) as socket:
+        socket.send_errors.append(zmq.ZMQError(number))
+        socket.requests.put_nowait(zmq.ZMQError(number))
+        socket.ask(1, api.Hello())
+        socket.ask(2, api.Hello())
+        await asyncio.sleep(1)
+        assert socket.outcome == {2: "ok"}
+
+
+async def test_the_log_says_who_asked_for_what_and_what_came_of_it(
+    make_control: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("INFO")
+    control = make_control()
+    control.armed = True
+    control.release.clear()
+    async with served(control) as socket:
+        socket.ask(1, api.DriveTo(1.5, 2.0), b"\x01\x02")
+        socket.ask(2, api.DriveTo(1.5, 2.5), b"\x03")
+        socket.ask(3, api.Hello())
+        socket.ask(4, api.Stop("a\nb"), b"\x03")
+        await asyncio.sleep(1)
+    assert caplog.messages == [
+        "client 0102: drive_to x_m=1.5 y_m=2.0: mission 1, lease 0.5 s",
+        "client 03: drive_to x_m=1.5 y_m=2.5: refused: not now",
+        "client 03: stop reason=a\\nb",
+    ]
+
+
+async def test_a_flood_of_refused_requests_does_not_flood_the_log(
+    make_control: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("INFO")
+    async with served(make_control()) as socket:
+        for number in range(300):
+            socket.ask(number, api.Localize())
+            await asyncio.sleep(0.001)
+        await asyncio.sleep(2)
+        socket.ask(300, api.Localize())
+        await asyncio.sleep(1)
+    assert len(caplog.messages) < 30
+    assert "more like it were not logged" in caplog.messages[-1]
 
 
 async def test_a_slow_request_holds_nobody_up(make_control: Any) -> None:

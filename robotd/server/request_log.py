@@ -1,0 +1,67 @@
+"""What the log says of requests: who asked for what that changes something, and what came of it. One line each."""
+
+import logging
+from typing import Any
+
+import msgspec
+
+from robotd.core.errors import ServerError
+from robotd.core.log_limit import LogLimit
+from robotd.core.text import printable
+from robotd.server.api import Command, MapEntryInfo, MissionStarted, RecordingFile
+from robotd.server.stopping import STOPPING
+
+_BURST = 20
+
+log = logging.getLogger(__name__)
+
+
+class RequestLog:
+    """Notes requests, each kind of line within bounds: a client that floods must not hide what the others do."""
+
+    def __init__(self) -> None:
+        self._stops = LogLimit(burst=_BURST)
+        self._done = LogLimit(burst=_BURST)
+        self._refused = LogLimit(burst=_BURST)
+
+    def obeyed(self, sender: str, command: Command[Any]) -> None:
+        """Note a stop, which was obeyed."""
+        _say(self._stops, f"{sender}: {in_words(command)}")
+
+    def done(self, sender: str, command: Command[Any], result: object) -> None:
+        """Note what was done; what only looks goes without saying, and a stop was noted."""
+        if not (command.only_looks or isinstance(command, STOPPING)):
+            _say(self._done, f"{sender}: {in_words(command)}: {_came_to(result)}")
+
+    def refused(self, sender: str, command: Command[Any], error: ServerError) -> None:
+        """Note what was not done, and why."""
+        _say(self._refused, f"{sender}: {in_words(command)}: {printable(str(error))}")
+
+
+def in_words(command: Command[Any]) -> str:
+    """Return a request with what it asks beyond the defaults.
+
+    >>> from robotd.server.api import DriveTo
+    >>> in_words(DriveTo(1.5, 2.0))
+    'drive_to x_m=1.5 y_m=2.0'
+    """
+    defaults = {field.name: field.default for field in msgspec.structs.fields(type(command))}
+    asked = {name: value for name, value in msgspec.structs.asdict(command).items() if value != defaults[name]}
+    plain = msgspec.to_builtins(asked)
+    return printable(" ".join((command.cmd, *(f"{name}={value}" for name, value in plain.items()))), 300)
+
+
+def _came_to(result: object) -> str:
+    match result:
+        case MissionStarted():
+            return f"mission {result.mission_id}, lease {result.lease_s:g} s"
+        case MapEntryInfo():
+            return f"map {result.name} version {result.version}"
+        case RecordingFile():
+            return printable(str(result.path or "there was no recording"))
+    return "done"
+
+
+def _say(limit: LogLimit, line: str) -> None:
+    if (allowed := limit.line(line)) is not None:
+        log.info("%s", allowed)
