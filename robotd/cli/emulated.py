@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from robotd.cli.outputs import CONFIG_MARK, write
 from robotd.config import effective_text, loads
 from robotd.config.writer import write_value
-from robotd.core.errors import RobotdError
 from robotd.recording.reader import Recording
 
 RUNTIME_DIR, MAPS_DIR, RECORDINGS_DIR = "run", "maps", "recordings"
@@ -23,7 +23,7 @@ def config_text(ports: Mapping[str, str], devices: Mapping[str, Mapping[str, obj
         "recording": {"dir": RECORDINGS_DIR},
         **{device: {"port": port, **(devices or {}).get(device, {})} for device, port in ports.items()},
     }
-    lines = ["# Made by robotctl for emulated devices; what is not here has its default."]
+    lines = [f"{CONFIG_MARK} for emulated devices; what is not here has its default."]
     for section, values in sections.items():
         lines += ["", f"[{section}]", *(f"{key} = {write_value(value)}" for key, value in values.items())]
     return "\n".join(lines) + "\n"
@@ -45,7 +45,7 @@ def recorded_config_text(ports: Mapping[str, str], recording: Recording) -> str:
         pantilt=replace(config.pantilt, port=ports["pantilt"]),
         rangefinder=replace(config.rangefinder, port=ports["rangefinder"]),
     )
-    return "# Made by robotctl: the configuration of the recorded robot, for its fake.\n\n" + effective_text(wired)
+    return f"{CONFIG_MARK}: the configuration of the recorded robot, for its fake.\n\n" + effective_text(wired)
 
 
 def write_config(file: Path, text: str) -> None:
@@ -54,8 +54,4 @@ def write_config(file: Path, text: str) -> None:
     Raises:
         RobotdError: it cannot be written.
     """
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise RobotdError(f"cannot write {file}: {error.strerror}") from error
+    write(file, text.encode())

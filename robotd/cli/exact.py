@@ -6,6 +6,8 @@ from pathlib import Path
 
 from robotd.cli.exact_answers import say_smallest_error, say_where, say_why
 from robotd.cli.exact_inputs import Question, question
+from robotd.cli.outputs import PNG, output_argument
+from robotd.cli.plots import require_plots
 from robotd.cli.quantities import number, positive, whole
 from robotd.cli.verb import OK, Verb
 from robotd.core.errors import RobotdError
@@ -31,6 +33,8 @@ class _Slice:
 
 def _exact(arguments: argparse.Namespace) -> int:
     _refuse_contradictions(arguments)
+    if arguments.out is not None:
+        require_plots("--out")
     arithmetic = ARITHMETICS[arguments.arithmetic]
     asked = question(arguments, arithmetic)
     eps = rational(arguments.eps_m, arithmetic)
@@ -74,10 +78,8 @@ def _slice(polygon_map: PolygonMap, beams: tuple[Beam, ...], heading_deg: float)
 
 
 def _draw(file: Path, obstacles: PlanarSet, one: _Slice, least: int) -> None:
-    try:
-        from robotd.cli.exact_pictures import draw_ranks  # noqa: PLC0415  # matplotlib is an extra
-    except ImportError as error:
-        raise RobotdError(f"--out needs matplotlib ({error}): install robotd[plots]") from error
+    from robotd.cli.exact_pictures import draw_ranks  # noqa: PLC0415  # matplotlib is an extra
+
     draw_ranks(file, f"Where, at heading {one.heading_deg:g} deg", obstacles, one.ranks, least=least)
 
 
@@ -134,7 +136,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         metavar="K",
         help="show all poses that explain so many readings (default: the most)",
     )
-    parser.add_argument("--out", type=Path, metavar="FILE", help="draw the answer to a PNG")
+    output_argument(parser, "--out", PNG, "draw the answer to a PNG")
     parser.add_argument(
         "--arithmetic",
         choices=tuple(ARITHMETICS),

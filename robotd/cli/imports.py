@@ -3,43 +3,52 @@
 import argparse
 from pathlib import Path
 
+from robotd.cli.logs import LOG_HELP, Reading, reading_arguments
+from robotd.cli.outputs import RECORDED_BUILDING, output_argument, write
 from robotd.cli.quantities import positive, whole
 from robotd.cli.terminal import out, print_json
 from robotd.cli.verb import OK, Verb
-from robotd.sim.building import write_recorded_building
+from robotd.sim.building import RecordedBuilding, encode_recorded_building, select_stops
 
 
 def _carmen(arguments: argparse.Namespace) -> int:
-    building = write_recorded_building(
-        arguments.log,
-        arguments.out,
-        spacing_m=arguments.spacing_m,
-        keep_out_every=arguments.keep_out_every,
-        limit=arguments.limit,
-    )
-    kept_out = sum(stop.kept_out for stop in building.stops)
+    log = Reading.of(arguments).read(arguments.log)
+    stops = select_stops(log, arguments.spacing_m, keep_out_every=arguments.keep_out_every, limit=arguments.limit)
+    write(arguments.out, encode_recorded_building(RecordedBuilding(arguments.log.name, stops)))
+    kept_out = sum(stop.kept_out for stop in stops)
     if arguments.json:
-        print_json({"file": str(arguments.out), "stops": len(building.stops) - kept_out, "kept_out": kept_out})
+        facts = {"stops": len(stops) - kept_out, "kept_out": kept_out}
+        print_json({"file": str(arguments.out), **facts, "poses": log.poses.value, "damaged_lines": len(log.problems)})
     else:
-        stops = f"{len(building.stops) - kept_out} stops to map, {kept_out} kept out to localize at"
-        out().print(f"{arguments.out}: {stops}; now: robotctl sim {arguments.out}", markup=False)
+        words = f"{len(stops) - kept_out} stops to map, {kept_out} kept out to localize at"
+        out().print(f"{arguments.out}: {words}; now: robotctl sim {arguments.out}", markup=False)
     return OK
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("log", type=Path, metavar="LOG", help="a CARMEN log, as it is or compressed (.gz, .bz2)")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="the recorded building")
+    parser.add_argument("log", type=Path, metavar="LOG", help=LOG_HELP)
+    output_argument(parser, "--out", RECORDED_BUILDING, "the recorded building", required=True)
     parser.add_argument(
         "--spacing-m", type=positive, default=1.0, metavar="M", help="way between two stops (default: 1)"
     )
     parser.add_argument(
         "--keep-out-every",
-        type=whole(0),
+        type=_every,
         default=2,
         metavar="N",
         help="keep every Nth stop out of the map, to localize at; 0 for none (default: 2)",
     )
-    parser.add_argument("--limit", type=whole(0), metavar="N", help="end after so many stops")
+    parser.add_argument("--limit", type=whole(1), metavar="N", help="end after so many stops")
+    reading_arguments(parser)
+
+
+def _every(text: str) -> int:
+    count = whole(0)(text)
+    if count == 1:
+        raise argparse.ArgumentTypeError(
+            "1 would keep every stop out of the map: there would be none; 0 keeps none out"
+        )
+    return count
 
 
 VERBS = (

@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from rich_argparse import RawDescriptionRichHelpFormatter
 
 from robotd import __version__
+from robotd.cli.outputs import refuse
 from robotd.cli.verb import BAD_CONFIG, FAILED, INTERRUPTED, Verb
 from robotd.core.errors import ConfigError, RobotdError
 
@@ -97,6 +98,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with _ended_like_interrupted():
             arguments = build_parser(words).parse_args(words)
+            refuse(arguments)
             code: int = arguments.run(arguments)
     except ConfigError as error:
         return _complain(BAD_CONFIG, *map(str, error.problems))

@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 from robotd.cli.connection import connect
 from robotd.cli.half_blocks import coloured, plain, shrink
 from robotd.cli.motion import carry_out
+from robotd.cli.outputs import PNG, output_argument
+from robotd.cli.plots import require_plots
 from robotd.cli.quantities import heading_of_deg, number, whole
 from robotd.cli.simulate import odometry_argument
 from robotd.cli.terminal import out, print_json, print_table
 from robotd.cli.verb import OK, Verb
 from robotd.cli.where import legs_argument
 from robotd.core.clock import NS_PER_S
-from robotd.core.errors import RobotdError
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
@@ -118,6 +119,8 @@ def _date(unix_ns: int) -> str:
 
 
 def _show(arguments: argparse.Namespace) -> int:
+    if arguments.png is not None:
+        require_plots("--png")
     with connect(arguments) as client:
         shown = client.map_show(arguments.name, arguments.version)
     if arguments.png is not None:
@@ -135,10 +138,8 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _draw(file: Path, title: str, shown: MapChanged) -> None:
-    try:
-        from robotd.cli.pictures import draw_map  # noqa: PLC0415  # only here is the extra needed
-    except ImportError as error:
-        raise RobotdError(f"--png needs matplotlib ({error}): install robotd[plots]") from error
+    from robotd.cli.pictures import draw_map  # noqa: PLC0415  # only here is the extra needed
+
     draw_map(file, title, shown.spec, shown.values)
 
 
@@ -169,7 +170,7 @@ def _show_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", help="a stored map (default: the one in use)")
     parser.add_argument("--version", type=whole(0), metavar="N", help="an older version of it (default: the newest)")
     parser.add_argument("--width", type=whole(1), metavar="N", help="widest picture, in characters (default: 100)")
-    parser.add_argument("--png", type=Path, metavar="FILE", help="draw it into a file, too")
+    output_argument(parser, "--png", PNG, "draw it into a file, too")
 
 
 VERBS = (

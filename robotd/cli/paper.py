@@ -3,6 +3,7 @@
 Every picture is to scale, says so with the bar, and lies as the map lies: +x to the right, +y up (needs ``plots``).
 """
 
+import io
 import math
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from robotd.cli.outputs import PNG, check, write
 from robotd.grid.spec import GridSpec
 
 Points = NDArray[np.float64]
@@ -127,11 +129,17 @@ def legend(axes: Axes, marks: list[tuple[str, str, str]]) -> None:
 
 
 def save(axes: Axes, file: Path) -> None:
-    """Write the paper to a PNG file, in a directory that is made if it is not there."""
+    """Write the paper to a PNG file, in a directory that is made if it is not there.
+
+    Raises:
+        RobotdError: a file is there that is no PNG, or it cannot be written.
+    """
     figure = axes.get_figure()
     assert isinstance(figure, Figure)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(file, format="png")
+    check(file, PNG)
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="png")
+    write(file, drawn.getvalue())
 
 
 def evidence(axes: Axes, spec: GridSpec, occupancy: NDArray[np.uint8], *, opacity: float = 1.0) -> None:

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from robotd.cli.emulated import config_text, recorded_config_text, write_config
+from robotd.cli.outputs import LINKS, MADE_CONFIG, TRUTH_LINES, output_argument
 from robotd.cli.terminal import err, out, print_json, print_pairs
 from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.log import configure
@@ -102,7 +103,7 @@ def _sim_arguments(parser: argparse.ArgumentParser) -> None:
         default=Firmware.PYTHON.value,
         help="what our own boards run: Python that does the same, or the firmware in C (default: python)",
     )
-    parser.add_argument("--truth", type=Path, metavar="FILE", help="note in it where the robot really came to rest")
+    output_argument(parser, "--truth", TRUTH_LINES, "note in it where the robot really came to rest")
     _lines_arguments(parser)
     words = "\n".join(f"  {word:10}{meaning_of(word)}" for word in FAULTS)
     faults = parser.add_argument_group(
@@ -132,8 +133,8 @@ def odometry_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def _lines_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--links", type=Path, metavar="DIR", help="keep links drive, pantilt and rangefinder there")
-    parser.add_argument("--write-config", type=Path, metavar="FILE", help="write a robotd.toml for these devices")
+    output_argument(parser, "--links", LINKS, "keep links drive, pantilt and rangefinder there")
+    output_argument(parser, "--write-config", MADE_CONFIG, "write a robotd.toml for these devices")
 
 
 VERBS = (

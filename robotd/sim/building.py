@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 
 from robotd.core.errors import RecordingError
 from robotd.core.pose import Pose2
-from robotd.sim.carmen import CarmenLog, Scan, read_carmen
+from robotd.logs.scan import RecordedLog, Scan
 
 FORMAT = "robotd recorded building"
 VERSION = 1
+_LARGEST_BYTES = 256 << 20
+"""A building of a hundred thousand beams a stop would be smaller."""
 
 _NEAR_STEPS = 0.75
 """A beam is near a direction within half a step between beams; seen from a little aside, steps look wider."""
@@ -113,7 +115,7 @@ def view_from(stop: Stop, in_stop: Pose2) -> View:
 
 
 def select_stops(
-    log: CarmenLog, spacing_m: float = 1.0, *, keep_out_every: int = 2, limit: int | None = None
+    log: RecordedLog, spacing_m: float = 1.0, *, keep_out_every: int = 2, limit: int | None = None
 ) -> tuple[Stop, ...]:
     """Walk a log in file order and take a scan every ``spacing_m`` of travel.
 
@@ -122,9 +124,11 @@ def select_stops(
     Args:
         log: the log.
         spacing_m: way between two stops.
-        keep_out_every: every so many stops one is kept out of the map; 0 keeps none out.
-        limit: end the walk after so many stops.
+        keep_out_every: every so many stops one is kept out of the map, at least 2; 0 keeps none out.
+        limit: end the walk after so many stops, at least 1.
     """
+    if keep_out_every == 1:
+        raise ValueError("keep_out_every 1 keeps every stop out of the map: there would be no map")
     chosen = [0]
     travelled_m = 0.0
     for index in range(1, len(log.scans)):
@@ -152,31 +156,22 @@ def _stop(index: int, scan: Scan, *, kept_out: bool) -> Stop:
     )
 
 
-def write_recorded_building(
-    log_path: Path, out_path: Path, *, spacing_m: float = 1.0, keep_out_every: int = 2, limit: int | None = None
-) -> RecordedBuilding:
-    """Read a CARMEN log, select stops as :func:`select_stops` does, and write them to a file of their own.
-
-    Raises:
-        RecordingError: the log cannot be read, or the file not written.
-    """
-    stops = select_stops(read_carmen(log_path), spacing_m, keep_out_every=keep_out_every, limit=limit)
-    building = RecordedBuilding(log_path.name, stops)
-    try:
-        out_path.write_bytes(gzip.compress(msgspec.json.encode(building), mtime=0))
-    except OSError as error:
-        raise RecordingError(f"{out_path}: {error.strerror}") from error
-    return building
+def encode_recorded_building(building: RecordedBuilding) -> bytes:
+    """Return the file of a building; the same building, the same bytes."""
+    return gzip.compress(msgspec.json.encode(building), mtime=0)
 
 
 def load_recorded_building(path: Path) -> RecordedBuilding:
-    """Return what :func:`write_recorded_building` wrote.
+    """Return the building of a file.
 
     Raises:
         RecordingError: the file is missing, damaged, or of another format or version; says which.
     """
     try:
-        content = gzip.decompress(path.read_bytes())
+        with gzip.open(path) as file:
+            content = file.read(_LARGEST_BYTES + 1)
+        if len(content) > _LARGEST_BYTES:
+            raise RecordingError(f"{path}: over {_LARGEST_BYTES >> 20} MiB when unpacked: no recorded building")
         header = msgspec.json.decode(content, type=_Header)
         if (header.format, header.version) != (FORMAT, VERSION):
             found = f"{header.format!r} version {header.version}"
@@ -184,7 +179,7 @@ def load_recorded_building(path: Path) -> RecordedBuilding:
         return msgspec.json.decode(content, type=RecordedBuilding)
     except (OSError, EOFError, zlib.error) as error:
         raise RecordingError(f"{path}: {error}") from error
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise RecordingError(f"{path}: damaged: {error}") from error
 
 

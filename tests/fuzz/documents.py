@@ -11,13 +11,15 @@ from robotd.config import Config, effective_text, loads
 from robotd.core.errors import ConfigError, MapError, RecordingError, RemoteProtocolError, RobotdError, ServerError
 from robotd.grid.spec import GridSpec
 from robotd.hardware.link.tap import Direction
+from robotd.logs.scan import RecordedLog
 from robotd.maps.manifest import FileSum, Manifest, decode_manifest
 from robotd.recording.entries import BytesEntry, CommandEntry, LineEntry, RecordingHeader
 from robotd.recording.reader import read
 from robotd.recording.recorder import Recorder
 from robotd.server import api
 from robotd.server.envelope import BadRequest, decode_reply, decode_request, encode_error, encode_request, encode_result
-from robotd.sim.carmen import read_carmen
+from robotd.sim.building import RecordedBuilding, encode_recorded_building, select_stops
+from robotd.sim.log_file import read_log
 from robotd.sim.world import parse_world
 from tests.fuzz.target import KIB, MIB, ROOT, Target
 
@@ -94,8 +96,20 @@ def _logs() -> list[bytes]:
         b"ODOM 1.0 2.0 0.5 0 0 0 1.0 host 1.0",
         b"FLASER 4 1.0 2.0 3.0 81.9 1.0 2.0 0.5 1.0 2.0 0.5 1.0 host 1.0",
         b"ROBOTLASER1 0 -1.57 3.14 1.57 8.0 0.01 0 3 1.0 2.0 8.0 0 1 2 0.5 1 2 0.5 0 0 0 0 0 1.0 host 1.0",
+        b"RLASER 3 1.0 nan inf 1.0 2.0 0.5 1.0 2.0 0.5 1.0 host 1.0",
+        b"RAWLASER1 0 1.57 3.14 -1.57 0 0.01 0 3 1.0 2.0 8.0 1.0 host 1.0",
+        b"PARAM laser_front_laser_fov 270",
     )
-    return [b"\n".join(lines) + b"\n", lines[2] + b"\n", lines[3] + b"\n"]
+    odom, front, raw = lines[1], lines[2], lines[5]
+    return [b"\n".join(text) + b"\n" for text in (lines, [front, odom, front], [lines[3]], [odom, raw, odom])]
+
+
+def _log_read(data: bytes) -> object:
+    """What is read can be said, and makes a building."""
+    log = _in_file("a.log", read_log)(data)
+    assert isinstance(log, RecordedLog)
+    assert all(len(remark.splitlines()) == 1 for remark in log.remarks())
+    return encode_recorded_building(RecordedBuilding("a.log", select_stops(log)))
 
 
 def _manifest() -> list[bytes]:
@@ -131,19 +145,27 @@ DOCUMENTS = (
     ),
     Target(
         "carmen-log",
-        _in_file("a.log", read_carmen),
+        _log_read,
         _logs,
-        ("robotd/sim/carmen.py",),
+        ("robotd/logs", "robotd/sim/log_file.py"),
         typed=(RecordingError,),
         tokens=(
             b"FLASER ",
             b"ROBOTLASER1 ",
             b"ODOM ",
             b"PARAM ",
+            b"RLASER ",
+            b"RAWLASER1 ",
+            b" nan ",
+            b" inf ",
+            b" 0 ",
+            b"laser_front_laser_resolution ",
+            b"robot_front_laser_max ",
             b"robot_frontlaser_offset ",
             b"\n",
             b"\x1f\x8b\x08",
             b"BZh9",
+            b"\xfd7zXZ\x00",
         ),
     ),
     Target(

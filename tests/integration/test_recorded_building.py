@@ -10,7 +10,8 @@ from robotd.core.reading import ReadingStatus
 from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import SweepDone
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
-from robotd.sim.building import load_recorded_building, write_recorded_building
+from robotd.sim.building import RecordedBuilding, select_stops
+from robotd.sim.log_file import read_log
 from robotd.sim.recorded_building import OdometrySource, RecordedRobot
 from tests.integration.conftest import Live
 
@@ -21,10 +22,9 @@ FOUND_AT_LEAST = {"intel": 0, "fr079": 2}
 """Of four kept-out stops. Half a circle, seen from where no stop of so small a map looked, is rightly called lost."""
 
 
-def robot_of(log: Path, tmp_path: Path, odometry: OdometrySource) -> RecordedRobot:
-    file = tmp_path / "building.json.gz"
-    write_recorded_building(log, file, spacing_m=0.5, keep_out_every=4, limit=16)
-    return RecordedRobot(load_recorded_building(file), seed=1, odometry=odometry)
+def robot_of(log: Path, odometry: OdometrySource) -> RecordedRobot:
+    stops = select_stops(read_log(log), 0.5, keep_out_every=4, limit=16)
+    return RecordedRobot(RecordedBuilding(log.name, stops), seed=1, odometry=odometry)
 
 
 def config() -> Config:
@@ -34,9 +34,9 @@ def config() -> Config:
 
 @pytest.mark.parametrize("name", LOGS)
 async def test_at_stops_kept_out_of_the_map_it_is_never_sure_of_a_wrong_place(
-    live: Live, laser_data: Path, tmp_path: Path, name: str
+    live: Live, laser_data: Path, name: str
 ) -> None:
-    robot = robot_of(laser_data / LOGS[name], tmp_path, OdometrySource.CORRECTED)
+    robot = robot_of(laser_data / LOGS[name], OdometrySource.CORRECTED)
     async with live(robot, config()) as it:
         said = await it.done(MapMission(name, robot.stops_m, robot.start, Legs.STRAIGHT))
         sweeps = [event.sweep for event in said if isinstance(event, SweepDone)]
@@ -56,8 +56,8 @@ async def test_at_stops_kept_out_of_the_map_it_is_never_sure_of_a_wrong_place(
         assert max(errors_m, default=0.0) < 0.3
 
 
-async def test_raw_odometry_drifts_away_from_the_corrected_one(live: Live, laser_data: Path, tmp_path: Path) -> None:
-    robot = robot_of(laser_data / LOGS["intel"], tmp_path, OdometrySource.RAW)
+async def test_raw_odometry_drifts_away_from_the_corrected_one(live: Live, laser_data: Path) -> None:
+    robot = robot_of(laser_data / LOGS["intel"], OdometrySource.RAW)
     async with live(robot, config()) as it:
         await it.done(MapMission("raw", robot.stops_m[:3], robot.start, Legs.STRAIGHT))
         odometry = it.daemon.robot.drive.odometry.latest

@@ -18,7 +18,7 @@ from robotd.localization.obstacles import Obstacles, UnknownCells
 from robotd.localization.refinement import PoseBox, RefinementSettings, refine
 from robotd.localization.search import Disk, SearchMap, best_poses
 from robotd.localization.tracking import Tracked, TrackingSettings, track
-from robotd.sim.carmen import read_carmen
+from robotd.sim.log_file import read_log
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_data]
 
@@ -38,7 +38,7 @@ class Building:
     """One log, made ready."""
 
     def __init__(self, log: Path, settings: GridSettings) -> None:
-        division = divide(read_carmen(log), cases=60, seed=0)
+        division = divide(read_log(log), cases=60, seed=0)
         ternary = TernaryMap.from_grid(map_of(division.map_scans, REACH, settings))
         obstacles = Obstacles.of_map(ternary, UnknownCells.BLOCKS_ONLY, ERROR_RADIUS_CELLS, blocked_by=2)
         self.spec = ternary.spec

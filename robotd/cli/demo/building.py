@@ -10,6 +10,10 @@ from robotd.cli.demo.mission import Trial, follow, print_readings, stage
 from robotd.cli.demo.rig import Rig, rig, wired
 from robotd.cli.demo.room import fresh
 from robotd.cli.demo.truth import true_pose
+from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
+from robotd.cli.outputs import DEMO, output_argument, write
+from robotd.cli.plots import require_plots
+from robotd.cli.quantities import positive, whole
 from robotd.cli.simulate import odometry_argument
 from robotd.cli.verb import OK
 from robotd.config import Config
@@ -18,7 +22,7 @@ from robotd.localization.estimate import PoseState
 from robotd.mission.events import MapChanged
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.mission.steering import DrivingSettings
-from robotd.sim.building import write_recorded_building
+from robotd.sim.building import RecordedBuilding, encode_recorded_building, select_stops
 from robotd.sim.load import load_robot
 from robotd.sim.recorded_building import OdometrySource
 
@@ -27,22 +31,31 @@ _RIGHT_M = 0.3
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Take the log, how much of it, and where to put the results."""
-    parser.add_argument("log", type=Path, metavar="LOG", help="CARMEN log, corrected poses (.gz and .bz2 too)")
-    parser.add_argument("--stops", type=int, default=60, metavar="N", help="stops of the map (default: 60)")
-    parser.add_argument("--trials", type=int, default=30, metavar="N", help="kept-out stops to visit (default: 30)")
-    parser.add_argument("--spacing-m", type=float, default=1.0, metavar="M", help="between stops (default: 1.0)")
+    parser.add_argument("log", type=Path, metavar="LOG", help=LOG_HELP)
+    parser.add_argument("--stops", type=whole(1), default=60, metavar="N", help="stops of the map (default: 60)")
+    parser.add_argument(
+        "--trials", type=whole(0), default=30, metavar="N", help="kept-out stops to visit (default: 30)"
+    )
+    parser.add_argument("--spacing-m", type=positive, default=1.0, metavar="M", help="between stops (default: 1.0)")
     odometry_argument(parser)
-    parser.add_argument("--out", type=Path, default=Path("demo"), metavar="DIR", help="for the results (default: demo)")
+    reading_arguments(parser)
+    parser.add_argument("--raw", action="store_true", help=RAW_HELP)
+    output_argument(parser, "--out", DEMO, "for the results (default: demo)", default="demo")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the demonstration and return the exit code."""
     console = stage()
+    require_plots("demo building")
+    log = Reading.of(arguments).read(arguments.log)
+    if not arguments.raw:
+        refuse_raw_odometry(arguments.log, log)
     directory = fresh(arguments.out)
     file = directory / "building.json.gz"
     every = max(2, round(1 + arguments.stops / max(1, arguments.trials)))
     wanted = arguments.stops + arguments.trials
-    write_recorded_building(arguments.log, file, spacing_m=arguments.spacing_m, keep_out_every=every, limit=wanted)
+    stops = select_stops(log, arguments.spacing_m, keep_out_every=every, limit=wanted)
+    write(file, encode_recorded_building(RecordedBuilding(arguments.log.name, stops)))
     robot = load_robot(str(file), odometry=OdometrySource(arguments.odometry))
     console.print(f"[bold]robotd demo[/]: the building of {arguments.log.name}; everything lives in {directory}")
     console.print(f"  {1 + len(robot.stops_m)} stops for the map, {len(robot.probes_m)} kept out of it")

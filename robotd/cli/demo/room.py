@@ -10,6 +10,9 @@ from rich.console import Console
 from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials, stage
 from robotd.cli.demo.rig import Rig, rig, wired
 from robotd.cli.demo.truth import true_pose
+from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
+from robotd.cli.plots import require_plots
+from robotd.cli.quantities import whole
 from robotd.cli.verb import FAILED, OK
 from robotd.config import Config
 from robotd.core.reading import Sweep
@@ -26,14 +29,15 @@ from robotd.sim.world import World, load_world
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Take the world and where to put the results."""
     parser.add_argument("world", nargs="?", default="laboratory", help="built-in world or TOML file")
-    parser.add_argument("--seed", type=int, default=1, help="of the simulated robot (default: 1)")
-    parser.add_argument("--localizations", type=int, default=4, metavar="N", help="how many (default: 4)")
-    parser.add_argument("--stops", type=int, default=None, metavar="N", help="map from the first N stops only")
-    parser.add_argument("--out", type=Path, default=Path("demo"), metavar="DIR", help="for the results (default: demo)")
+    parser.add_argument("--seed", type=whole(0), default=1, metavar="N", help="of the simulated robot (default: 1)")
+    parser.add_argument("--localizations", type=whole(1), default=4, metavar="N", help="how many (default: 4)")
+    parser.add_argument("--stops", type=whole(0), default=None, metavar="N", help="map from the first N stops only")
+    output_argument(parser, "--out", DEMO, "for the results (default: demo)", default="demo")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the demonstration and return the exit code."""
+    require_plots("demo room")
     console = stage()
     world = load_world(arguments.world)
     directory = fresh(arguments.out)
@@ -67,7 +71,7 @@ def fresh(directory: Path) -> Path:
         shutil.rmtree(directory / name, ignore_errors=True)
     for file in (*directory.glob("*.png"), *directory.glob("*.mcap"), directory / "truth.jsonl"):
         file.unlink(missing_ok=True)
-    directory.mkdir(parents=True, exist_ok=True)
+    write(directory / DEMO_MARK, b"")
     return directory
 
 

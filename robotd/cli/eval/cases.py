@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robotd.sim.carmen import CarmenLog, Scan
+from robotd.logs.scan import RecordedLog, Scan
 
 _MANY_SCANS = 2000
 _OF_MANY_EVERY = 4
@@ -31,7 +31,7 @@ class Division:
     queries: tuple[Query, ...]
 
 
-def divide(log: CarmenLog, cases: int, seed: int) -> Division:
+def divide(log: RecordedLog, cases: int, seed: int) -> Division:
     """Divide a log into the scans of the map and at most ``cases`` queries, in the order in which they are drawn."""
     numbered = tuple(Query(number, scan) for number, scan in enumerate(log.scans))
     if len(numbered) > _MANY_SCANS:

@@ -7,7 +7,7 @@ import numpy as np
 from robotd.core.pose import IDENTITY
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.sim.carmen import Scan
+from robotd.logs.scan import Scan
 
 _MARGIN_M = 0.5
 

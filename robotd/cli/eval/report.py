@@ -11,6 +11,7 @@ from robotd.cli.eval.verdict import Case, Verdict
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
+from robotd.logs.scan import PoseSource
 
 PERCENTILES = (50, 90, 99, 100)
 
@@ -27,6 +28,10 @@ class LogReport:
     """Cases there should be; fewer are there if it was interrupted."""
     grid: OccupancyGrid
     cases: tuple[Case, ...]
+    poses: PoseSource = PoseSource.LOG
+    """Whose poses are taken for the truth."""
+    damaged_lines: int = 0
+    """Lines of the log that were left out."""
 
     @property
     def is_cut(self) -> bool:
@@ -67,6 +72,8 @@ class LogReport:
         return {
             "log": self.log,
             "scans": self.scans,
+            "poses": self.poses.value,
+            "damaged_lines": self.damaged_lines,
             "map_scans": self.map_scans,
             "asked": self.asked,
             "cases": len(self.cases),

@@ -55,7 +55,7 @@ def _percentile_table(report: LogReport) -> Table:
     )
     for name, values, form in lines:
         found = percentiles(values)
-        table.add_row(name, *(format(value, form) for value in found.values()) if found else ["-"] * len(heads))
+        table.add_row(Text(name), *(format(value, form) for value in found.values()) if found else ["-"] * len(heads))
     return table
 
 

@@ -17,19 +17,20 @@ from robotd.cli.eval.report import LogReport
 from robotd.cli.eval.running import Searcher
 from robotd.cli.eval.tables import print_parameters, print_report, print_summary
 from robotd.cli.eval.verdict import RIGHT_M, RIGHT_RAD, Case
+from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
+from robotd.cli.outputs import EVAL_REPORT, PICTURES, STANDARD_OUTPUT, output_argument, write
+from robotd.cli.plots import require_plots
 from robotd.cli.quantities import positive, share, whole
 from robotd.cli.terminal import err, print_json
 from robotd.cli.verb import INTERRUPTED, OK, Verb
-from robotd.core.errors import RecordingError, RobotdError
+from robotd.core.errors import RecordingError
 from robotd.grid import kernels
 from robotd.grid.occupancy import GridSettings
 from robotd.localization.error_model import ErrorModel
 from robotd.localization.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
+from robotd.logs.scan import RecordedLog
 from robotd.mission.compute import cores
-from robotd.sim.carmen import CarmenLog, read_carmen
-
-_TO_STANDARD_OUTPUT = "-"
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +59,7 @@ class _Plan:
 def _eval(arguments: argparse.Namespace) -> int:
     plan = _plan(arguments)
     draw = _drawing() if arguments.pictures is not None else None
-    _refuse_to_overwrite(arguments.json)
-    logs = [(path.name, read_carmen(path)) for path in arguments.log]
+    logs = _logs(arguments)
     reports: list[LogReport] = []
     with suppress(KeyboardInterrupt):
         for name, log in logs:
@@ -88,24 +88,24 @@ def _plan(arguments: argparse.Namespace) -> _Plan:
     )
 
 
+def _logs(arguments: argparse.Namespace) -> list[tuple[str, RecordedLog]]:
+    """Read all logs before the first is sought: a log that will not do is told at once."""
+    reading = Reading.of(arguments)
+    logs = [(path, reading.read(path)) for path in arguments.log]
+    if not arguments.raw:
+        for path, log in logs:
+            refuse_raw_odometry(path, log)
+    return [(path.name, log) for path, log in logs]
+
+
 def _drawing() -> Callable[[Path, LogReport], None]:
-    try:
-        from robotd.cli.eval.failures import draw_failures  # noqa: PLC0415  # only here is the extra needed
-    except ImportError as error:
-        raise RobotdError(f"--pictures needs matplotlib ({error}): install robotd[plots]") from error
+    require_plots("--pictures")
+    from robotd.cli.eval.failures import draw_failures  # noqa: PLC0415  # only here is the extra needed
+
     return draw_failures
 
 
-def _refuse_to_overwrite(file: str | None) -> None:
-    """Refuse a file that is no JSON document: ``--json LOG`` is soon typed, and would cost the log."""
-    if file in {None, _TO_STANDARD_OUTPUT}:
-        return
-    path = Path(str(file))
-    if path.exists() and not path.read_bytes()[:1] == b"{":
-        raise RobotdError(f"--json {file}: that is no JSON document; it is left as it is")
-
-
-def _evaluate(plan: _Plan, name: str, log: CarmenLog) -> LogReport:
+def _evaluate(plan: _Plan, name: str, log: RecordedLog) -> LogReport:
     """Make the map of a log and seek its queries; Ctrl-C keeps what was done."""
     division = divide(log, plan.cases, plan.seed)
     try:
@@ -119,7 +119,8 @@ def _evaluate(plan: _Plan, name: str, log: CarmenLog) -> LogReport:
         for case in searcher.cases(division.queries):
             cases.append(case)
             bar.update(task, advance=1)
-    return LogReport(name, len(log.scans), len(division.map_scans), len(division.queries), grid, tuple(cases))
+    counts = len(log.scans), len(division.map_scans), len(division.queries)
+    return LogReport(name, *counts, grid, tuple(cases), log.poses, len(log.problems))
 
 
 def _bar() -> Progress:
@@ -127,13 +128,13 @@ def _bar() -> Progress:
     return Progress(*columns, console=err(), disable=not err().is_terminal)
 
 
-def _tell(file: str | None, plan: _Plan, reports: list[LogReport]) -> None:
+def _tell(file: Path | None, plan: _Plan, reports: list[LogReport]) -> None:
     document = {"parameters": plan.document(), "logs": [report.document() for report in reports]}
-    if file == _TO_STANDARD_OUTPUT:
+    if file is not None and str(file) == STANDARD_OUTPUT:
         print_json(document)
         return
     if file is not None:
-        Path(file).write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+        write(file, (json.dumps(document, indent=1, allow_nan=False) + "\n").encode())
     for report in reports:
         print_report(report)
     if len(reports) > 1:
@@ -142,9 +143,8 @@ def _tell(file: str | None, plan: _Plan, reports: list[LogReport]) -> None:
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "log", type=Path, nargs="+", metavar="LOG", help="a CARMEN log with corrected poses, as it is or .gz or .bz2"
-    )
+    parser.add_argument("log", type=Path, nargs="+", metavar="LOG", help=f"{LOG_HELP}; its poses are the truth")
+    parser.add_argument("--raw", action="store_true", help=RAW_HELP)
     parser.add_argument("--cases", type=whole(1), default=100, metavar="N", help="scans to seek (default: 100)")
     parser.add_argument("--seed", type=whole(0), default=0, metavar="N", help="chooses them (default: 0)")
     parser.add_argument(
@@ -164,9 +164,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         metavar="A",
         help="share of an obstacle that a beam through it leaves (default: 0.9)",
     )
-    parser.add_argument(
-        "--range-max", type=positive, default=30.0, metavar="M", help="believe no range beyond this [m] (default: 30)"
-    )
+    reading_arguments(parser, range_max_m=30.0)
     parser.add_argument(
         "--clear",
         type=positive,
@@ -180,16 +178,9 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="take the settings of localization from a configuration of robotd",
     )
-    parser.add_argument(
-        "--pictures", type=Path, metavar="DIR", help="draw each case that is not right into a file there"
-    )
-    parser.add_argument(
-        "--json",
-        nargs="?",
-        const=_TO_STANDARD_OUTPUT,
-        metavar="FILE",
-        help="write everything to a file as JSON; without a file print it instead of the tables",
-    )
+    output_argument(parser, "--pictures", PICTURES, "draw each case that is not right into a file there")
+    words = "write everything to a file as JSON; without a file print it instead of the tables"
+    output_argument(parser, "--json", EVAL_REPORT, words, nargs="?", const=STANDARD_OUTPUT)
 
 
 VERBS = (

@@ -87,11 +87,12 @@ def test_a_map_is_drawn_on_the_terminal_and_into_a_file(
 def test_without_matplotlib_a_png_is_refused_with_what_to_install(
     client: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "robotd.cli.pictures", None)
+    monkeypatch.setitem(__import__("sys").modules, "robotd.cli.paper", None)
     assert main(["map", "show", "--png", "m.png"]) == 1
+    assert client.asked == []
     said = capsys.readouterr().err
     assert said.startswith("robotctl: --png needs matplotlib")
-    assert said.endswith("install robotd[plots]\n")
+    assert "pip install 'robotd[plots]'" in said
 
 
 @pytest.mark.parametrize("columns", [1, 3, 10, 40])
@@ -134,4 +135,4 @@ def test_a_file_that_cannot_be_written_is_one_line(
     client: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["map", "show", "--png", str(tmp_path)]) == 1
-    assert capsys.readouterr().err == f"robotctl: {tmp_path}: Is a directory\n"
+    assert capsys.readouterr().err == f"robotctl: {tmp_path}: is a directory; a PNG picture was to be written there\n"

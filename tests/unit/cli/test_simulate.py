@@ -77,7 +77,7 @@ def test_a_configuration_that_cannot_be_written_is_a_failure(
 ) -> None:
     (tmp_path / "robotd.toml").mkdir()
     assert main(["sim", "office", "--write-config", str(tmp_path / "robotd.toml")]) == 1
-    assert "robotd.toml: Is a directory" in capsys.readouterr().err
+    assert "robotd.toml: is a directory; a configuration made by robotctl" in capsys.readouterr().err
 
 
 def test_a_world_that_there_is_not_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
@@ -92,7 +92,13 @@ def test_a_recorded_building_is_made_of_a_log(
     log = laser_data / "intel" / "intel.corrected.log.gz"
     words = ["import", "carmen", str(log), "--out", str(out), "--limit", "6", "--json"]
     assert main(words) == 0
-    assert json.loads(capsys.readouterr().out) == {"file": str(out), "stops": 3, "kept_out": 3}
+    assert json.loads(capsys.readouterr().out) == {
+        "file": str(out),
+        "stops": 3,
+        "kept_out": 3,
+        "poses": "corrected",
+        "damaged_lines": 0,
+    }
     robot = load_robot(str(out))
     assert len(robot.probes_m) == 3
 

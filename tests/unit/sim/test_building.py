@@ -12,9 +12,16 @@ from hypothesis import strategies as st
 
 from robotd.core.errors import RecordingError
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.sim.building import RecordedBuilding, Stop, load_recorded_building, select_stops, view_from
-from robotd.sim.building import write_recorded_building as write
-from robotd.sim.carmen import parse_carmen, read_carmen
+from robotd.logs.carmen import parse_carmen
+from robotd.sim.building import (
+    RecordedBuilding,
+    Stop,
+    encode_recorded_building,
+    load_recorded_building,
+    select_stops,
+    view_from,
+)
+from robotd.sim.log_file import read_log
 from robotd.sim.walls import Point
 
 LASER = Pose2(-0.04, 0.0, 0.0)
@@ -35,6 +42,10 @@ def line_log(steps: int, step_m: float = 0.25) -> str:
     """A robot that goes straight ahead and sees a wall at its left."""
     poses = (f"{index * step_m} 0 0 {index * step_m} 0 0" for index in range(steps))
     return "\n".join(f"FLASER 4 81.83 5.0 {4.0 + index} 1.5 {pose} 1 h 1" for index, pose in enumerate(poses))
+
+
+def building(steps: int, spacing_m: float = 1.0) -> RecordedBuilding:
+    return RecordedBuilding("line.log", select_stops(parse_carmen(line_log(steps).splitlines()), spacing_m))
 
 
 def test_seen_from_the_recorded_place_by_a_centred_scanner_a_view_is_the_scan_itself() -> None:
@@ -96,23 +107,19 @@ def test_stops_are_taken_every_so_many_metres_and_every_other_one_is_kept_out() 
 
 
 def test_a_building_is_read_back_as_it_was_written(tmp_path: Path) -> None:
-    log_path, path = tmp_path / "line.log", tmp_path / "line.building"
-    log_path.write_text(line_log(9))
-    written = write(log_path, path, spacing_m=0.5)
+    path = tmp_path / "line.building"
+    written = building(9, spacing_m=0.5)
+    path.write_bytes(encode_recorded_building(written))
     assert load_recorded_building(path) == written
     assert written.log == "line.log"
     assert written.stops[1].ranges_m == (None, 5.0, 6.0, 1.5)
     assert written.stops[1].missed == (0,)
-    again = tmp_path / "again.building"
-    write(log_path, again, spacing_m=0.5)
-    assert again.read_bytes() == path.read_bytes()
+    assert encode_recorded_building(building(9, spacing_m=0.5)) == path.read_bytes()
 
 
 def test_a_damaged_building_is_refused_and_the_damage_named(tmp_path: Path) -> None:
-    log_path, path = tmp_path / "line.log", tmp_path / "line.building"
-    log_path.write_text(line_log(9))
-    write(log_path, path)
-    whole = path.read_bytes()
+    path = tmp_path / "line.building"
+    whole = encode_recorded_building(building(9))
     content = json.loads(gzip.decompress(whole))
     wrong = {
         "version 9": content | {"version": 9},
@@ -134,11 +141,19 @@ def test_a_damaged_building_is_refused_and_the_damage_named(tmp_path: Path) -> N
         load_recorded_building(tmp_path / "none.building")
 
 
-def test_a_building_cannot_be_written_where_there_is_no_folder(tmp_path: Path) -> None:
-    log_path = tmp_path / "line.log"
-    log_path.write_text(line_log(9))
-    with pytest.raises(RecordingError, match="No such file"):
-        write(log_path, tmp_path / "none" / "x.building")
+def test_a_building_that_unpacks_without_end_or_is_nested_without_end_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "bomb.building"
+    path.write_bytes(gzip.compress(bytes(257 << 20), compresslevel=1))
+    with pytest.raises(RecordingError, match="over 256 MiB"):
+        load_recorded_building(path)
+    path.write_bytes(gzip.compress(b'{"format": ' + b"[" * 100_000))
+    with pytest.raises(RecordingError, match="damaged"):
+        load_recorded_building(path)
+
+
+def test_not_every_stop_can_be_kept_out_of_the_map() -> None:
+    with pytest.raises(ValueError, match="every stop"):
+        select_stops(parse_carmen(line_log(9).splitlines()), 1.0, keep_out_every=1)
 
 
 def test_a_building_begins_with_a_stop_of_the_map() -> None:
@@ -150,12 +165,13 @@ def test_a_building_begins_with_a_stop_of_the_map() -> None:
 def test_a_real_log_gives_a_small_file_of_stops_along_the_way(laser_data: Path, tmp_path: Path) -> None:
     path = tmp_path / "intel.building"
     log_path = laser_data / "intel" / "intel.corrected.log.gz"
-    building = write(log_path, path, spacing_m=1.0)
+    log = read_log(log_path)
+    real = RecordedBuilding("intel", select_stops(log, 1.0))
+    path.write_bytes(encode_recorded_building(real))
     assert path.stat().st_size < 400_000
-    assert load_recorded_building(path) == building
-    scans = read_carmen(log_path).scans
-    for stop in building.stops:
-        assert stop.pose == scans[stop.scan].robot_pose
-    kept_out = sum(stop.kept_out for stop in building.stops)
-    assert len(building.stops) > 200
-    assert abs(len(building.stops) - 2 * kept_out) <= 1
+    assert load_recorded_building(path) == real
+    for stop in real.stops:
+        assert stop.pose == log.scans[stop.scan].robot_pose
+    kept_out = sum(stop.kept_out for stop in real.stops)
+    assert len(real.stops) > 200
+    assert abs(len(real.stops) - 2 * kept_out) <= 1

@@ -7,9 +7,10 @@ import pytest
 
 from firmware_proto.rangefinder import ShotStatus
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.sim.building import RecordedBuilding, Stop, select_stops, write_recorded_building
-from robotd.sim.carmen import read_carmen
+from robotd.logs.carmen import parse_carmen
+from robotd.sim.building import RecordedBuilding, Stop, encode_recorded_building, select_stops
 from robotd.sim.load import load_robot
+from robotd.sim.log_file import read_log
 from robotd.sim.recorded_building import OdometrySource, Place, RecordedHead, RecordedLaser, RecordedRobot
 
 FIRST = Stop(
@@ -151,16 +152,15 @@ def test_the_robot_lists_the_stops_of_the_map_and_those_kept_out() -> None:
 
 def test_a_robot_is_loaded_by_world_name_or_building_file(tmp_path: Path) -> None:
     assert load_robot("office", 3).start == Pose2(1.0, 1.1, 0.0)
-    log = tmp_path / "x.log"
-    log.write_text("FLASER 2 1.0 2.0 4 5 0 4 5 0 1 h 1\n")
-    write_recorded_building(log, tmp_path / "x.building")
+    stops = select_stops(parse_carmen(["FLASER 2 1.0 2.0 4 5 0 4 5 0 1 h 1"]))
+    (tmp_path / "x.building").write_bytes(encode_recorded_building(RecordedBuilding("x", stops)))
     assert load_robot(str(tmp_path / "x.building")).start == Pose2(4.0, 5.0, 0.0)
 
 
 @pytest.mark.real_data
 @pytest.mark.parametrize("place", ["intel", "fr079"])
 def test_in_a_real_building_300_bearings_give_the_recorded_half_circle(laser_data: Path, place: str) -> None:
-    log = read_carmen(laser_data / place / f"{place}.corrected.log.gz")
+    log = read_log(laser_data / place / f"{place}.corrected.log.gz")
     stops = select_stops(log, 5.0, limit=4)
     stop, scan = stops[-1], log.scans[stops[-1].scan]
     rig = Rig(RecordedBuilding("real", (replace(stop, kept_out=False),)))

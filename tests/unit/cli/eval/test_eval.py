@@ -20,13 +20,14 @@ from robotd.cli.eval.running import Searcher
 from robotd.cli.main import main
 from robotd.core.reading import ReadingStatus
 from robotd.grid.occupancy import GridSettings
-from robotd.sim.carmen import CarmenLog, parse_carmen
+from robotd.logs.carmen import parse_carmen
+from robotd.logs.scan import RecordedLog
 
 REACH = Reach(range_max_m=4.0, clear_m=3.0)
 
 
 @pytest.fixture
-def log(log_text: str) -> CarmenLog:
+def log(log_text: str) -> RecordedLog:
     return parse_carmen(log_text.splitlines())
 
 
@@ -34,7 +35,7 @@ def log(log_text: str) -> CarmenLog:
 @settings(max_examples=30, deadline=None)
 def test_a_log_is_divided_as_the_protocol_says(log_text: str, scans: int, cases: int, seed: int) -> None:
     scan = parse_carmen(log_text.splitlines()[:1]).scans[0]
-    division = divide(CarmenLog((scan,) * scans, 80.0), cases, seed)
+    division = divide(RecordedLog((scan,) * scans, 80.0), cases, seed)
     kept = list(range(scans))[:: 4 if scans > 2000 else 1]
     odd = kept[1::2]
     chosen: Any = np.random.default_rng(seed).choice(len(odd), min(cases, len(odd)), replace=False) if odd else []
@@ -42,7 +43,7 @@ def test_a_log_is_divided_as_the_protocol_says(log_text: str, scans: int, cases:
     assert len(division.map_scans) == len(kept[::2])
 
 
-def test_what_came_back_is_a_hit_and_what_did_not_is_free_up_to_the_limit(log: CarmenLog) -> None:
+def test_what_came_back_is_a_hit_and_what_did_not_is_free_up_to_the_limit(log: RecordedLog) -> None:
     scan = next(scan for scan in log.scans if scan.missed.any())
     readings = readings_of(scan, REACH)
     beyond = int((scan.hit & (scan.ranges_m > REACH.range_max_m)).sum())
@@ -58,7 +59,7 @@ def test_a_beam_of_range_zero_says_nothing() -> None:
     assert [reading.range_m for reading in readings_of(scan, REACH)] == [1.0, 1.0, 1.0]
 
 
-def test_the_map_holds_every_hit_where_the_log_has_it(log: CarmenLog) -> None:
+def test_the_map_holds_every_hit_where_the_log_has_it(log: RecordedLog) -> None:
     grid = map_of(log.scans, REACH, GridSettings(rows=1, cols=1, raise_alpha=0.5, lower_alpha=0.9))
     occupied = np.argwhere(grid.cells > 200)
     x_m, y_m = np.array([grid.spec.centre_of(row, col) for row, col in occupied]).T
@@ -149,8 +150,8 @@ def test_a_damaged_log_is_named_with_line_and_expectation_before_any_work(
     bad.write_text("# a log\nFLASER 3 1.0 x 1.0 0 0 0 0 0 0 1 h 1\n")
     assert run_eval(log_file, bad) == 1
     said = capsys.readouterr().err
-    assert "bad.log:2: damaged FLASER record" in said
-    assert "expected FLASER n r_1 .. r_n laser_x" in said
+    assert "bad.log: there is no whole scan in it; the only damaged line is line 2: FLASER: 'x' is no number" in said
+    assert "expected n r_1 .. r_n laser_x" in said
 
 
 def test_a_log_with_one_scan_makes_a_map_and_no_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -164,5 +165,5 @@ def test_a_log_with_one_scan_makes_a_map_and_no_case(tmp_path: Path, capsys: pyt
 def test_a_log_is_never_overwritten_by_the_report(log_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = log_file.read_bytes()
     assert main(["eval", str(log_file), "--json", str(log_file)]) == 1
-    assert "no JSON document" in capsys.readouterr().err
+    assert "is not a JSON document of eval; it is left as it is" in capsys.readouterr().err
     assert log_file.read_bytes() == before

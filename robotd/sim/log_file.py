@@ -1,0 +1,104 @@
+"""Open a log of another program: plain or compressed, whatever its name says, or from standard input.
+
+Any byte may stand in a comment; what is not a text at all is named for what it is.
+"""
+
+import bz2
+import gzip
+import io
+import lzma
+import sys
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import BinaryIO, cast
+
+from robotd.core.errors import RecordingError
+from robotd.logs.carmen import parse_carmen
+from robotd.logs.records import LINE_MAX
+from robotd.logs.scan import RecordedLog
+
+STANDARD_INPUT = "-"
+_HEAD = 1024
+_TAR_AT = 257
+_Unpacked = gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile
+_UNPACKERS: dict[bytes, Callable[[BinaryIO], _Unpacked]] = {
+    b"\x1f\x8b": lambda file: gzip.GzipFile(fileobj=file),
+    b"BZh": bz2.BZ2File,
+    b"\xfd7zXZ\x00": lzma.LZMAFile,
+}
+_OTHERS = {
+    b"PK\x03\x04": "a zip archive; unpack it first (unzip)",
+    b"PK\x05\x06": "an empty zip archive",
+    b"7z\xbc\xaf\x27\x1c": "a 7z archive; unpack it first",
+    b"Rar!": "a rar archive; unpack it first",
+    b"\x28\xb5\x2f\xfd": "compressed by zstd; unpack it first (zstd -d)",
+    b"\x1f\x9d": "compressed by compress; unpack it first (uncompress)",
+    b"#ROSBAG": "a ROS bag, not a CARMEN log",
+    b"\x89MCAP": "an MCAP recording, not a CARMEN log",
+    b"version https://git-lfs": "a pointer of Git LFS: fetch the file itself (git lfs pull)",
+}
+_PAGES = (b"<!doctype html", b"<html", b"<?xml")
+_TEXTS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
+
+
+def read_log(path: Path, *, fov_rad: float | None = None) -> RecordedLog:
+    """Return the scans of a log file, plain or packed by gzip, bzip2 or xz; ``-`` is standard input.
+
+    Args:
+        path: the file.
+        fov_rad: what the scanner sees; None where the log says it, or it is assumed.
+
+    Raises:
+        RecordingError: the file cannot be read, is cut or no log; :func:`robotd.logs.carmen.parse_carmen` objects.
+    """
+    with _opened(path) as lines:
+        return parse_carmen(lines, file=str(path), fov_rad=fov_rad)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Iterator[str]]:
+    with ExitStack() as stack:
+        try:
+            is_piped = str(path) == STANDARD_INPUT
+            raw = io.FileIO(sys.stdin.fileno(), closefd=False) if is_piped else io.FileIO(path)
+            yield _lines(stack, path, stack.enter_context(io.BufferedReader(raw, _HEAD)))
+        except OSError as error:
+            raise RecordingError(f"{path}: {error.strerror or error}") from error
+        except (EOFError, zlib.error, lzma.LZMAError) as error:
+            raise RecordingError(f"{path}: damaged or cut while packed: {error}") from error
+
+
+def _lines(stack: ExitStack, path: Path, packed: io.BufferedReader) -> Iterator[str]:
+    """Return the lines, none longer than :data:`LINE_MAX`."""
+    file: io.BufferedReader = packed
+    unpack = next((unpack for magic, unpack in _UNPACKERS.items() if packed.peek(_HEAD).startswith(magic)), None)
+    if unpack is not None:
+        unpacked = stack.enter_context(unpack(packed))
+        file = io.BufferedReader(cast("io.RawIOBase", unpacked), _HEAD)
+    head = file.peek(_HEAD)
+    encoding = next((name for magic, name in _TEXTS.items() if head.startswith(magic)), "latin-1")
+    _refuse_others(path, head, is_wide=encoding == "utf-16")
+    text = io.TextIOWrapper(file, encoding=encoding, errors="replace")
+    stack.callback(text.detach)
+    return iter(lambda: text.readline(LINE_MAX), "")
+
+
+def _refuse_others(path: Path, head: bytes, *, is_wide: bool) -> None:
+    """Name what is no text.
+
+    Raises:
+        RecordingError: it is none.
+    """
+    if not head:
+        raise RecordingError(f"{path}: is empty")
+    what = next((words for magic, words in _OTHERS.items() if head.startswith(magic)), None)
+    if head[_TAR_AT:].startswith(b"ustar"):
+        what = "a tar archive; unpack it first (tar xf)"
+    if head.lstrip()[:16].lower().startswith(_PAGES):
+        what = "a web page, not a CARMEN log"
+    if what is not None:
+        raise RecordingError(f"{path}: this is {what}")
+    if not is_wide and b"\0" in head:
+        raise RecordingError(f"{path}: not a text: byte {head.index(0)} is 0x00")
