@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults fuzz safety lag firmware-test lint types contracts check clean
+.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults fuzz safety lag firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -48,6 +48,9 @@ faults: .venv/.dev  ## Everything that can go wrong on a serial line, in every s
 firmware-test: .venv/.dev  ## The boards' C against Python under the sanitizers: vectors, random frames, random lives
 	@$(BIN)/python -m pytest -q tests/firmware
 	@$(BIN)/python -m tests.firmware.run
+
+kernels-sanitized: .venv/.dev  ## All tests that call a kernel, with every kernel under the address and undefined-behaviour sanitizers (minutes)
+	@$(BIN)/python -m tests.sanitized.run
 
 fuzz: .venv/.dev  ## Strange bytes for every parser, a minute each: make fuzz FUZZ_SECONDS=5; keeps what it learns in tests/fuzz/corpus
 	@$(BIN)/python -m tests.fuzz.run $(if $(FUZZ_SECONDS),--seconds $(FUZZ_SECONDS)) $(if $(ONLY),--only $(ONLY))

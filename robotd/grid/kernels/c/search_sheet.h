@@ -106,7 +106,8 @@ static int open_window(const search_job *job, int32_t row, int32_t col, sheet *a
             continue;
         const int32_t *span = job->spans + 2 * (size_t)(row + i - job->area[0]);
         const int32_t first = clamp(span[0] - col, 0, WINDOW), last = clamp(span[1] - col, first, WINDOW);
-        cells[i] = (uint16_t)((low[i] >> shift | high[i] << (WINDOW - shift)) & ((1 << last) - (1 << first)));
+        const uint32_t both = low[i] | (uint32_t)high[i] << WINDOW; /* an int, which a uint16_t becomes, has no room */
+        cells[i] = (uint16_t)(both >> shift & ((1u << last) - (1u << first)));
         any |= cells[i];
     }
     memcpy(&at->alive, cells, sizeof cells);
