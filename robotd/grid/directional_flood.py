@@ -174,7 +174,8 @@ class _Lines:
         cells = np.full(len(self._filled), self._outside)
         first = self._top - shift
         column = self._columns[col]
-        begin, end = max(0, first), max(0, min(len(cells), first + len(column)))
+        begin = max(0, first)
+        end = max(begin, min(len(cells), first + len(column)))  # a chain that is no ray may lead past all lines
         cells[begin:end] = column[begin - first : end - first]
         self._words[word] &= ~(_ONE << np.uint64(bit))
         self._words[word] |= cells.astype(np.uint64) << np.uint64(bit)

@@ -207,7 +207,7 @@ def _write(axes: Axes, numbers: NDArray[np.int32]) -> None:
 FIGURES: dict[str, tuple[str, tuple[tuple[str, Callable[[Axes], None]], ...]]] = {
     "fig-14": (
         "Fig. 14: discrete convolution",
-        (("P grey, Q orange (from its corner cell), the Minkowski difference blue and grey", _convolved),),
+        (("P grey, Q orange; blue and grey: their Minkowski difference", _convolved),),
     ),
     "fig-15": (
         "Fig. 15: floods, number by number",

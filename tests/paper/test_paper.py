@@ -4,7 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
+from robotd.core.pose import Pose2
 from robotd.grid.binary import BinaryMap
 from robotd.localization.feasible import feasible_poses
 from robotd.localization.obstacles import Obstacles
@@ -12,7 +14,7 @@ from robotd.localization.probe import probe_of
 from tests.paper.figures import FIGURES, draw_figures
 from tests.paper.page import table
 from tests.paper.page import test_row as row_of
-from tests.paper.pictures import draw_test
+from tests.paper.pictures import draw_panels, draw_test
 from tests.paper.robot import Tour, probes_at, tour_of
 from tests.paper.rooms import OFFICE, TESTS
 from tests.paper.run import ROOT, SEEDS
@@ -58,6 +60,35 @@ def test_what_is_drawn_is_the_sum_of_the_feasible_poses_as_the_paper_defines_the
     assert np.array_equal(outcome.rank, rank)
     draw_test(tmp_path / "test.png", FIRST, pose, grid, outcome, PAPERS.counted(readings))
     assert (tmp_path / "test.png").stat().st_size > 10_000
+
+
+def beyond_its_picture(figure: Figure) -> list[str]:
+    """Return the titles and captions that do not fit: those the edge cuts, and those that run into the next panel."""
+    figure.draw_without_rendering()
+    found = []
+    for axes in figure.axes:
+        caption, panel = axes.xaxis.label.get_window_extent(), axes.get_window_extent()
+        left, right = (panel.x0, panel.x1) if len(figure.axes) > 1 else (0.0, figure.bbox.width)
+        if caption.x0 < left or caption.x1 > right or caption.y0 < 0.0:
+            found.append(axes.get_xlabel())
+    title = figure.texts[0].get_window_extent()
+    if title.x0 < 0.0 or title.x1 > figure.bbox.width or title.y1 > figure.bbox.height:
+        found.append(figure.texts[0].get_text())
+    return found
+
+
+def test_no_title_or_caption_is_cut(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
+    draw_figures(tmp_path)
+    for test in TESTS:
+        caption = f"(c) localization; black: {test.probes} of {test.probes} readings consistent"
+        exact = f"(d) exact, on the true walls; black: {test.probes} of {test.probes}"
+        panels = ((caption, lambda _: None), (exact, lambda _: None)) * 2
+        title = f"Test {test.number}: {test.room.name}, {test.probes} probes"
+        draw_panels(tmp_path / "test.png", title, test.room, Pose2(0.0, 0.0, 0.0), panels)
+    assert len(drawn) == len(FIGURES) + len(TESTS)
+    assert [text for figure in drawn for text in beyond_its_picture(figure)] == []
 
 
 def test_every_test_and_figure_has_its_picture_on_the_page(tmp_path: Path) -> None:

@@ -75,6 +75,30 @@ def test_even_a_chain_that_is_no_straight_line_is_followed_exactly(
     )
 
 
+@settings(max_examples=60)
+@given(wide_sources, st.lists(st.tuples(st.integers(-1, 1), st.integers(1, 90)), max_size=5), st.booleans())
+def test_a_chain_that_bends_far_out_leaves_all_lines_and_is_followed_exactly(
+    sources: NDArray[np.bool_], bends: list[tuple[int, int]], outside: bool
+) -> None:
+    turns = [turn for turn, times in bends for _ in range(times)]
+    aside = np.concatenate(([0], np.cumsum(turns, dtype=np.intp)))
+    chain = np.stack((aside, np.arange(len(aside))), axis=1)
+    assert np.array_equal(
+        directional_flood(sources, chain, outside=outside), slow_flood(sources, chain, outside=outside)
+    )
+
+
+def test_a_chain_that_bends_away_from_a_low_wide_grid() -> None:
+    """It was refused by an error about shapes: its far end lies many rows beyond all lines of the grid."""
+    aside = np.concatenate((np.zeros(40, np.intp), -np.arange(1, 60)))
+    chain = np.stack((aside, np.arange(len(aside))), axis=1)
+    sources = np.zeros((2, 100), np.bool_)
+    sources[0, 50] = True
+    expected = slow_flood(sources, chain, outside=False)
+    assert np.array_equal(directional_flood(sources, chain), expected)
+    assert (expected >= 0).sum() > 40
+
+
 @pytest.mark.parametrize("length_cells", [9.0, 120.0, 1e4])
 @pytest.mark.parametrize("bearing_rad", [0.0, 0.1, 0.7, 1.0, math.pi / 4, math.atan2(1, 2), math.atan2(5, 6)])
 def test_the_work_does_not_grow_with_the_length(
