@@ -71,7 +71,7 @@ def compose(config: Config, connects: Mapping[str, Connect], compute: Compute, j
         supervisor,
         store=store,
         journal=journal,
-        compute=noted,
+        compute=compute,  # what only clients ask for has no effect on the robot, and a replay does not ask for it
         recordings_dir=Path(config.recording.dir),
         config_text=effective_text(config),
     )

@@ -1,20 +1,24 @@
 """A journal that can be recorded from any moment on, and still from the beginning.
 
 A replay must begin where the daemon began: with the handshakes, the maps in use, the commands. So the journal remembers
-all of it, up to a bound, and a recording that is started later gets what went before. Past the bound it says that
-it cannot, rather than to record what no replay could use.
+all of it, up to a bound for each source, and a recording that is started later gets what went before. Past a bound it
+says that it cannot, rather than to record what no replay could use.
 """
 
+import logging
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from robotd.core.errors import RecordingError
+from robotd.recording.budget import Budgets, Source, source_of
 from robotd.recording.encoding import encode
 from robotd.recording.entries import Entry, RecordingHeader
 from robotd.recording.journal import Journal
 from robotd.recording.recorder import Recorder
 
 _ENTRY_OVERHEAD_BYTES = 160
+
+log = logging.getLogger(__name__)
 
 
 class PrerollJournal(Journal):
@@ -24,7 +28,8 @@ class PrerollJournal(Journal):
         self.header = header
         self._limit_bytes = limit_bytes
         self._remembered: list[Entry] | None = []
-        self._size_bytes = 0
+        self._budgets = Budgets(limit_bytes)
+        self._exceeded: Source | None = None
         self._recorder: Recorder | None = None
 
     @property
@@ -49,9 +54,10 @@ class PrerollJournal(Journal):
         if self._remembered is None:
             return
         self._remembered.append(entry)
-        self._size_bytes += _ENTRY_OVERHEAD_BYTES + len(encode(entry)[1])
-        if self._size_bytes > self._limit_bytes:
-            self._remembered = None
+        source = source_of(entry)
+        if not self._budgets.use(source, _ENTRY_OVERHEAD_BYTES + len(encode(entry)[1])):
+            self._remembered, self._exceeded = None, source
+            log.info("%s", self._why_not())
 
     def start(self, path: Path) -> None:
         """Begin to record, from the daemon's start on.
@@ -62,15 +68,18 @@ class PrerollJournal(Journal):
         if self._recorder is not None:
             raise RecordingError(f"already recording to {self._recorder.path}")
         if self._remembered is None:
-            raise RecordingError(
-                f"the daemon has run past its pre-roll of {self._limit_bytes} bytes, and a recording must begin where"
-                " the daemon began: restart it, or set recording.from_start = true"
-            )
+            raise RecordingError(self._why_not())
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise RecordingError(f"cannot record to {path}: {error.strerror}") from error
         self._recorder = Recorder(path, self.header, tuple(self._remembered))
+
+    def _why_not(self) -> str:
+        return (
+            f"no recording can begin any more: {self._exceeded} have used up the pre-roll of {self._limit_bytes} bytes,"
+            " and a recording must begin where the daemon began: restart it, or set recording.from_start = true"
+        )
 
     def stop(self) -> Callable[[], None]:
         """End the recording; the returned function waits for the file and may block.

@@ -15,6 +15,7 @@ from typing import IO
 from mcap.writer import CompressionType, Writer
 
 from robotd.core.errors import RecordingError
+from robotd.recording.budget import Budgets, source_of
 from robotd.recording.encoding import HEADER_TOPIC, PROFILE, encode, encode_header, is_raw
 from robotd.recording.entries import Entry, RecordingHeader
 from robotd.recording.journal import Journal
@@ -41,7 +42,7 @@ class Recorder(Journal):
             path: the file; it must not exist yet.
             header: what comes first.
             earlier: what happened before now; must not change any more. However long, it holds nobody up.
-            queue_bytes: how far the disk may fall behind.
+            queue_bytes: how far the disk may fall behind, for each source of entries.
 
         Raises:
             RecordingError: the file exists already, or cannot be made.
@@ -49,8 +50,7 @@ class Recorder(Journal):
         self.path = path
         self.error: str | None = None
         self._queue: list[_Message] = []
-        self._queue_bytes = queue_bytes
-        self._queued_bytes = 0
+        self._budgets = Budgets(queue_bytes)
         self._closing = False
         self._changed = threading.Condition()
         try:
@@ -73,10 +73,9 @@ class Recorder(Journal):
             if self._closing:
                 return
             self._queue.append(message)
-            self._queued_bytes += len(message[2]) + _ENTRY_OVERHEAD_BYTES
-            if self._queued_bytes > self._queue_bytes:
-                self._fail("the disk does not keep up")
-            if self._queued_bytes > CHUNK_BYTES or self._closing:
+            if not self._budgets.use(source_of(entry), len(message[2]) + _ENTRY_OVERHEAD_BYTES):
+                self._fail(f"the disk does not keep up with {source_of(entry)}")
+            if self._budgets.used_bytes > CHUNK_BYTES or self._closing:
                 self._changed.notify()
 
     def close(self) -> None:
@@ -109,8 +108,9 @@ class Recorder(Journal):
 
     def _take(self) -> tuple[list[_Message], bool]:
         with self._changed:
-            self._changed.wait_for(lambda: self._closing or self._queued_bytes > CHUNK_BYTES, FLUSH_S)
-            messages, self._queue, self._queued_bytes = self._queue, [], 0
+            self._changed.wait_for(lambda: self._closing or self._budgets.used_bytes > CHUNK_BYTES, FLUSH_S)
+            messages, self._queue = self._queue, []
+            self._budgets.free()
             return messages, self._closing
 
 

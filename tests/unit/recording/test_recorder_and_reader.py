@@ -293,7 +293,7 @@ def test_a_disk_that_does_not_keep_up_stops_the_recording_and_not_the_caller(
     recorder, disk = recorder_on(monkeypatch, tmp_path / "a.mcap")
     for number in range(1000):
         recorder.bytes_passed("drive", Direction.FROM_BOARD, number, bytes(100))
-    assert recorder.error == "the disk does not keep up"
+    assert recorder.error == "the disk does not keep up with the lines"
     assert "does not keep up" in caplog.text
     disk.go.set()
     recorder.close()

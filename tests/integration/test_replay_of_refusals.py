@@ -1,0 +1,85 @@
+"""Requests that were refused are not recorded and need not be; those that failed halfway are, and replay."""
+
+import asyncio
+import contextlib
+from pathlib import Path
+
+import pytest
+
+from robotd.core.errors import MapError, MissionError, RobotdError
+from robotd.core.pose import IDENTITY
+from robotd.mission.modes import Mode
+from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
+from robotd.recording.entries import CommandEntry
+from robotd.recording.reader import read
+from robotd.sim.robot import SimulatedRobot, own_board
+from robotd.sim.world import load_world
+from tests.integration.conftest import Live
+from tests.integration.living import Living
+from tests.integration.test_replay_of_interruptions import check, replayed
+
+pytestmark = pytest.mark.slow
+
+
+async def refuse_everything(it: Living) -> None:
+    """Ask for what cannot be done now, in every way there is."""
+    control = it.daemon.control
+    for mission in (LocalizeMission(), DriveMission(1.0, 2.0), MapMission("a", ())):
+        with pytest.raises(MissionError):
+            control.start(mission, 1.0)
+    with pytest.raises(MissionError):
+        control.renew(17)
+    with pytest.raises(MapError):
+        await control.load_map("nowhere", None, IDENTITY)
+    with contextlib.suppress(RobotdError):
+        await control.save_map(None)
+    await control.list_maps()
+
+
+async def test_ten_thousand_refusals_leave_nothing_in_the_journal(live: Live) -> None:
+    robot = SimulatedRobot(load_world("office"), seed=4)
+    async with live(robot, armed=False) as it:
+        before = [entry for entry in it.journal.remembered if isinstance(entry, CommandEntry)]
+        for _ in range(2000):
+            await refuse_everything(it)
+        assert [entry for entry in it.journal.remembered if isinstance(entry, CommandEntry)] == before
+
+
+async def test_a_session_full_of_refusals_replays(live: Live, tmp_path: Path) -> None:
+    robot = SimulatedRobot(load_world("office"), seed=4)
+    async with live(robot, armed=False) as it:
+        control = it.daemon.control
+        await control.start_recording(str(tmp_path / "refused.mcap"))
+        await refuse_everything(it)
+        await control.arm()
+        with pytest.raises(MissionError):
+            await control.clear()
+        await it.done(MapMission("office", (), robot.start))
+        await control.save_map("kept")
+        await control.stop("enough")
+        await refuse_everything(it)
+        await control.arm()
+        await control.load_map("kept", None, robot.start)
+        await it.done(LocalizeMission())
+        await control.stop_recording()
+    check(replayed(tmp_path / "refused.mcap"))
+    recorded = [entry.name for entry in read(tmp_path / "refused.mcap").entries if isinstance(entry, CommandEntry)]
+    assert recorded == ["arm", "start", "stop", "arm", "use_map", "start"]
+
+
+async def test_an_arming_that_fails_halfway_is_recorded_and_replays(live: Live, tmp_path: Path) -> None:
+    robot = SimulatedRobot(load_world("office"), seed=4)
+    async with live(robot, armed=False) as it:
+        control = it.daemon.control
+        await control.start_recording(str(tmp_path / "halfway.mcap"))
+        own_board(robot, "pantilt").reboot(99)  # it is deaf for a second
+        with pytest.raises(RobotdError):
+            await control.arm()
+        assert control.status.mode is Mode.DISARMED
+        await asyncio.sleep(5.0)
+        await control.arm()
+        await it.done(MapMission("office", (), robot.start))
+        await control.stop_recording()
+    recorded = [entry.name for entry in read(tmp_path / "halfway.mcap").entries if isinstance(entry, CommandEntry)]
+    assert recorded == ["arm", "arm", "start"]
+    check(replayed(tmp_path / "halfway.mcap"))
