@@ -14,6 +14,7 @@ from robotd.core.errors import MissionError
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
+from robotd.hardware.devices.pantilt import PanTiltLimits
 from robotd.mission.motion import rotate_to, settle
 from robotd.mission.robot import Robot
 from robotd.mission.steering import DrivingSettings
@@ -84,17 +85,11 @@ class Sweeper:
         Without a base only the directions are read that the head reaches by itself.
 
         Raises:
-            MissionError: too many readings failed; the robot stands, and the laser is off.
+            MissionError: the head pans too little, or too many readings failed; the robot stands, and the laser is off.
             DeviceError, LinkTimeout, TransportError: a device failed. The caller must stop the robot, which also
                 switches the laser off: a device that failed cannot be trusted to do it by itself.
         """
-        limits = await self.robot.pantilt.limits()
-        parts = plan_sweep(
-            self.settings.readings,
-            max(limits.pan_min_rad + _LIMIT_MARGIN_RAD, -math.pi),
-            min(limits.pan_max_rad - _LIMIT_MARGIN_RAD, math.pi),
-            clockwise=number % 2 == 1,
-        )
+        parts = self._parts(await self.robot.pantilt.limits(), number)
         if not self.robot.has_base:
             parts = parts[:1]
         start = await standing(self.robot, self.settings.settle_s, self.driving)
@@ -110,6 +105,17 @@ class Sweeper:
                 await self._check_enough(readings)
             await self.robot.rangefinder.switch_laser(on=False)
         return Sweep(number, start.in_odom, tuple(readings))
+
+    def _parts(self, limits: PanTiltLimits, number: int) -> tuple[SweepPart, ...]:
+        try:
+            return plan_sweep(
+                self.settings.readings,
+                max(limits.pan_min_rad + _LIMIT_MARGIN_RAD, -math.pi),
+                min(limits.pan_max_rad - _LIMIT_MARGIN_RAD, math.pi),
+                clockwise=number % 2 == 1,
+            )
+        except ValueError as error:
+            raise MissionError(f"the head cannot look round: {error}") from error
 
     async def _check_enough(self, readings: list[RangeReading]) -> None:
         failed = sum(reading.status in FAILED for reading in readings)

@@ -13,6 +13,7 @@ from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import LinkTimeout, MissionError, RobotdError
 from robotd.core.pose import Odometry
+from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
 from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.battery import low_battery
@@ -314,10 +315,11 @@ class Supervisor:
                 self._device_changed(replace(status, armed=status.armed or device.status.armed))
 
     def _device_changed(self, status: DeviceStatus) -> None:
-        if status.name == self.robot.drive.name and status.link is LinkState.ABSENT:
+        if status.name == self.robot.drive.name and (status.link is LinkState.ABSENT or IMPLAUSIBLE in status.faults):
             self._doubt()
         if status.faults and self._mode is not Mode.FAULT:
-            self.halt(Occasion.FAULT, f"{status.name}: {', '.join(status.faults)}")
+            why = f": {status.detail}" if IMPLAUSIBLE in status.faults else ""
+            self.halt(Occasion.FAULT, f"{status.name}: {', '.join(status.faults)}{why}")
         elif self._mode in {Mode.DISARMED, Mode.FAULT}:
             self.publish(self.status)
         elif status.link is not LinkState.READY and not self._is_left_out(status):
@@ -339,7 +341,7 @@ class Supervisor:
         return status.name not in {device.name for device in self._armed}
 
     def _doubt(self) -> None:
-        """Believe odometry no longer: nobody saw where the base went while its line was down."""
+        """Believe odometry no longer: nobody saw where the base went while its line was down, or it told nonsense."""
         if self.place is None or self.place.map_from_odom is None or self.place.is_doubted:
             return
         self.place.is_doubted = True

@@ -1,11 +1,14 @@
 """What the adapters of our own three boards share: the link, health, arming."""
 
+import contextlib
+from collections.abc import Iterator
 from typing import ClassVar
 
 from firmware_proto.common import Arm, BoardKind, BoardState, BoardStatus, Clear, Fault
 from firmware_proto.schema import Message
 from robotd.core.broadcast import Broadcast
 from robotd.core.errors import DeviceError, TransportError
+from robotd.hardware.devices.credible import IMPLAUSIBLE, Times
 from robotd.hardware.devices.device import DeviceStatus, LinkState
 from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.settings import PortSettings
@@ -30,6 +33,9 @@ class BoardDevice:
         self._session: Session | None = None
         self._may_move = False
         """Whether an arm was asked for, and no stop since."""
+        self._is_distrusted = False
+        """Whether it said what cannot be, and nobody has cleared that."""
+        self._times = Times(self.name)
         self._health = Health(self.name, self._counted)
         self._link = Link(
             device=self.name,
@@ -72,7 +78,8 @@ class BoardDevice:
     async def clear_faults(self) -> None:
         """Acknowledge latched faults; leaves the device disarmed; same errors as :meth:`arm`."""
         await self._order(Clear())
-        self._health.change(armed=False, faults=())
+        self._is_distrusted = False
+        self._health.change(armed=False, faults=(), detail="")
 
     def stop_now(self) -> None:
         """Put the preformatted stop on the wire in place of all that waits; never blocks, never raises.
@@ -94,6 +101,8 @@ class BoardDevice:
 
     def link_opened(self) -> None:
         """Note that the line is open."""
+        self._is_distrusted = False
+        self._times = Times(self.name)
         self._health.change(
             link=LinkState.CONNECTING, armed=False, faults=(), detail="line open, waiting for the board"
         )
@@ -115,7 +124,8 @@ class BoardDevice:
             is_armed = message.state == BoardState.ARMED
             if is_armed and not self._may_move:
                 self.stop_now()
-            self._health.change(armed=is_armed, faults=fault_names(message.faults))
+            ours = (IMPLAUSIBLE,) if self._is_distrusted else ()
+            self._health.change(armed=is_armed, faults=(*fault_names(message.faults), *ours))
 
     # What a subclass uses
 
@@ -131,8 +141,30 @@ class BoardDevice:
         if self._session is not session:
             raise TransportError(f"{self.name} was lost: {self._health.detail}")
 
-    def _host_ns(self, board_us: int) -> int:
-        return self._talk().clock.host_ns(board_us)
+    @contextlib.contextmanager
+    def _judging(self) -> Iterator[None]:
+        """Distrust the board for what is found implausible within; the error goes on."""
+        try:
+            yield
+        except DeviceError as error:
+            if error.code == IMPLAUSIBLE:
+                self._distrust(error)
+            raise
+
+    def _distrust(self, error: DeviceError) -> None:
+        """Stop, count, and latch that it said what cannot be."""
+        self._counters.implausible += 1
+        self.stop_now()
+        self._is_distrusted = True
+        if IMPLAUSIBLE not in self._health.faults:
+            self._health.change(armed=False, faults=(*self._health.faults, IMPLAUSIBLE), detail=str(error))
+
+    def _host_ns(self, board_us: int, *, periodic: bool = False) -> int:
+        """Return the host's time at a time of the board; DeviceError if it cannot be."""
+        session = self._talk()
+        time_ns = session.heard_ns + session.clock.ahead_ns(board_us, session.heard_ns)
+        (self._times.check_periodic if periodic else self._times.check)(time_ns, session.heard_ns)
+        return session.clock.host_ns(board_us)
 
     def _counted(self) -> tuple[tuple[str, int], ...]:
         wire, link = self._wire.counters, self._counters
@@ -148,8 +180,13 @@ class BoardDevice:
             ("timeouts", link.timeouts),
             ("refused", link.refused),
             ("unmatched", link.unmatched),
+            ("implausible", link.implausible + self._unlikely()),
             *self._clock(),
         )
+
+    def _unlikely(self) -> int:
+        """Return how many values a subclass left out by itself."""
+        return 0
 
     def _clock(self) -> tuple[tuple[str, int], ...]:
         """Return how much faster the board's clock runs than ours, and how well that is known."""

@@ -1,5 +1,6 @@
 """The synchro-drive on our own board."""
 
+import contextlib
 import math
 from typing import ClassVar
 
@@ -8,10 +9,12 @@ from firmware_proto.drive import DriveReport, OdometryReport, SetVelocity
 from firmware_proto.schema import Message
 from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Broadcast
+from robotd.core.errors import DeviceError
 from robotd.core.pose import Odometry, Twist2
 from robotd.hardware.devices.board_device import BoardDevice
+from robotd.hardware.devices.credible import check_battery, check_twist
 from robotd.hardware.devices.drive import DriveReadout
-from robotd.hardware.devices.odometer import Odometer
+from robotd.hardware.devices.odometer import JudgedOdometer
 from robotd.hardware.devices.settings import DriveSettings
 from robotd.hardware.devices.wiring import Wiring
 
@@ -28,7 +31,7 @@ class BoardDrive(BoardDevice):
     def __init__(self, settings: DriveSettings, wiring: Wiring) -> None:
         """Make the device; its ``odom`` frame begins where the base is first seen."""
         super().__init__(settings, wiring)
-        self._odometer = Odometer(settings.calibration)
+        self._odometer = JudgedOdometer(self.name, settings.calibration)
         self._odometry: Broadcast[Odometry] = Broadcast()
         self._readouts: Broadcast[DriveReadout] = Broadcast()
 
@@ -54,24 +57,38 @@ class BoardDrive(BoardDevice):
 
     def telemetry(self, message: Message) -> None:
         """Take odometry, battery, bumpers, and what every board tells."""
-        if isinstance(message, OdometryReport):
-            self._odometry.publish(self._measured(message))
-        elif isinstance(message, DriveReport):
-            self._readouts.publish(self._read_out(message))
-        else:
-            super().telemetry(message)
+        with contextlib.suppress(DeviceError), self._judging():
+            if isinstance(message, OdometryReport):
+                self._moved(message)
+            elif isinstance(message, DriveReport):
+                self._readouts.publish(self._read_out(message))
+            else:
+                super().telemetry(message)
 
-    def _measured(self, report: OdometryReport) -> Odometry:
-        return Odometry(
-            time_ns=self._host_ns(report.board_us),
-            in_odom=self._odometer.update(self._talk().boot_id, report.translate_counts, report.rotate_counts),
-            twist=Twist2(report.speed_mmps / _MILLI, report.turn_mradps / _MILLI),
-        )
+    async def clear_faults(self) -> None:
+        """Acknowledge latched faults; see :meth:`BoardDevice.clear_faults`."""
+        if self._is_distrusted:
+            self._odometer.start_anew()
+        await super().clear_faults()
+
+    def _moved(self, report: OdometryReport) -> None:
+        """Publish where it is; a report older than the last one, as a line that doubles bytes gives, is let go."""
+        time_ns = self._host_ns(report.board_us, periodic=True)
+        latest = self._odometry.latest
+        if latest is not None and time_ns < latest.time_ns:
+            return
+        twist = Twist2(report.speed_mmps / _MILLI, report.turn_mradps / _MILLI)
+        check_twist(self.name, twist)
+        boot_id = self._talk().boot_id
+        in_odom = self._odometer.update(boot_id, report.translate_counts, report.rotate_counts, time_ns)
+        self._odometry.publish(Odometry(time_ns, in_odom, twist))
 
     def _read_out(self, report: DriveReport) -> DriveReadout:
         pressed = (bit for bit in range(_BUMPERS) if report.bumpers & 1 << bit)
+        battery_v = report.battery_mv / _MILLI
+        check_battery(self.name, battery_v)
         return DriveReadout(
             time_ns=self._host_ns(report.board_us),
-            battery_v=report.battery_mv / _MILLI,
+            battery_v=battery_v,
             bumpers_rad=tuple(wrap_rad(bit * _BUMPER_STEP_RAD) for bit in pressed),
         )

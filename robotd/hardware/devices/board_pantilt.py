@@ -11,6 +11,7 @@ from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Broadcast, Subscription
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
 from robotd.hardware.devices.board_device import BoardDevice
+from robotd.hardware.devices.credible import check_limits, check_readback
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
 from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
@@ -46,12 +47,15 @@ class BoardPanTilt(BoardDevice):
         """Return the mechanical limits, in the robot frame; a head without end pans from -pi to pi there."""
         limits = await self._talk().ask(proto.ReadLimits(), proto.Limits)
         is_endless = limits.pan_max_tenth_mrad - limits.pan_min_tenth_mrad >= 2 * _HALF_TURN
-        return PanTiltLimits(
+        found = PanTiltLimits(
             -math.pi if is_endless else self._pan_rad(limits.pan_min_tenth_mrad),
             math.pi if is_endless else self._pan_rad(limits.pan_max_tenth_mrad),
             self._tilt_rad(limits.tilt_min_tenth_mrad),
             self._tilt_rad(limits.tilt_max_tenth_mrad),
         )
+        with self._judging():
+            check_limits(self.name, found)
+        return found
 
     async def reset(self) -> None:
         """Do nothing: it measures where it points."""
@@ -68,10 +72,14 @@ class BoardPanTilt(BoardDevice):
             with self._reports.subscribe() as reports:
                 try:
                     async with asyncio.timeout(timeout_s):
-                        return self._readback(await self._done(session, await session.command(aim), reports))
+                        done = await self._done(session, await session.command(aim), reports)
                 except TimeoutError:
                     self.stop_now()
                     raise LinkTimeout(f"{self.name}: still turning after {timeout_s:g} s") from None
+        with self._judging():
+            readback = self._readback(done)
+            check_readback(self.name, readback, pan_rad, tilt_rad)
+        return readback
 
     async def _done(self, session: Session, seq: int, reports: Subscription[Report | None]) -> Report:
         while True:

@@ -8,9 +8,11 @@ from firmware_proto.rangefinder import ShotStatus
 from robotd.core.errors import DeviceError, LinkTimeout
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.board_device import BoardDevice
+from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.link.session import Session
 
 _MM_PER_M = 1000
 _STATUS: dict[int, ReadingStatus] = {
@@ -34,7 +36,7 @@ class BoardRangefinder(BoardDevice):
     def __init__(self, settings: RangefinderSettings, wiring: Wiring) -> None:
         """Make the device; its bias is applied to every range."""
         super().__init__(settings, wiring)
-        self._bias_m = settings.range_bias_m
+        self._instrument = Instrument(settings)
 
     async def switch_laser(self, *, on: bool) -> None:
         """Switch the light; same errors as :meth:`arm`."""
@@ -49,14 +51,18 @@ class BoardRangefinder(BoardDevice):
             return Shot(session.heard_ns, ReadingStatus.TIMEOUT, None, None)
         except DeviceError:
             return Shot(session.heard_ns, ReadingStatus.DEVICE_ERROR, None, None)
-        return self._measured(shot)
+        return self._measured(shot, session)
 
-    def _measured(self, shot: proto.Shot) -> Shot:
+    def _measured(self, shot: proto.Shot, session: Session) -> Shot:
+        try:
+            with self._judging():
+                time_ns = self._host_ns(shot.board_us)
+        except DeviceError:
+            return Shot(session.heard_ns, ReadingStatus.DEVICE_ERROR, None, None)
         status = _STATUS.get(shot.status, ReadingStatus.DEVICE_ERROR)
-        is_ok = status is ReadingStatus.OK
-        return Shot(
-            time_ns=self._host_ns(shot.board_us),
-            status=status,
-            range_m=shot.range_mm / _MM_PER_M + self._bias_m if is_ok else None,
-            strength=shot.strength,
-        )
+        if status is not ReadingStatus.OK:
+            return Shot(time_ns, status, None, shot.strength)
+        return self._instrument.shot(time_ns, shot.range_mm / _MM_PER_M, shot.strength)
+
+    def _unlikely(self) -> int:
+        return self._instrument.implausible

@@ -1,11 +1,13 @@
 """What the adapters of bought devices share: the line, health, and an arming that is ours, for makers know none."""
 
+import contextlib
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import ClassVar, Generic, NoReturn, TypeVar
 
 from robotd.core.broadcast import Broadcast
 from robotd.core.errors import DeviceError, TransportError
+from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import DeviceStatus, LinkState
 from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.wiring import Wiring
@@ -182,11 +184,31 @@ class BoughtDevice(ABC, Generic[M]):
         if fault not in self._health.faults:
             self._health.change(faults=(*self._health.faults, fault), detail=detail)
 
+    def _distrust(self, error: DeviceError) -> None:
+        """Count that it said what cannot be, stop, and latch it."""
+        self._counters.implausible += 1
+        self._latch(IMPLAUSIBLE, str(error))
+
+    @contextlib.contextmanager
+    def _judging(self) -> Iterator[None]:
+        """Distrust the device for what is found implausible within; the error goes on."""
+        try:
+            yield
+        except DeviceError as error:
+            if error.code == IMPLAUSIBLE:
+                self._distrust(error)
+            raise
+
+    def _unlikely(self) -> int:
+        """Return how many values a subclass left out by itself."""
+        return 0
+
     def _counted(self) -> tuple[tuple[str, int], ...]:
         ours = (
             ("sessions", self._counters.sessions),
             ("retries", self._counters.retries),
             ("timeouts", self._counters.timeouts),
+            ("implausible", self._counters.implausible + self._unlikely()),
         )
         return (*self._wire.counters.items(), *ours)
 

@@ -88,8 +88,9 @@ def reading_in_robot(
         stop_from_base: where the base stands now in the robot frame of the stop, if it turned since the sweep began.
 
     Returns:
-        The reading, its range made horizontal by the tilt: a miss, with the cut-off as its range, if nothing was
-        met up to there, and ``TOO_NEAR`` if it is nearer than the instrument can measure.
+        The reading, its range made horizontal by the tilt: a miss, with the cut-off as its range, or with the reach of
+        an instrument that sees less far, if nothing was met up to there, and ``TOO_NEAR`` if it is nearer than the
+        instrument can measure.
     """
     origin_x_m, origin_y_m = stop_from_base.transform(mount.x_m, mount.y_m)
     status, range_m = _horizontal(calibration, shot, aim.tilt_rad)
@@ -106,7 +107,8 @@ def reading_in_robot(
 
 def _horizontal(calibration: RangefinderCalibration, shot: Shot, tilt_rad: float) -> tuple[ReadingStatus, float | None]:
     if shot.status is ReadingStatus.MISS:
-        return ReadingStatus.MISS, calibration.range_max_m
+        seen_m = math.inf if shot.range_m is None else shot.range_m * math.cos(tilt_rad)
+        return ReadingStatus.MISS, min(seen_m, calibration.range_max_m)
     if shot.status is not ReadingStatus.OK or shot.range_m is None:
         return shot.status, None
     if shot.range_m < calibration.range_min_m:

@@ -9,6 +9,7 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
@@ -63,7 +64,7 @@ class DimetixRangefinder(BoughtDevice[Message]):
         self._tongue = _Tongue.of(settings)
         super().__init__(DimetixWire(self._tongue.parse), wiring)
         self.STOP = _LINE_END + self._tongue.off
-        self._bias_m = settings.range_bias_m
+        self._instrument = Instrument(settings)
         self._shooting = asyncio.Lock()
 
     async def switch_laser(self, *, on: bool) -> None:
@@ -84,8 +85,7 @@ class DimetixRangefinder(BoughtDevice[Message]):
                 return Shot(now_ns(), ReadingStatus.DEVICE_ERROR, None, None)
         message = heard.message
         if isinstance(message, Distance):
-            range_m = message.tenth_mm / _TENTH_MM_PER_M + self._bias_m
-            return Shot(heard.time_ns, ReadingStatus.OK, range_m, None)
+            return self._instrument.shot(heard.time_ns, message.tenth_mm / _TENTH_MM_PER_M, None)
         code = message.code if isinstance(message, Failed) else 0
         return Shot(heard.time_ns, _STATUS.get(code, ReadingStatus.DEVICE_ERROR), None, None)
 
@@ -105,6 +105,9 @@ class DimetixRangefinder(BoughtDevice[Message]):
 
     def _report(self, heard: Heard[Message]) -> None:
         """Let go by what comes late: the answer to a measurement that was given up."""
+
+    def _unlikely(self) -> int:
+        return self._instrument.implausible
 
     async def _order(self, data: bytes) -> None:
         answer = (await self._talk().ask(data, self._is(Ready), timeout_s=_ANSWER_S, tries=_TRIES)).message

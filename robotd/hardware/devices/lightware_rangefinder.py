@@ -14,6 +14,7 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
@@ -23,8 +24,7 @@ M = TypeVar("M")
 
 ANSWER_S = 0.2
 TRIES = 3
-_REACH_M = 100.0
-"""What is farther is no distance."""
+_LOST_SIGNAL_M = frozenset({130.0, 160.0, 230.0, 250.0})
 _IDLE_POLL_S = 1.0
 _KNOWN = ("LW20", "SF20")
 
@@ -37,7 +37,7 @@ class LightwareRangefinder(BoughtDevice[M]):
     def __init__(self, wire: Wire[M], settings: RangefinderSettings, wiring: Wiring) -> None:
         """Make the device; its bias is applied to every range."""
         super().__init__(wire, wiring)
-        self._bias_m = settings.range_bias_m
+        self._instrument = Instrument(settings)
         self._shooting = asyncio.Lock()
 
     async def switch_laser(self, *, on: bool) -> None:
@@ -72,9 +72,12 @@ class LightwareRangefinder(BoughtDevice[M]):
     def _shot(self, time_ns: int, distance_m: float | None, strength: int | None) -> Shot:
         if distance_m is None:
             return Shot(time_ns, ReadingStatus.DEVICE_ERROR, None, strength)
-        if not 0.0 < distance_m <= _REACH_M:
+        if distance_m <= 0.0 or distance_m in _LOST_SIGNAL_M:
             return Shot(time_ns, ReadingStatus.WEAK, None, strength)
-        return Shot(time_ns, ReadingStatus.OK, distance_m + self._bias_m, strength)
+        return self._instrument.shot(time_ns, distance_m, strength)
+
+    def _unlikely(self) -> int:
+        return self._instrument.implausible
 
     @abstractmethod
     async def _product(self, dialogue: Dialogue[M]) -> str:

@@ -3,8 +3,10 @@
 import math
 
 from robotd.core.angles import wrap_rad
+from robotd.core.clock import NS_PER_S
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.hardware.devices.calibration import DriveCalibration
+from robotd.hardware.devices.credible import check_way
 
 _COUNTER_SPAN = 1 << 32
 
@@ -22,13 +24,21 @@ class Odometer:
         self.in_odom: Pose2 = IDENTITY
         """Where the base is; the origin is where it was first seen."""
 
+    def start_anew(self) -> None:
+        """Take the next counts, whatever they are, for those of where the base is."""
+        self._seen = None
+
+    def gained(self, boot_id: int, translate_counts: int, rotate_counts: int) -> tuple[float, float]:
+        """Return the way [m] and the turn [rad] that a report of cumulative signed 32-bit counts, which wrap, adds."""
+        if self._seen is None or self._seen[0] != boot_id:
+            return 0.0, 0.0
+        way_m = _gained(self._seen[1], translate_counts) / self._calibration.counts_per_m
+        return way_m, _gained(self._seen[2], rotate_counts) / self._calibration.counts_per_rad
+
     def update(self, boot_id: int, translate_counts: int, rotate_counts: int) -> Pose2:
         """Return the pose after a report of cumulative signed 32-bit counts, which wrap."""
-        seen, self._seen = self._seen, (boot_id, translate_counts, rotate_counts)
-        if seen is None or seen[0] != boot_id:
-            return self.in_odom
-        way_m = _gained(seen[1], translate_counts) / self._calibration.counts_per_m
-        turn_rad = _gained(seen[2], rotate_counts) / self._calibration.counts_per_rad
+        way_m, turn_rad = self.gained(boot_id, translate_counts, rotate_counts)
+        self._seen = (boot_id, translate_counts, rotate_counts)
         half_rad = turn_rad / 2
         chord_m = way_m * math.sin(half_rad) / half_rad if half_rad else way_m
         self.in_odom = Pose2(
@@ -37,6 +47,30 @@ class Odometer:
             wrap_rad(self.in_odom.heading_rad + turn_rad),
         )
         return self.in_odom
+
+
+class JudgedOdometer:
+    """An odometer that believes no way which the base cannot have made in the time."""
+
+    def __init__(self, device: str, calibration: DriveCalibration) -> None:
+        self._device = device
+        self._odometer = Odometer(calibration)
+        self._time_ns = 0
+
+    def start_anew(self) -> None:
+        """Believe the next counts: somebody has looked at the base since."""
+        self._odometer.start_anew()
+
+    def update(self, boot_id: int, translate_counts: int, rotate_counts: int, time_ns: int) -> Pose2:
+        """Return the pose after a report of counts and the time at which they were measured.
+
+        Raises:
+            DeviceError: no base gets there in that time; the report is left out.
+        """
+        way_m, turn_rad = self._odometer.gained(boot_id, translate_counts, rotate_counts)
+        check_way(self._device, way_m, turn_rad, (time_ns - self._time_ns) / NS_PER_S)
+        self._time_ns = time_ns
+        return self._odometer.update(boot_id, translate_counts, rotate_counts)
 
 
 def _gained(before: int, after: int) -> int:

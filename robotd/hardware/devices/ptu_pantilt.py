@@ -14,6 +14,7 @@ from typing import NoReturn
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.hardware.devices.bought_device import BoughtDevice, is_a
+from robotd.hardware.devices.credible import check_limits
 from robotd.hardware.devices.pantilt import LOST_STEPS, AimReadback, PanTiltLimits
 from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
@@ -25,6 +26,7 @@ RESET_S = 40.0
 _ANSWER_S = 0.5
 _TRIES = 3
 _IDLE_POLL_S = 1.0
+_FINEST_ARC_SECONDS, _COARSEST_ARC_SECONDS = 0.1, 3600.0
 _ARC_SECONDS_PER_RAD = 3600.0 * 180.0 / math.pi
 
 
@@ -57,7 +59,9 @@ class PtuPanTilt(BoughtDevice[Message]):
     async def limits(self) -> PanTiltLimits:
         """Return the limits that the unit found at its last reset, in the robot frame."""
         self._talk()
-        axes = self._known_axes()
+        return self._in_robot(self._known_axes())
+
+    def _in_robot(self, axes: _Axes) -> PanTiltLimits:
         pan_min, pan_max, tilt_min, tilt_max = axes.limits_steps
         return PanTiltLimits(
             pan_min / axes.pan_steps_per_rad + self._mount.pan_zero_rad,
@@ -111,14 +115,20 @@ class PtuPanTilt(BoughtDevice[Message]):
             await self._set_up(dialogue, mode)
         numbers = [await self._number(dialogue, query) for query in ("PR", "TR", "PN", "PX", "TN", "TX")]
         pan_arc_seconds, tilt_arc_seconds, *limits = numbers
-        if pan_arc_seconds <= 0.0 or tilt_arc_seconds <= 0.0:
+        if not all(_FINEST_ARC_SECONDS <= one <= _COARSEST_ARC_SECONDS for one in (pan_arc_seconds, tilt_arc_seconds)):
             raise RemoteProtocolError(f"{self.name}: expected seconds of arc per step, got {numbers[:2]}")
         pan_min, pan_max, tilt_min, tilt_max = (int(limit) for limit in limits)
-        self._axes = _Axes(
+        axes = _Axes(
             _ARC_SECONDS_PER_RAD / pan_arc_seconds,
             _ARC_SECONDS_PER_RAD / tilt_arc_seconds,
             (pan_min, pan_max, tilt_min, tilt_max),
         )
+        try:
+            check_limits(self.name, self._in_robot(axes))
+        except DeviceError as error:
+            self._counters.implausible += 1
+            raise RemoteProtocolError(str(error)) from error
+        self._axes = axes
 
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
         """It speaks only when asked, so that it is still there must be asked."""

@@ -14,7 +14,8 @@ class Shot:
     time_ns: int
     status: ReadingStatus
     range_m: float | None
-    """Distance along the beam, range bias applied; None unless the status is ``ok``."""
+    """Distance along the beam, range bias applied; of a miss, how far nothing was met, None if the device does not say;
+    None for every other status."""
     strength: int | None
 
 

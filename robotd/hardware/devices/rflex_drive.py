@@ -8,15 +8,18 @@ emergency stop that a person can reach, or a relay that drops with the host.
 """
 
 import asyncio
+import contextlib
 import logging
 from typing import ClassVar, NoReturn
 
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.hardware.devices.bought_device import BoughtDevice, is_a
+from robotd.hardware.devices.credible import IMPLAUSIBLE, check_battery, check_twist, implausible
 from robotd.hardware.devices.drive import DriveReadout
-from robotd.hardware.devices.odometer import Odometer
+from robotd.hardware.devices.odometer import JudgedOdometer
 from robotd.hardware.devices.settings import DriveSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
@@ -44,6 +47,7 @@ NO_WATCHDOG = (
 _ACCELERATIONS = (0.5, 1.5)
 """Of translation [m/s^2] and rotation [rad/s^2]."""
 _TORQUES = (30_000, 35_000)
+_TRANSLATION, _ROTATION = 0, 1
 _US_PER_MS = 1000
 _SPACING_S = 0.01
 """What comes sooner after another order may be dropped."""
@@ -74,7 +78,7 @@ class RflexDrive(BoughtDevice[Message]):
         super().__init__(RflexWire(), wiring, quiet_s=_QUIET_S)
         self._settings = settings
         self._scales = settings.calibration
-        self._odometer = Odometer(settings.calibration)
+        self._odometer = JudgedOdometer(self.NAME, settings.calibration)
         self._odometry: Broadcast[Odometry] = Broadcast()
         self._readouts: Broadcast[DriveReadout] = Broadcast()
         self._translated: AxisReport | None = None
@@ -154,8 +158,14 @@ class RflexDrive(BoughtDevice[Message]):
             )
             if isinstance(heard.message, SystemStatus):
                 volts = heard.message.centivolts / _CENTIVOLTS_PER_V
-                self._readouts.publish(DriveReadout(heard.time_ns, volts, ()))
+                with contextlib.suppress(DeviceError), self._judging():
+                    check_battery(self.NAME, volts)
+                    self._readouts.publish(DriveReadout(heard.time_ns, volts, ()))
             await asyncio.sleep(_STATUS_EVERY_S)
+
+    async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
+        if IMPLAUSIBLE in self._health.faults:
+            self._odometer.start_anew()
 
     def _counts(self, twist: Twist2) -> tuple[float, float]:
         return twist.speed_mps * self._scales.counts_per_m, twist.turn_radps * self._scales.counts_per_rad
@@ -169,19 +179,23 @@ class RflexDrive(BoughtDevice[Message]):
     def _report(self, heard: Heard[Message]) -> None:
         message = heard.message
         if isinstance(message, AxisReport):
-            self._moved(message, heard.time_ns)
+            with contextlib.suppress(DeviceError), self._judging():
+                self._moved(message, heard.time_ns)
         elif isinstance(message, Switches) and self._dialogue is not None and _is_pressed(message):
             self._latch("bumper", f"bump panel {message.address - _FIRST_BUMPER}")
 
     def _moved(self, report: AxisReport, time_ns: int) -> None:
         """Publish odometry with each report of the rotation, which follows that of the translation."""
-        if report.axis == 0:
+        if report.axis == _TRANSLATION:
             self._translated = report
             return
+        if report.axis != _ROTATION:
+            raise implausible(self.NAME, f"it reports an axis {report.axis}")
         if self._translated is None or self._dialogue is None:
             return
-        in_odom = self._odometer.update(self.sessions, self._translated.position, report.position)
         twist = Twist2(self._translated.speed / self._scales.counts_per_m, report.speed / self._scales.counts_per_rad)
+        check_twist(self.NAME, twist)
+        in_odom = self._odometer.update(self.sessions, self._translated.position, report.position, time_ns)
         self._odometry.publish(Odometry(time_ns, in_odom, twist))
         if not self._may_move and not twist.is_zero:
             self.stop_now()  # a stop can be lost like any order

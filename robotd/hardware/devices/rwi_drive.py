@@ -4,16 +4,19 @@ Speeds are magnitudes and directions are commands, so a reversal stops first and
 set-point re-arms the base's own watchdog for its time to live: when the host falls silent, the base stops by itself.
 """
 
+import contextlib
 import math
 from typing import ClassVar, NoReturn
 
 from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S
+from robotd.core.errors import DeviceError
 from robotd.core.pose import Odometry, Twist2
 from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.credible import IMPLAUSIBLE, check_battery
 from robotd.hardware.devices.drive import DriveReadout
-from robotd.hardware.devices.odometer import Odometer
+from robotd.hardware.devices.odometer import JudgedOdometer
 from robotd.hardware.devices.settings import DriveSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
@@ -52,7 +55,7 @@ class RwiDrive(BoughtDevice[Message]):
         """Make the device; its ``odom`` frame begins where the base is first seen."""
         super().__init__(RwiWire(), wiring)
         self._scales = settings.calibration
-        self._odometer = Odometer(settings.calibration)
+        self._odometer = JudgedOdometer(self.NAME, settings.calibration)
         self._odometry: Broadcast[Odometry] = Broadcast()
         self._readouts: Broadcast[DriveReadout] = Broadcast()
         self._directions = {"T": 0, "R": 0}
@@ -126,7 +129,12 @@ class RwiDrive(BoughtDevice[Message]):
             translate = await self._ask(dialogue, "TW")
             rotate = await self._ask(dialogue, "RW")
             counts = (_signed(translate.message.value), _signed(rotate.message.value))
-            in_odom = self._odometer.update(self.sessions, *counts)
+            try:
+                with self._judging():
+                    in_odom = self._odometer.update(self.sessions, *counts, rotate.time_ns)
+            except DeviceError:
+                before = None  # what comes next is judged by what came before
+                continue
             if before is not None:
                 seconds = max(rotate.time_ns - before.time_ns, 1) / NS_PER_S
                 twist = Twist2(
@@ -171,7 +179,13 @@ class RwiDrive(BoughtDevice[Message]):
 
     def _read_out(self, battery: Heard[Answer]) -> None:
         volts = battery.message.value / _TENTHS_PER_V
-        self._readouts.publish(DriveReadout(battery.time_ns, volts, self._bumpers_rad))
+        with contextlib.suppress(DeviceError), self._judging():
+            check_battery(self.NAME, volts)
+            self._readouts.publish(DriveReadout(battery.time_ns, volts, self._bumpers_rad))
+
+    async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
+        if IMPLAUSIBLE in self._health.faults:
+            self._odometer.start_anew()
 
     async def _ask(self, dialogue: Dialogue[Message], mnemonic: str) -> Heard[Answer]:
         def settles(message: Message) -> bool:

@@ -14,6 +14,7 @@ from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.bought_device import BoughtDevice
 from robotd.hardware.devices.gaze import Fan
+from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
@@ -26,7 +27,6 @@ _ANSWER_S = 0.5
 _TRIES = 3
 _IDLE_POLL_S = 1.0
 _STATUS = {
-    Verdict.NOTHING: ReadingStatus.MISS,
     Verdict.TOO_NEAR: ReadingStatus.TOO_NEAR,
     Verdict.WEAK: ReadingStatus.WEAK,
     Verdict.SATURATED: ReadingStatus.SATURATED,
@@ -44,7 +44,7 @@ class ScipRangefinder(BoughtDevice[Reply]):
     def __init__(self, settings: RangefinderSettings, wiring: Wiring) -> None:
         """Make the device; its bias is applied to every range."""
         super().__init__(ScipWire(), wiring)
-        self._bias_m = settings.range_bias_m
+        self._instrument = Instrument(settings)
         self._gaze = wiring.gaze
         self._parameters: Parameters | None = None
         self._scan: Heard[tuple[int, ...]] | None = None
@@ -86,10 +86,16 @@ class ScipRangefinder(BoughtDevice[Reply]):
 
     def _shot(self, scan: Heard[tuple[int, ...]]) -> Shot:
         distance_mm = scan.message[self._gaze.index]
-        verdict = self._known().verdict(distance_mm)
-        if verdict is not None:
-            return Shot(scan.time_ns, _STATUS[verdict], None, None)
-        return Shot(scan.time_ns, ReadingStatus.OK, distance_mm / _MM_PER_M + self._bias_m, None)
+        known = self._known()
+        verdict, reach_m = known.verdict(distance_mm), known.range_max_mm / _MM_PER_M
+        if verdict is None or distance_mm > known.range_max_mm:
+            return self._instrument.shot(scan.time_ns, distance_mm / _MM_PER_M, None, reach_m=reach_m)
+        if verdict is Verdict.NOTHING:
+            return self._instrument.nothing_within(scan.time_ns, reach_m, None)
+        return Shot(scan.time_ns, _STATUS[verdict], None, None)
+
+    def _unlikely(self) -> int:
+        return self._instrument.implausible
 
     async def _greet(self, dialogue: Dialogue[Reply]) -> None:
         self._scan = None

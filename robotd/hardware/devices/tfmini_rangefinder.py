@@ -11,6 +11,7 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
@@ -42,7 +43,6 @@ _STATUS = {
     Verdict.WEAK: ReadingStatus.WEAK,
     Verdict.SATURATED: ReadingStatus.SATURATED,
     Verdict.AMBIENT: ReadingStatus.AMBIENT,
-    Verdict.OUT_OF_RANGE: ReadingStatus.MISS,
 }
 
 
@@ -56,7 +56,7 @@ class TfminiRangefinder(BoughtDevice[Message]):
         """Make the device: its dialect names the model; its bias is applied to every range."""
         super().__init__(TfminiWire(), wiring)
         self._model = Model(settings.dialect)
-        self._bias_m = settings.range_bias_m
+        self._instrument = Instrument(settings)
         self._shooting = asyncio.Lock()
 
     async def switch_laser(self, *, on: bool) -> None:
@@ -78,9 +78,15 @@ class TfminiRangefinder(BoughtDevice[Message]):
         data = heard.message
         assert isinstance(data, Data)
         verdict = data.verdict(self._model)
+        distance_m = data.distance / _CM_PER_M
+        if verdict is Verdict.OUT_OF_RANGE:
+            return self._instrument.nothing_within(heard.time_ns, distance_m, data.strength)
         if verdict is not Verdict.OK:
             return Shot(heard.time_ns, _STATUS[verdict], None, data.strength)
-        return Shot(heard.time_ns, ReadingStatus.OK, data.distance / _CM_PER_M + self._bias_m, data.strength)
+        return self._instrument.shot(heard.time_ns, distance_m, data.strength)
+
+    def _unlikely(self) -> int:
+        return self._instrument.implausible
 
     async def _greet(self, dialogue: Dialogue[Message]) -> None:
         """Silence the stream, see who is there, and go over to trigger mode."""

@@ -3,6 +3,9 @@
 A ping that left at ``sent`` and was answered at ``received`` met the board's clock somewhere between; the
 middle is wrong by half the round trip at most. So samples with short round trips count most, and once
 they span enough time a weighted line through them gives the drift too.
+
+A board may lie, or slip a digit: each sample bounds the offset from both sides, and only those count whose bounds have
+most of the others' company (the rule by which NTP finds its falsetickers). One liar among honest pings moves nothing.
 """
 
 from collections import deque
@@ -15,6 +18,8 @@ _DRIFT_SPAN_NS = 5_000_000_000
 _DRIFT_MAX = 1e-3
 _JITTER_NS = 50_000
 _ROUND_TRIP_MAX_NS = 1_000_000_000
+AHEAD_MAX_NS = _ROUND_TRIP_MAX_NS // 2
+"""How far a true time can lie ahead of when it was heard: the offset is wrong by half a round trip at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +85,24 @@ def _drift(weights: list[float], elapsed: list[int], gained: list[int]) -> float
     return max(-_DRIFT_MAX, min(slope / _mean(weights, [arm * arm for arm in arms]), _DRIFT_MAX))
 
 
+def agreeing(samples: tuple[ClockSample, ...]) -> tuple[ClockSample, ...]:
+    """Return the largest group of samples that one offset can explain, the oldest such group, in their order.
+
+    O(n^2). Clocks are taken to run apart by a thousandth at most.
+    """
+    bounds = [_offset_bounds(sample, samples[-1].host_ns) for sample in samples]
+    groups = [[low <= at <= high for low, high in bounds] for at, _ in bounds]
+    best = max(groups, key=sum, default=[])
+    return tuple(sample for sample, is_in in zip(samples, best, strict=True) if is_in)
+
+
+def _offset_bounds(sample: ClockSample, now_ns: int) -> tuple[int, int]:
+    """Return what the host's time less the board's can be now, at least and at most [ns]."""
+    slack_ns = sample.round_trip_ns // 2 + _JITTER_NS + round(abs(now_ns - sample.host_ns) * _DRIFT_MAX)
+    offset_ns = sample.host_ns - sample.board_ns
+    return offset_ns - slack_ns, offset_ns + slack_ns
+
+
 class ClockSync:
     """Learns from pings; translates times of the board, never backwards."""
 
@@ -93,13 +116,24 @@ class ClockSync:
         """The present fit; None until the first sample."""
         return self._fit
 
-    def add(self, sent_us: int, board_us: int, received_ns: int) -> None:
-        """Learn from an answered ping; one that took a second, or none, is no evidence."""
+    def add(self, sent_us: int, board_us: int, received_ns: int) -> bool:
+        """Learn from an answered ping; return whether it agrees with most of the others.
+
+        One that took a second, or none, is no evidence, and disagrees with nobody.
+        """
         sent_ns = sent_us * _NS_PER_US
         round_trip_ns = received_ns - sent_ns
-        if 0 <= round_trip_ns <= _ROUND_TRIP_MAX_NS:
-            self._samples.append(ClockSample(board_us * _NS_PER_US, sent_ns + round_trip_ns // 2, round_trip_ns))
-            self._fit = fit(tuple(self._samples))
+        if not 0 <= round_trip_ns <= _ROUND_TRIP_MAX_NS:
+            return True
+        sample = ClockSample(board_us * _NS_PER_US, sent_ns + round_trip_ns // 2, round_trip_ns)
+        self._samples.append(sample)
+        believed = agreeing(tuple(self._samples))
+        self._fit = fit(believed)
+        return believed[-1] is sample
+
+    def ahead_ns(self, board_us: int, heard_ns: int) -> int:
+        """Return how far a time of the board lies ahead of when it was heard [ns]; 0 if no ping was answered yet."""
+        return 0 if self._fit is None else self._fit.at(board_us) - heard_ns
 
     def host_ns(self, board_us: int) -> int:
         """Return the host's time at a time of the board [ns].

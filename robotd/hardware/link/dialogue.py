@@ -57,6 +57,8 @@ class DialogueCounters:
     retries: int = 0
     timeouts: int = 0
     """Requests that no try got answered."""
+    implausible: int = 0
+    """Values that cannot be, in messages that were whole."""
 
 
 @dataclass(slots=True)

@@ -18,7 +18,7 @@ from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START
 from firmware_proto.schema import Message
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError, RobotdError, TransportError
-from robotd.hardware.link.clock_sync import ClockSync
+from robotd.hardware.link.clock_sync import AHEAD_MAX_NS, ClockSync
 from robotd.hardware.link.request import Request, answered_type, result_of
 from robotd.hardware.link.round_trip import RoundTrip
 from robotd.hardware.link.tapped import TappedLine
@@ -44,6 +44,8 @@ class LinkCounters:
     """Set-points that the board would not take."""
     unmatched: int = 0
     """Replies to nothing that was asked: repeats, mostly."""
+    implausible: int = 0
+    """Values that cannot be, in frames whose checksum was right."""
 
 
 class Session:
@@ -218,7 +220,7 @@ class Session:
         self.heard_ns = time_ns
         message = received.message
         if isinstance(message, Pong):
-            self.clock.add(message.host_us, message.board_us, time_ns)
+            self._counters.implausible += not self.clock.add(message.host_us, message.board_us, time_ns)
         if not TELEMETRY_START <= received.type < TELEMETRY_END:
             self._settle(received)
             return not self._serving
@@ -240,6 +242,10 @@ class Session:
             return
         if message.board_us < self._board_us or message.state < BoardState.CONFIGURED:
             raise RemoteProtocolError(f"{self.device}: the board restarted, or serves somebody else")
+        ahead_ns = self.clock.ahead_ns(message.board_us, self.heard_ns)
+        if ahead_ns > AHEAD_MAX_NS:
+            self._counters.implausible += 1
+            raise RemoteProtocolError(f"{self.device}: its clock jumped ahead by {ahead_ns / NS_PER_S:g} s")
         self._board_us = message.board_us
 
     def _check(self) -> None:

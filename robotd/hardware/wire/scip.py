@@ -84,7 +84,8 @@ class Parameters:
             return None
         found = cls(said.get("MODL", ""), *numbers)
         is_possible = 0 <= found.first_step < found.last_step <= 2 * found.steps_per_turn < _STEPS_MAX
-        return found if is_possible and 0 <= found.front_step <= found.last_step else None
+        is_ranged = 0 <= found.range_min_mm < found.range_max_mm
+        return found if is_possible and is_ranged and 0 <= found.front_step <= found.last_step else None
 
     def verdict(self, distance_mm: int) -> Verdict | None:
         """Return why a distance is none; None if it is one."""

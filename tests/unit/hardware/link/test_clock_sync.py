@@ -100,3 +100,27 @@ def test_the_shortest_round_trip_decides() -> None:
     good = ClockSample(board_ns=1_000_000, host_ns=5_000_000, round_trip_ns=2_000_000)
     bad = ClockSample(board_ns=2_000_000, host_ns=26_000_000, round_trip_ns=42_000_000)
     assert abs(fit((good, bad)).at(1_000) - 5_000_000) < 1_000
+
+
+@pytest.mark.parametrize("lie_us", [3_600_000_000, -3_600_000_000, 200_000, -(2**40), 2**63])
+@pytest.mark.parametrize("which", [0, 5, 20])
+def test_one_liar_among_honest_pings_moves_nothing(lie_us: int, which: int) -> None:
+    sync = ClockSync()
+    believed = []
+    for second in range(40):
+        sent_us = (50 + second) * 1_000_000
+        honest_us = sent_us + 1_000 + 2**50
+        believed.append(sync.add(sent_us, honest_us + lie_us * (second == which), sent_us * 1000 + 2_000_000))
+        if second >= 2:
+            assert abs(sync.host_ns(honest_us) - (sent_us + 1000) * 1000) < 100_000
+    assert believed.index(False) in {which, which + 1}  # of two that disagree nobody knows which one lies
+    assert believed.count(False) == 1
+
+
+def test_a_clock_that_jumped_for_good_is_followed_when_most_pings_say_so() -> None:
+    sync = ClockSync()
+    for second in range(60):
+        sent_us = second * 1_000_000
+        board_us = sent_us + 1_000 + 3_600_000_000 * (second >= 20)
+        sync.add(sent_us, board_us, sent_us * 1000 + 2_000_000)
+    assert abs(sync.host_ns(59_001_000 + 3_600_000_000) - 59_001_000_000) < 100_000
