@@ -30,7 +30,7 @@ def _check(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json({"file": str(file), "ok": True, "problems": []})
     else:
-        out().print(f"{file}: good", markup=False)
+        out().print(f"{file}: good")
     return OK
 
 
@@ -43,7 +43,7 @@ def _show(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json(dataclasses.asdict(tree))
     else:
-        out().print(config.effective_text(tree), markup=False, end="")
+        out().print(config.effective_text(tree), end="")
     return OK
 
 

@@ -63,7 +63,7 @@ def _telling(ask: Callable[[Client], None], words: str) -> Callable[[argparse.Na
             if arguments.json:
                 print_json(as_json(client.status()))
             else:
-                out().print(words, markup=False)
+                out().print(words)
         return OK
 
     return run
@@ -73,7 +73,7 @@ def _arm(client: Client) -> None:
     client.arm()
     absent = [device.name for device in client.status().devices if not device.armed]
     if absent:
-        err().print(f"without {', '.join(absent)}: it can only look round where it stands", markup=False)
+        err().print(f"without {', '.join(absent)}: it can only look round where it stands")
 
 
 VERBS = (

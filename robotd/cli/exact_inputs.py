@@ -14,7 +14,7 @@ from robotd.localization.exact.outlines import outlines
 from robotd.localization.exact.planar import PlanarSet
 from robotd.localization.exact.rationals import DEFAULT, Arithmetic, rational
 from robotd.localization.exact.readings import beams_of
-from robotd.maps.store import MapStore
+from robotd.maps.store import MANIFEST, MapStore
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +70,24 @@ def read_map(path: Path, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
 
 def _read_cells(path: Path, arithmetic: Arithmetic) -> PlanarSet:
     path = path.resolve()  # even "." has a name
-    grid, _ = MapStore(path.parent).load(path.name)
+    if (path / MANIFEST).exists() and path.name.isdecimal():
+        grid, _ = MapStore(path.parent.parent).load(path.parent.name, int(path.name))
+    elif any(entry.name.isdecimal() for entry in path.iterdir()):
+        grid, _ = MapStore(path.parent).load(path.name)
+    else:
+        raise MapError(f"{path}: no saved map: neither its directory nor that of one of its versions{_maps_in(path)}")
     spec = grid.spec
     x, y, cell = (rational(repr(size), arithmetic) for size in (spec.origin_x_m, spec.origin_y_m, spec.resolution_m))
     return outlines(BinaryMap.from_grid(grid).occupied, cell, x=x, y=y)
+
+
+def _maps_in(path: Path) -> str:
+    """Return in words which maps a directory holds, if it holds any."""
+    try:
+        names = sorted({entry.name for entry in MapStore(path).list()})
+    except MapError:
+        return ""
+    return f"; it holds {', '.join(names)}: name one of them" if names else ""
 
 
 def read_beams(path: Path, arithmetic: Arithmetic = DEFAULT) -> list[Beam]:

@@ -21,7 +21,7 @@ def _carmen(arguments: argparse.Namespace) -> int:
         print_json({"file": str(arguments.out), **facts, "poses": log.poses.value, "damaged_lines": len(log.problems)})
     else:
         words = f"{len(stops) - kept_out} stops to map, {kept_out} kept out to localize at"
-        out().print(f"{arguments.out}: {words}; now: robotctl sim {arguments.out}", markup=False)
+        out().print(f"{arguments.out}: {words}; now: robotctl sim {arguments.out}")
     return OK
 
 

@@ -93,7 +93,7 @@ def _tell(arguments: argparse.Namespace, what: str, entry: MapEntryInfo) -> int:
         print_json(asdict(entry))
     else:
         size = f"{entry.cols} x {entry.rows} cells of {entry.resolution_m * 1000:g} mm"
-        out().print(f"{what} {entry.name} version {entry.version}: {size}, digest {entry.digest}", markup=False)
+        out().print(f"{what} {entry.name} version {entry.version}: {size}, digest {entry.digest}")
     return OK
 
 
@@ -133,7 +133,7 @@ def _show(arguments: argparse.Namespace) -> int:
     if out().is_terminal and out().color_system:
         out().print(coloured(cells))
     else:
-        out().print(plain(cells), markup=False)
+        out().print(plain(cells))
     return OK
 
 

@@ -42,7 +42,7 @@ def _follow(client: Client, mission: Mission, *, as_lines: bool) -> int:
             complain(f"robotctl: {error}")
             return FAILED
     if found is not None:
-        out().print(estimate_in_words(found), markup=False)
+        out().print(estimate_in_words(found))
     return OK
 
 
@@ -62,6 +62,10 @@ def _stop(client: Client) -> int:
         client.stop("interrupted at the command line")
     except RobotdError as error:
         complain(f"interrupted, and the robot could not be told to stop: {error}; it stops when its lease runs out")
+    except KeyboardInterrupt:
+        complain(
+            "interrupted again, before the robot said that it stopped; it stops when its lease runs out, at the latest"
+        )
     else:
         complain("interrupted: the robot was stopped and disarmed")
     return INTERRUPTED

@@ -52,7 +52,7 @@ class MissionBars:
         finished = step.stops if step.phase is MissionPhase.DONE else step.stop
         self._progress.update(self._mission, completed=finished, description=f"{step.kind}: {step.phase}".ljust(19))
         if step.message:
-            self._progress.console.print(mission_in_words(step), markup=False)
+            self._progress.console.print(mission_in_words(step))
 
     def _reading(self, sweep: SweepProgress) -> None:
         if self._sweep is None:

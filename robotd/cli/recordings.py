@@ -33,7 +33,7 @@ def _tell(arguments: argparse.Namespace, words: str, document: dict[str, Any]) -
     if arguments.json:
         print_json(document)
     else:
-        out().print(words, markup=False)
+        out().print(words)
     return OK
 
 
@@ -88,9 +88,9 @@ def _replay(arguments: argparse.Namespace) -> int:
         print_json({**asdict(report), "file": str(arguments.file), "same": not report.differences})
     else:
         for difference in report.differences:
-            out().print(str(difference), markup=False)
-        out().print(_verdict(report), markup=False)
-        out().print(f"digest {report.digest}", markup=False)
+            out().print(str(difference))
+        out().print(_verdict(report))
+        out().print(f"digest {report.digest}")
     return FAILED if report.differences else OK
 
 

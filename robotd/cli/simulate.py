@@ -85,7 +85,7 @@ def _announce(ports: dict[str, str], file: Path | None, *, as_json: bool) -> Non
         return
     print_pairs(ports.items())
     if file is not None:
-        err().print(f"now, in another terminal: robotd --config {file}", markup=False)
+        err().print(f"now, in another terminal: robotd --config {file}")
     err().print("Ctrl-C ends it")
 
 

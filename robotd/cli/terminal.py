@@ -1,9 +1,12 @@
-"""What goes to the terminal: answers to standard output, everything else to standard error."""
+"""What goes to the terminal: answers to standard output, everything else to standard error.
+
+Every console is made here, and writes words as they are: ``[mm]`` is a unit, and names come from files and boards.
+"""
 
 import json
 import sys
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TextIO
 
 from rich.console import Console
 from rich.table import Table
@@ -20,18 +23,27 @@ def print_json(document: Any) -> None:
 
 def out() -> Console:
     """Return the console for answers; no colour and no width where there is no terminal, no colour with NO_COLOR."""
-    width = None if sys.stdout.isatty() else _UNBROKEN
-    return Console(file=sys.stdout, highlight=False, soft_wrap=True, width=width)
+    return plain_console(sys.stdout, None if sys.stdout.isatty() else _UNBROKEN)
 
 
 def err() -> Console:
     """Return the console for progress and complaints."""
-    return Console(file=sys.stderr, highlight=False, soft_wrap=True)
+    return plain_console(sys.stderr)
+
+
+def plain_console(file: TextIO, width: int | None = None) -> Console:
+    """Return a console that takes nothing for markup, and folds at a width; where it is None, at the terminal's."""
+    return Console(file=file, width=width, markup=False, emoji=False, highlight=False, soft_wrap=True)
+
+
+def bold(text: str) -> Text:
+    """Return words that stand out."""
+    return Text.assemble((text, "bold"))
 
 
 def complain(message: str) -> None:
     """Print one line to standard error, as it is."""
-    err().print(message, style="red", markup=False)
+    err().print(message, style="red")
 
 
 def print_pairs(pairs: Iterable[tuple[str, object]]) -> None:

@@ -86,9 +86,9 @@ def _pose(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json(as_json(event))
         return OK
-    out().print(estimate_in_words(event), markup=False)
+    out().print(estimate_in_words(event))
     for region in event.regions:
-        out().print(f"  {region_in_words(region)}", markup=False)
+        out().print(f"  {region_in_words(region)}")
     return OK
 
 
@@ -100,7 +100,7 @@ def _watch(arguments: argparse.Namespace) -> int:
                 print_json({"event": "gap", **asdict(event)} if isinstance(event, Gap) else as_json(event))
             else:
                 words = _gap_in_words(event) if isinstance(event, Gap) else in_words(event)
-                out().print(words, markup=False)
+                out().print(words)
     return OK
 
 

@@ -25,6 +25,8 @@ def read_text(kind: type[T], text: str, file: str) -> T:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise _not_toml(str(error), text, file) from None
+    except RecursionError:
+        raise ConfigError("not TOML: brackets within brackets without end", file=file) from None
     problems = Problems(file, key_lines(text))
     try:
         return read_table(kind, table, (), problems)

@@ -96,12 +96,16 @@ def load_world(name_or_path: str) -> World:
     """
     path = WORLDS_DIR / f"{name_or_path}.toml" if name_or_path in world_names() else Path(name_or_path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError as error:
         known = ", ".join(world_names())
         raise ConfigError(f"no such world; known: {known}, or a path", file=name_or_path) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(str(error), file=name_or_path) from error
+    except OSError as error:
+        raise ConfigError(error.strerror or str(error), file=name_or_path) from error
+    except UnicodeDecodeError as error:
+        raise ConfigError(
+            f"not UTF-8: byte {error.start} is {error.object[error.start]:#04x}", file=name_or_path
+        ) from error
     return parse_world(text, file=str(path))
 
 
@@ -116,6 +120,8 @@ def parse_world(text: str, *, file: str) -> World:
     except tomllib.TOMLDecodeError as error:
         line = re.search(r"at line (\d+)", str(error))
         raise ConfigError(str(error), file=file, line=int(line[1]) if line else None) from error
+    except RecursionError:
+        raise ConfigError("brackets within brackets without end", file=file) from None
     _refuse_unknown_keys(table, text, file)
     try:
         return msgspec.convert(table, World)

@@ -15,6 +15,7 @@ from robotd.cli.outputs import DEMO, output_argument, write
 from robotd.cli.plots import require_plots
 from robotd.cli.quantities import positive, whole
 from robotd.cli.simulate import odometry_argument
+from robotd.cli.terminal import bold
 from robotd.cli.verb import OK
 from robotd.config import Config
 from robotd.core.errors import MissionError
@@ -57,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     stops = select_stops(log, arguments.spacing_m, keep_out_every=every, limit=wanted)
     write(file, encode_recorded_building(RecordedBuilding(arguments.log.name, stops)))
     robot = load_robot(str(file), odometry=OdometrySource(arguments.odometry))
-    console.print(f"[bold]robotd demo[/]: the building of {arguments.log.name}; everything lives in {directory}")
+    console.print(bold("robotd demo") + f": the building of {arguments.log.name}; everything lives in {directory}")
     console.print(f"  {1 + len(robot.stops_m)} stops for the map, {len(robot.probes_m)} kept out of it")
     emulator = ["sim", str(file), "--odometry", arguments.odometry]
     with rig(directory, wired(_config(), directory), emulator) as parts:
@@ -105,8 +106,8 @@ def _report(console: Console, trials: list[Trial]) -> None:
     ambiguous = sum(trial.estimate.state is PoseState.AMBIGUOUS for trial in trials)
     lost = sum(trial.estimate.state is PoseState.LOST for trial in trials)
     console.print(
-        f"[bold]{right} of {len(trials)} kept-out stops localized within {_RIGHT_M:g} m[/]"
-        f" ({100 * right / max(1, len(trials)):.0f} %; heading from the log, position unknown in the whole map);"
+        bold(f"{right} of {len(trials)} kept-out stops localized within {_RIGHT_M:g} m")
+        + f" ({100 * right / max(1, len(trials)):.0f} %; heading from the log, position unknown in the whole map);"
         f" wrong and sure {wrong}, ambiguous {ambiguous}, lost {lost}"
     )
 

@@ -1,15 +1,16 @@
 """Missions of a demonstration: what they say while they run, and what is kept of them."""
 
 import math
+import sys
 from dataclasses import dataclass
 from statistics import median
 from typing import Self
 
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
 from robotd.cli.progress import MissionBars
+from robotd.cli.terminal import plain_console
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
@@ -27,8 +28,7 @@ _WIDTH = 120
 
 def stage() -> Console:
     """Return where a demonstration tells its story; wide enough for its tables where there is no terminal."""
-    console = Console(highlight=False, soft_wrap=True)
-    return console if console.is_terminal else Console(highlight=False, soft_wrap=True, width=_WIDTH)
+    return plain_console(sys.stdout, None if sys.stdout.isatty() else _WIDTH)
 
 
 def follow(console: Console, client: Client, mission: Mission) -> tuple[tuple[Sweep, ...], PoseEstimate | None]:
@@ -62,7 +62,7 @@ class _Narrator:
         if isinstance(event, MissionProgress) and event.phase is MissionPhase.SWEEPING and event.stops > 1:
             self._console.print(f"  stop {event.stop + 1} of {event.stops}: sweeping")
         elif isinstance(event, MissionProgress) and event.message:
-            self._console.print(f"  {event.message}", markup=False)
+            self._console.print(f"  {event.message}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ def print_trials(console: Console, trials: list[Trial]) -> None:
     """Print truth, estimate and error of each localization, and the median error."""
     # Eighty columns are what many terminals have.
     headers = ("", "truth [m]", "estimate [m]", "error\n[mm]", "error\n[deg]", "rank /\nreadings", "regions", "state")
-    table = Table(*map(escape, headers), box=None, pad_edge=False, header_style="bold")
+    table = Table(*headers, box=None, pad_edge=False, header_style="bold")
     for number, trial in enumerate(trials, 1):
         best, error_m = trial.estimate.best, trial.error_m
         heading = "-" if best is None else f"{math.degrees(wrap_rad(best.heading_rad - trial.truth.heading_rad)):+.2f}"

@@ -13,8 +13,10 @@ from robotd.cli.demo.truth import true_pose
 from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
 from robotd.cli.plots import require_plots
 from robotd.cli.quantities import whole
+from robotd.cli.terminal import bold
 from robotd.cli.verb import FAILED, OK
 from robotd.config import Config
+from robotd.core.errors import RobotdError
 from robotd.core.reading import Sweep
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
@@ -40,8 +42,11 @@ def run(arguments: argparse.Namespace) -> int:
     require_plots("demo room")
     console = stage()
     world = load_world(arguments.world)
+    if not world.probes_m:
+        raise RobotdError(f"{arguments.world}: has no probes_m, places to be found at: a demonstration needs one")
     directory = fresh(arguments.out)
-    console.print(f"[bold]robotd demo[/]: the {world.name}, seed {arguments.seed}; everything lives in {directory}")
+    words = f": the {world.name}, seed {arguments.seed}; everything lives in {directory}"
+    console.print(bold("robotd demo") + words)
     emulator = ["sim", arguments.world, "--seed", str(arguments.seed)]
     with rig(directory, wired(Config(driving=brisk()), directory), emulator) as parts:
         client = parts.client

@@ -20,6 +20,13 @@ def beams_of(lines: Iterable[str], arithmetic: Arithmetic = DEFAULT) -> list[Bea
         ValueError: a column is missing, or something in a line is impossible.
     """
     table = csv.DictReader((line for line in lines if line.strip() and line[0] != "#"), skipinitialspace=True)
+    try:
+        return _beams(table, arithmetic)
+    except csv.Error as error:
+        raise ValueError(f"not a table: {error}") from error
+
+
+def _beams(table: "csv.DictReader[str]", arithmetic: Arithmetic) -> list[Beam]:
     missing = sorted(_COLUMNS - set(table.fieldnames or ()))
     if missing:
         raise ValueError(f"no column {', '.join(missing)}")

@@ -180,6 +180,25 @@ def test_a_saved_map_of_cells_is_a_map_of_polygons(tmp_path: Path) -> None:
     assert contains(walls, Point(rational(100), rational(100)))
 
 
+def test_a_version_of_a_saved_map_is_a_map_and_other_directories_say_what_they_hold(tmp_path: Path) -> None:
+    for value in (0, 255):
+        grid = OccupancyGrid(GridSpec(0.5, -1.0, 0.0, (4, 6)))
+        grid.cells[:] = value
+        MapStore(tmp_path).save("cells", grid, {}, 0)
+    inside = Point(rational("0.25"), rational("0.75"))
+    assert not contains(read_map(tmp_path / "cells" / "1"), inside)
+    assert contains(read_map(tmp_path / "cells" / "2"), inside)
+    assert contains(read_map(tmp_path / "cells"), inside)
+    with pytest.raises(MapError, match=r"no saved map.*; it holds cells: name one of them"):
+        read_map(tmp_path)
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(MapError, match=r"no saved map: neither its directory nor that of one of its versions$"):
+        read_map(tmp_path / "empty")
+    (tmp_path / "cells" / "1" / "cells.bin").write_bytes(b"x")
+    with pytest.raises(MapError, match="map cells version 1 is damaged"):
+        read_map(tmp_path / "cells" / "1")
+
+
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [

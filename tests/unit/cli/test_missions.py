@@ -110,9 +110,31 @@ def test_an_interrupt_that_cannot_stop_the_robot_says_what_will(
     assert "could not be told to stop: no answer from robotd; it stops when its lease runs out" in said
 
 
-def test_being_ended_is_being_interrupted(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = signal.getsignal(signal.SIGTERM)
-    monkeypatch.setattr("robotd.cli.motion.print_json", lambda document: os.kill(os.getpid(), signal.SIGTERM))
+def test_a_second_interrupt_ends_in_words_too(
+    client: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(reason: str) -> None:
+        raise KeyboardInterrupt
+
+    client.raises = KeyboardInterrupt()
+    monkeypatch.setattr(client, "stop", interrupted)
+    assert main(["localize"]) == 130
+    assert "interrupted again, before the robot said that it stopped; its lease ends" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+def test_being_ended_is_being_interrupted(client: Any, monkeypatch: pytest.MonkeyPatch, number: signal.Signals) -> None:
+    before = signal.getsignal(number)
+    monkeypatch.setattr("robotd.cli.motion.print_json", lambda document: os.kill(os.getpid(), number))
     assert main(["localize", "--json"]) == 130
     assert client.asked[1] == ("stop", "interrupted at the command line")
-    assert signal.getsignal(signal.SIGTERM) is before
+    assert signal.getsignal(number) is before
+
+
+def test_what_nohup_ignores_stays_ignored(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        monkeypatch.setattr("robotd.cli.motion.print_json", lambda document: os.kill(os.getpid(), signal.SIGHUP))
+        assert main(["localize", "--json"]) == 0
+    finally:
+        signal.signal(signal.SIGHUP, before)

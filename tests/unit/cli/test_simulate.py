@@ -1,6 +1,7 @@
 """Robots that are not there: where their devices are, and a configuration to run a daemon on them."""
 
 import json
+import sys
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -13,10 +14,12 @@ from robotd.hardware.link.tap import Direction
 from robotd.recording.comparison import Difference
 from robotd.recording.entries import BytesEntry, RecordingHeader
 from robotd.recording.recorder import Recorder
+from robotd.sim.building import load_recorded_building
 from robotd.sim.faults.catalogue import FAULTS, meaning_of
 from robotd.sim.faults.plan import PlannedFault
 from robotd.sim.load import load_robot
-from robotd.sim.world import load_world
+from robotd.sim.world import WORLDS_DIR, load_world
+from tests.unit.logs.room import flaser
 
 
 @pytest.fixture
@@ -160,3 +163,83 @@ def test_a_fake_that_was_asked_otherwise_is_exit_code_1(
     assert end["mismatches"] == [{"time_ns": 5, "device": "drive", "expected": "Arm()", "actual": "Stop()"}]
     assert main(["fake", str(recording)]) == 1
     assert "1 requests were not the recorded ones" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("words", [["demo", "room"], ["demo", "building", "LOG"]])
+def test_a_demonstration_without_matplotlib_is_refused_before_it_begins(
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "robotd.cli.paper", None)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "LOG").write_text("\n".join(flaser()))
+    assert main(words) == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"robotctl: {' '.join(words[:2])} needs matplotlib (")
+    assert "install the extra plots, pip install 'robotd[plots]'" in said
+    assert not (tmp_path / "demo").exists()
+
+
+def test_a_world_without_places_to_be_found_at_makes_no_demonstration(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    world = tmp_path / "bare.toml"
+    text = (WORLDS_DIR / "office.toml").read_text()
+    world.write_text("\n".join(line for line in text.splitlines() if not line.startswith("probes_m")))
+    assert main(["demo", "room", str(world), "--out", str(tmp_path / "demo")]) == 1
+    assert "has no probes_m" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (["--keep-out-every", "1"], "1 would keep every stop out of the map"),
+        (["--limit", "0"], "must be at least 1, got 0"),
+        (["--spacing-m", "0"], "must be positive"),
+        (["--spacing-m", "nan"], "must be a finite number"),
+        (["--fov-deg", "361"], "must be from 1 to 360"),
+        (["--range-max", "-1"], "must be positive"),
+    ],
+)
+def test_what_no_building_can_be_made_with_is_wrong_usage(
+    words: list[str], complaint: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = tmp_path / "a.log"
+    log.write_text("\n".join(flaser()))
+    with pytest.raises(SystemExit) as left:
+        main(["import", "carmen", str(log), "--out", str(tmp_path / "x"), *words])
+    assert left.value.code == 2
+    assert complaint in capsys.readouterr().err
+
+
+def test_what_must_be_known_of_a_log_is_said_when_it_is_imported(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = tmp_path / "a[1].log"
+    whole = flaser(count=512)
+    odometry = [f"ODOM {' '.join(line.split()[514:517])} 0 0 0 1 h 1" for line in whole]
+    lines = [line for pair in zip(odometry, whole, strict=True) for line in pair]
+    log.write_text("\n".join([*lines, "FLASER 512 1 2"]))
+    assert main(["import", "carmen", str(log), "--out", str(tmp_path / "x")]) == 0
+    said = capsys.readouterr().err.splitlines()
+    assert [line.partition(": ")[2][:30] for line in said] == [
+        "a damaged line was left out: l",
+        "512 beams and no PARAM for the",
+        "ITS POSES ARE RAW ODOMETRY (th",
+    ]
+    assert all(line.startswith(str(log)) for line in said)
+    assert main(["eval", str(log), "--cases", "1"]) == 1
+    assert capsys.readouterr().err.splitlines()[-1].endswith("--raw takes them all the same")
+    assert main(["eval", str(log), "--cases", "1", "--raw", "--json"]) == 0
+    [report] = json.loads(capsys.readouterr().out)["logs"]
+    assert (report["poses"], report["damaged_lines"]) == ("raw odometry", 1)
+    assert main(["demo", "building", str(log), "--out", str(tmp_path / "demo")]) == 1
+    assert not (tmp_path / "demo").exists()
+
+
+def test_import_believes_no_range_beyond_what_it_is_told(tmp_path: Path) -> None:
+    log = tmp_path / "a.log"
+    log.write_text("\n".join(flaser()))
+    assert main(["import", "carmen", str(log), "--out", str(tmp_path / "x"), "--range-max", "2"]) == 0
+    building = load_recorded_building(tmp_path / "x")
+    assert max(range_m for stop in building.stops for range_m in stop.ranges_m if range_m is not None) <= 2.0
+    assert all(stop.missed for stop in building.stops)
