@@ -63,9 +63,7 @@ def _stop(client: Client) -> int:
     except RobotdError as error:
         complain(f"interrupted, and the robot could not be told to stop: {error}; it stops when its lease runs out")
     except KeyboardInterrupt:
-        complain(
-            "interrupted again, before the robot said that it stopped; it stops when its lease runs out, at the latest"
-        )
+        complain("interrupted again, before the robot said that it stopped; its lease ends soon")
     else:
         complain("interrupted: the robot was stopped and disarmed")
     return INTERRUPTED
