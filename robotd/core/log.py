@@ -1,12 +1,37 @@
-"""Logging for a journal: one line each, time left to the journal when it is there."""
+"""Logging for a journal: one line each, time left to the journal when it is there.
+
+What others say comes into it through many doors: reasons, names, the words of a device that introduces itself, errors
+that quote what they could not read. So whatever a record holds becomes printable here, and a line that is not the
+first of its record begins with a mark: nobody can forge a line of the log.
+"""
 
 import logging
 import os
 import sys
+
+from robotd.core.text import printable
+
+LONGEST_LINE = 2000
+MOST_LINES = 200
+CONTINUED = "  | "
+
+
+class PrintableFormatter(logging.Formatter):
+    """Formats a record as lines of letters, within bounds."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the first line, and those of a traceback below it."""
+        first, *others = super().format(record).split("\n")
+        shown = [printable(line, LONGEST_LINE) for line in others[:MOST_LINES]]
+        if len(others) > MOST_LINES:
+            shown.append(f"... and {len(others) - MOST_LINES} lines more")
+        return f"\n{CONTINUED}".join((printable(first, LONGEST_LINE), *shown))
 
 
 def configure(level: str) -> None:
     """Send the log to standard error, with a time stamp only where no journal adds its own."""
     in_journal = "JOURNAL_STREAM" in os.environ
     form = "%(levelname)s %(name)s: %(message)s" if in_journal else "%(asctime)s %(levelname)-7s %(name)s: %(message)s"
-    logging.basicConfig(level=level.upper(), format=form, stream=sys.stderr, force=True)
+    handler = logging.StreamHandler(sys.stderr)
+    handler.setFormatter(PrintableFormatter(form))
+    logging.basicConfig(level=level.upper(), handlers=[handler], force=True)

@@ -10,13 +10,14 @@ class LogLimit:
         self._burst = burst
         self._every_ns = round(every_s * NS_PER_S)
         self._saved = float(burst)
-        self._looked_ns = now_ns()
+        self._looked_ns: int | None = None
         self._left_out = 0
 
     def line(self, text: str) -> str | None:
         """Return the line to log, or None if it is one too many."""
         at_ns = now_ns()
-        self._saved = min(self._burst, self._saved + (at_ns - self._looked_ns) / self._every_ns)
+        if self._looked_ns is not None:
+            self._saved = min(self._burst, self._saved + (at_ns - self._looked_ns) / self._every_ns)
         self._looked_ns = at_ns
         if self._saved < 1.0:
             self._left_out += 1

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from robotd.core.clock import now_ns
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.core.text import printable
 from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepDone, SweepProgress
 from robotd.mission.robot import Robot
@@ -12,6 +13,7 @@ from robotd.mission.settings import MissionSettings
 from robotd.mission.stop_and_sweep import Sweeper
 
 _PROGRESS_EVERY = 10
+_LONGEST_MESSAGE = 500
 
 
 @dataclass(slots=True)
@@ -27,7 +29,8 @@ class Reporter:
     def at(self, phase: MissionPhase, stop: int | None = None, message: str = "") -> None:
         """Report a step of the mission, at the same stop as the last unless another is named."""
         self.stop = self.stop if stop is None else stop
-        self.publish(MissionProgress(now_ns(), self.mission_id, self.kind, phase, self.stop, self.stops, message))
+        words = printable(message, _LONGEST_MESSAGE)
+        self.publish(MissionProgress(now_ns(), self.mission_id, self.kind, phase, self.stop, self.stops, words))
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ may, is noted.
 """
 
 import base64
+import logging
 import zlib
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,8 @@ from robotd.mission.modes import Occasion
 from robotd.mission.requests import Mission
 from robotd.mission.supervisor import Supervisor
 from robotd.recording.preroll import PrerollJournal
+
+log = logging.getLogger(__name__)
 
 
 class Control:
@@ -128,7 +131,9 @@ class Control:
         metadata = {"generation": place.generation, "map_id": place.map_id}
         created_ns = now_ns() + wall_offset_ns()
         wanted = name or place.name
-        return await self._compute.run("save map", self._store.save, wanted, place.grid, metadata, created_ns)
+        entry = await self._compute.run("save map", self._store.save, wanted, place.grid, metadata, created_ns)
+        log.info("map %s was saved as version %d of %s (%s)", place.name, entry.version, entry.name, entry.digest)
+        return entry
 
     async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
         """Make a stored map the one in use; ``robot_in_map`` says where the robot stands on it, if known.
@@ -163,6 +168,7 @@ class Control:
         file = self._recordings_dir / f"{now_ns() + wall_offset_ns()}.mcap" if path is None else Path(path)
         await self._compute.run("make directory", _make_directory, file.parent)
         self._journal.start(file)
+        log.info("recording to %s", file)
         self._recording_changed()
         return str(file)
 
@@ -174,6 +180,7 @@ class Control:
         finish = self._journal.stop()
         self._recording_changed()
         await self._compute.run("end recording", finish)
+        log.info("the recording %s is complete", path)
         return str(path)
 
     async def repeat(self, name: str, arguments: dict[str, Any]) -> None:

@@ -12,7 +12,9 @@ from dataclasses import replace
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import LinkTimeout, MissionError, RobotdError
+from robotd.core.log_limit import LogLimit
 from robotd.core.pose import Odometry
+from robotd.core.text import printable
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
 from robotd.localization.estimate import PoseEstimate, PoseState
@@ -29,6 +31,7 @@ from robotd.mission.robot import Robot
 
 _STATUS_PERIOD_S = 1.0
 _DEVICE_TIMEOUT_S = 5.0
+_LONGEST_REASON = 500
 
 log = logging.getLogger(__name__)
 
@@ -69,6 +72,7 @@ class Supervisor:
         self._lease: Lease | None = None
         self._predictor = Predictor()
         self._halts = 0
+        self._changes = LogLimit(burst=50)
         self._armed: tuple[Device, ...] = ()
         """What the last arming was for: everything, or everything but the base."""
 
@@ -244,6 +248,7 @@ class Supervisor:
 
     def adopt(self, place: MapInUse) -> None:
         """Take over a map, from a mission or from the store, and tell everybody."""
+        log.info("map %s (%s) is in use%s", place.name, place.map_id, _in_place_of(self.place))
         self.place = place
         self._predictor.said = None
         self.publish(place.whole(now_ns()))
@@ -273,10 +278,12 @@ class Supervisor:
         mode = next_mode(self._mode, occasion)
         if mode is None:
             return
+        reason = printable(reason, _LONGEST_REASON)
         if mode is self._mode is Mode.FAULT:
             reason = self._reason  # what comes after a fault does not explain it
-        if (mode, reason) != (self._mode, self._reason):
-            log.info("%s -> %s: %s", self._mode, mode, reason)
+        is_news = (mode, reason) != (self._mode, self._reason)
+        if is_news and (line := self._changes.line(f"{self._mode} -> {mode}: {reason}")):
+            log.info("%s", line)
         self._mode, self._reason = mode, reason
         self.publish(self.status)
 
@@ -365,3 +372,7 @@ class Supervisor:
         while True:
             await asyncio.sleep(_STATUS_PERIOD_S)
             self.publish(self.status)
+
+
+def _in_place_of(place: MapInUse | None) -> str:
+    return "" if place is None else f", in the place of {place.name} ({place.map_id}, changed {place.generation} times)"

@@ -70,7 +70,8 @@ class MapEntryInfo:
         rows, cols = entry.spec.shape if entry.spec else (0, 0)
         resolution_m = entry.spec.resolution_m if entry.spec else 0.0
         created_ns = entry.created_unix_ns
-        return cls(entry.name, entry.version, entry.digest, created_ns, rows, cols, resolution_m, entry.damage)
+        damage = None if entry.damage is None else printable(entry.damage)
+        return cls(entry.name, entry.version, entry.digest, created_ns, rows, cols, resolution_m, damage)
 
 
 class PoseArgument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -24,6 +24,8 @@ _MAX_DEPTH = 6
 _MAX_ITEMS = 2048
 _MAX_KEYS = 64
 _MAX_ID = 2**63 - 1
+_LONGEST_MESSAGE = 1000
+"""Letters of an error's message: what it quotes may be anything, and endless."""
 _KEYS = {"v", "id", "cmd", "args"}
 
 
@@ -109,7 +111,7 @@ def encode_result(request_id: int, result: object) -> bytes:
 
 def encode_error(request_id: int | None, error: ServerError) -> bytes:
     """Return the reply to a request that was not."""
-    problem = {"code": error.code, "message": error.message}
+    problem = {"code": error.code, "message": printable(error.message, _LONGEST_MESSAGE)}
     return _pack({"v": VERSION, "id": request_id, "ok": False, "error": problem})
 
 

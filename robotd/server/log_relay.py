@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from robotd.core.clock import now_ns
+from robotd.core.text import printable_lines
 from robotd.server.topics import LogEntry
 
 _LONGEST_MESSAGE = 2000
@@ -21,13 +22,18 @@ class _Relay(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         try:
-            line = (record.levelname, record.name, record.getMessage()[:_LONGEST_MESSAGE])
+            line = (record.levelname, record.name, _shown(record.getMessage()))
             self._loop.call_soon_threadsafe(self._on_loop, *line)
         except Exception:  # a bad record, or a loop that has ended: the log's own way to take it
             self.handleError(record)
 
     def _on_loop(self, level: str, logger: str, message: str) -> None:
         self._deliver(LogEntry(now_ns(), level, logger, message))
+
+
+def _shown(message: str) -> str:
+    """Return a message as printable lines, within bounds."""
+    return printable_lines(message[:_LONGEST_MESSAGE])[:_LONGEST_MESSAGE]
 
 
 @contextmanager

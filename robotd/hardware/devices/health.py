@@ -1,12 +1,19 @@
 """What a device says of itself, and who is told when it changes."""
 
+import logging
 from collections.abc import Callable
 from dataclasses import replace
 
 from robotd.core.broadcast import Broadcast
+from robotd.core.log_limit import LogLimit
+from robotd.core.text import printable
 from robotd.hardware.devices.device import DeviceStatus, LinkState
 
 Counted = tuple[tuple[str, int], ...]
+_LONGEST_DETAIL = 300
+"""Letters of a detail that are kept: what a device says when it introduces itself may be anything, and endless."""
+
+log = logging.getLogger(__name__)
 
 
 class Health:
@@ -17,6 +24,8 @@ class Health:
         self._counted = counted
         self._status = DeviceStatus(name, LinkState.ABSENT, armed=False, detail="not started")
         self.changes: Broadcast[DeviceStatus] = Broadcast()
+        self._said = ""
+        self._limit = LogLimit(burst=20, every_s=10.0)
 
     @property
     def status(self) -> DeviceStatus:
@@ -48,7 +57,19 @@ class Health:
             link=before.link if link is None else link,
             armed=before.armed if armed is None else armed,
             faults=before.faults if faults is None else faults,
-            detail=before.detail if detail is None else detail,
+            detail=before.detail if detail is None else printable(detail, _LONGEST_DETAIL),
         )
         if self._status != before:
+            self._say()
             self.changes.publish(self.status)
+
+    def _say(self) -> None:
+        """Let the log know whether the device is there; each vain attempt to reach it is no news."""
+        status = self._status
+        if status.link is LinkState.CONNECTING:
+            return
+        words = "ready" if status.link is LinkState.READY else f"absent: {status.detail}"
+        if words != self._said:
+            self._said = words
+            if line := self._limit.line(f"{status.name} is {words}"):
+                log.info("%s", line)

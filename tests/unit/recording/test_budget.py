@@ -75,7 +75,8 @@ def test_what_used_up_the_preroll_is_named(tmp_path: Path, caplog: pytest.LogCap
 def test_a_map_that_packs_badly_does_not_end_a_recording(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path / "a.mcap", HEADER, queue_bytes=20_000)
     lines = [BytesEntry(n, "drive", Direction.FROM_BOARD, bytes(40)) for n in range(50)]
-    for entry in (*lines, MAP):
+    entries: list[Entry] = [*lines, MAP]
+    for entry in entries:
         recorder.note(entry)
     recorder.close()
     assert recorder.error is None

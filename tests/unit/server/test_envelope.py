@@ -154,6 +154,24 @@ def test_a_bad_request_is_named(data: bytes, code: str) -> None:
     assert (reply.id, reply.result.code) == (decoded.id, code)
 
 
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"cmd": "\x1b[2J\n" + "x" * 50_000},
+        {"v": "\x1b[2J\n" + "x" * 50_000},
+        {"\x1b[2J\n" + "x" * 50_000: 1},
+        {"args": {"\x1b[2J\n" + "x" * 50_000: 1}},
+    ],
+)
+def test_what_an_error_quotes_is_printable_and_short(fields: dict[str, Any]) -> None:
+    decoded = decode_request(request(**fields), LIMIT)
+    assert isinstance(decoded, BadRequest)
+    reply = decode_reply(encode_error(decoded.id, decoded.error)).result
+    assert isinstance(reply, ServerError)
+    assert reply.message.isprintable()
+    assert len(reply.message) <= 1000
+
+
 def test_a_bad_argument_is_answered_under_its_number() -> None:
     decoded = decode_request(request(args={"x_m": math.nan, "y_m": 1.0}), LIMIT)
     assert isinstance(decoded, BadRequest)
