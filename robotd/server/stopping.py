@@ -37,7 +37,7 @@ def means_stop(data: bytes) -> bool:
     if not isinstance(top := unpacked(data), Pairs | list | bytes):
         return _speaks_of_stopping(data)
     if isinstance(top, Pairs):
-        return _map_says_stop(top)
+        return _map_says_stop(top, data)
     return any(_says_stop(item) for item in top) if isinstance(top, list) else _speaks_of_stopping(top)
 
 
@@ -49,11 +49,13 @@ def unpacked(data: bytes) -> Any:
         return None
 
 
-def _map_says_stop(fields: Pairs) -> bool:
+def _map_says_stop(fields: Pairs, data: bytes) -> bool:
     commands = [value for key, value in fields if isinstance(key, bytes) and _plain(key) in _KEYS]
     if any(_says_stop(command) for command in commands) or any(_is_word(key) for key, _ in fields):
         return True
-    return not commands and any(_is_word(value) for _, value in fields)
+    if any(isinstance(command, bytes) and _plain(command) in _OTHERS for command in commands):
+        return False
+    return any(_is_word(value) for _, value in fields) or _speaks_of_stopping(data)
 
 
 def _says_stop(command: object) -> bool:
