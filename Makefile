@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults fuzz safety lag firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults liars fuzz safety lag firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -51,6 +51,9 @@ firmware-test: .venv/.dev  ## The boards' C against Python under the sanitizers:
 
 kernels-sanitized: .venv/.dev  ## All tests that call a kernel, with every kernel under the address and undefined-behaviour sanitizers (minutes)
 	@$(BIN)/python -m tests.sanitized.run
+
+liars: .venv/.dev  ## Devices that lie, with right checksums, in every state of the daemon: 10 000 lies, a table (ten minutes)
+	@$(BIN)/python -m tests.liars.run $(if $(TRIALS),--trials $(TRIALS))
 
 fuzz: .venv/.dev  ## Strange bytes for every parser, a minute each: make fuzz FUZZ_SECONDS=5; keeps what it learns in tests/fuzz/corpus
 	@$(BIN)/python -m tests.fuzz.run $(if $(FUZZ_SECONDS),--seconds $(FUZZ_SECONDS)) $(if $(ONLY),--only $(ONLY))

@@ -118,10 +118,10 @@ class Bench:
 
 
 @contextlib.asynccontextmanager
-async def bench(directory: Path, dialects: Dialects) -> AsyncIterator[Bench]:
+async def bench(directory: Path, dialects: Dialects, readings: int = 60) -> AsyncIterator[Bench]:
     """Bring a daemon to life that records from its first moment."""
     text = config_text({device: f"/dev/emulated/{device}" for device in DEVICES}, dialects.settings())
-    config = in_directory(replace(loads(text), sweep=SweepSettings(readings=60)), directory)
+    config = in_directory(replace(loads(text), sweep=SweepSettings(readings=readings)), directory)
     config = replace(config, recording=replace(config.recording, preroll_bytes=_PREROLL_BYTES))
     robot = SimulatedRobot(load_world("laboratory"), seed=4, dialects=dialects)
     journal = new_journal(config)

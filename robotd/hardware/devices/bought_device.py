@@ -18,6 +18,8 @@ from robotd.hardware.link.together import together
 
 M = TypeVar("M")
 
+_WAITING = "line open, waiting for the device"
+
 
 class BoughtDevice(ABC, Generic[M]):
     """A device that speaks its maker's protocol: a subclass adds what it measures and what it moves.
@@ -118,7 +120,7 @@ class BoughtDevice(ABC, Generic[M]):
 
     async def talk(self, line: TappedLine) -> NoReturn:
         """Greet whoever is there and serve until lost; see :class:`robotd.hardware.link.keep_up.Talker`."""
-        self._health.change(link=LinkState.CONNECTING, armed=False, detail="line open, waiting for the device")
+        self._health.change(link=LinkState.CONNECTING, armed=False, detail=_WAITING)
         dialogue = Dialogue(
             self.NAME, line, self._wire, counters=self._counters, on_report=self._report, quiet_s=self._quiet_s
         )
@@ -127,7 +129,8 @@ class BoughtDevice(ABC, Generic[M]):
                 await self._greet(dialogue)
                 self._counters.sessions += 1
                 self._dialogue = dialogue
-                self._health.change(link=LinkState.READY, armed=False, detail="")
+                found = self._health.detail  # what it said of itself when it was greeted
+                self._health.change(link=LinkState.READY, armed=False, detail="" if found == _WAITING else found)
                 await together(self._attend(dialogue), dialogue.until_lost())
             finally:
                 self._dialogue = None

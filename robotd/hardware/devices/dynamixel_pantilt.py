@@ -27,6 +27,11 @@ _IDLE_POLL_S = 0.5
 _WATCHDOG_MAX = 127
 _SETTLED_COUNTS = 12
 """A servo under load rests within so many counts of its goal: one degree."""
+_HARDWARE = "hardware"
+"""What it latches when a servo has shut down."""
+_BOOTS_S = 0.3
+_BOOT_TRIES = 20
+"""A servo is silent for about a quarter of a second when it boots; it is asked for two more."""
 _TILT_LIMIT_RAD = math.radians(90.0)
 
 
@@ -42,6 +47,7 @@ class DynamixelPanTilt(BoughtDevice[Message]):
         self._pan, self._tilt = settings.pan_id, settings.tilt_id
         self._watchdog = min(max(1, settings.ttl_max_ms // dynamixel.BUS_WATCHDOG_MS), _WATCHDOG_MAX)
         self.STOP = dynamixel.sync_write(dynamixel.TORQUE_ENABLE, 1, {self._pan: 0, self._tilt: 0})
+        self._is_rebooting = False
         self._one_aim = asyncio.Lock()
 
     async def limits(self) -> PanTiltLimits:
@@ -91,9 +97,35 @@ class DynamixelPanTilt(BoughtDevice[Message]):
         dialogue.post(self.STOP)
         for servo in (self._pan, self._tilt):
             await dialogue.ask(dynamixel.packet(servo, dynamixel.PING), _from(servo), timeout_s=_ANSWER_S, tries=_TRIES)
-            error, _ = await self._read(dialogue, servo, dynamixel.HARDWARE_ERROR, 1)
-            if error:
-                raise RemoteProtocolError(f"{self.name}: servo {servo} reports hardware error {error:#04x}: reboot it")
+            await self._check_hardware(dialogue, servo)
+
+    async def _check_hardware(self, dialogue: Dialogue[Message], servo: int) -> None:
+        """Latch what a servo says is wrong with it; it holds and turns nothing until it is rebooted."""
+        error, _ = await self._read(dialogue, servo, dynamixel.HARDWARE_ERROR, 1)
+        if error:
+            self._latch(_HARDWARE)  # that it is, its answer said already; what it is, only the register does
+            self._health.change(detail=f"servo {servo}: {dynamixel.hardware_error(error)}: clear reboots it")
+
+    async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
+        """Reboot the servos that shut down: nothing less ends what they have latched."""
+        if _HARDWARE not in self._health.faults:
+            return
+        self._is_rebooting = True
+        try:
+            for servo in (self._pan, self._tilt):
+                if (await self._read(dialogue, servo, dynamixel.HARDWARE_ERROR, 1))[0]:
+                    await self._reboot(dialogue, servo)
+        finally:
+            self._is_rebooting = False
+
+    async def _reboot(self, dialogue: Dialogue[Message], servo: int) -> None:
+        dialogue.post(dynamixel.packet(servo, dynamixel.REBOOT))
+        await asyncio.sleep(_BOOTS_S)
+        ping = dynamixel.packet(servo, dynamixel.PING)
+        await dialogue.ask(ping, _from(servo), timeout_s=_ANSWER_S, tries=_BOOT_TRIES, despite_stops=True)
+        error, _ = await self._read(dialogue, servo, dynamixel.HARDWARE_ERROR, 1)
+        if error:
+            raise DeviceError(self.name, _HARDWARE, f"servo {servo}, rebooted: {dynamixel.hardware_error(error)}")
 
     async def _enable(self, dialogue: Dialogue[Message]) -> None:
         for servo in (self._pan, self._tilt):
@@ -105,7 +137,8 @@ class DynamixelPanTilt(BoughtDevice[Message]):
         """Feed the bus watchdog, and see that the servos are there."""
         while True:
             for servo in (self._pan, self._tilt):
-                await self._read(dialogue, servo, dynamixel.PRESENT_POSITION, 4)
+                if not self._is_rebooting:
+                    await self._read(dialogue, servo, dynamixel.PRESENT_POSITION, 4)
             await dialogue.until_idle(_IDLE_POLL_S)
 
     def _report(self, heard: Heard[Message]) -> None:
@@ -127,8 +160,8 @@ class DynamixelPanTilt(BoughtDevice[Message]):
 
     def _accepted(self, message: Message) -> bytes:
         assert isinstance(message, Status)
-        if message.error & ALERT:
-            self._latch("hardware", f"servo {message.servo} overloaded, overheated or undervolted")
+        if message.error & ALERT and not self._is_rebooting and _HARDWARE not in self._health.faults:
+            self._latch(_HARDWARE, f"servo {message.servo} overloaded, overheated or undervolted: clear reboots it")
         if message.error & ~ALERT:
             raise DeviceError(self.name, f"error_{message.error & ~ALERT}", f"servo {message.servo} refused")
         return message.parameters

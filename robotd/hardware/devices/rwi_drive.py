@@ -184,6 +184,8 @@ class RwiDrive(BoughtDevice[Message]):
             self._readouts.publish(DriveReadout(battery.time_ns, volts, self._bumpers_rad))
 
     async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
+        """End the errors that the base has latched: after a servo or current error it runs no motor before."""
+        dialogue.post(command("EA", 0))
         if IMPLAUSIBLE in self._health.faults:
             self._odometer.start_anew()
 

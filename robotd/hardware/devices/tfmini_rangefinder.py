@@ -2,13 +2,17 @@
 
 From power-up they stream a hundred readings a second; the stream is switched off and each reading asked for, so that it
 was taken when the head stood still. Their light cannot be switched off, only their output.
+
+A TFmini of the first generation answers no command. It is known by streaming on and on, and its stream is read: of what
+comes after a reading was asked for the first frames are let go, for they were measured before.
 """
 
 import asyncio
 from typing import ClassVar, NoReturn
 
+from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
-from robotd.core.errors import DeviceError, LinkTimeout
+from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.bought_device import BoughtDevice
 from robotd.hardware.devices.instrument import Instrument
@@ -17,6 +21,7 @@ from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.wire.tfmini import (
+    FIRST_STANDARD,
     FORMAT_CM,
     OUTPUT_OFF,
     OUTPUT_ON,
@@ -37,6 +42,11 @@ _TRIES = 3
 _MEASURES_S = 0.1
 """How long a trigger may stay without its reading; then it is sent once more."""
 _TRIGGERS = 2
+_STREAMS_S = 0.3
+"""Within this a stream of a hundred a second has come by."""
+_STALE = 2
+"""Frames of a stream that may have been measured before they were asked for: the one under way, and one in a buffer."""
+_SILENCE_S = 1.0
 _IDLE_POLL_S = 1.0
 _VERSION_NUMBER = 0x01
 _STATUS = {
@@ -57,6 +67,9 @@ class TfminiRangefinder(BoughtDevice[Message]):
         super().__init__(TfminiWire(), wiring)
         self._model = Model(settings.dialect)
         self._instrument = Instrument(settings)
+        self._streamed: Broadcast[Heard[Data]] = Broadcast()
+        self._is_first = False
+        """Whether it is of the first generation."""
         self._shooting = asyncio.Lock()
 
     async def switch_laser(self, *, on: bool) -> None:
@@ -68,15 +81,12 @@ class TfminiRangefinder(BoughtDevice[Message]):
         dialogue = self._talk()
         async with self._shooting:
             try:
-                heard = await dialogue.ask(
-                    TRIGGER, _is_data, timeout_s=min(_MEASURES_S, timeout_s / _TRIGGERS), tries=_TRIGGERS
-                )
+                heard = await (self._fresh(timeout_s) if self._is_first else self._triggered(dialogue, timeout_s))
             except LinkTimeout:
                 return Shot(now_ns(), ReadingStatus.TIMEOUT, None, None)
             except DeviceError:
                 return Shot(now_ns(), ReadingStatus.DEVICE_ERROR, None, None)
         data = heard.message
-        assert isinstance(data, Data)
         verdict = data.verdict(self._model)
         distance_m = data.distance / _CM_PER_M
         if verdict is Verdict.OUT_OF_RANGE:
@@ -88,14 +98,51 @@ class TfminiRangefinder(BoughtDevice[Message]):
     def _unlikely(self) -> int:
         return self._instrument.implausible
 
+    async def _triggered(self, dialogue: Dialogue[Message], timeout_s: float) -> Heard[Data]:
+        heard = await dialogue.ask(
+            TRIGGER, _is_data, timeout_s=min(_MEASURES_S, timeout_s / _TRIGGERS), tries=_TRIGGERS
+        )
+        assert isinstance(heard.message, Data)
+        return Heard(heard.message, heard.time_ns)
+
+    async def _fresh(self, timeout_s: float, stale: int = _STALE) -> Heard[Data]:
+        """Return the first frame of the stream that was measured from now on; LinkTimeout if there is none."""
+        try:
+            with self._streamed.subscribe() as frames:
+                async with asyncio.timeout(min(timeout_s, _STREAMS_S)):
+                    for _ in range(stale):
+                        await frames.get()
+                    return await frames.get()
+        except TimeoutError:
+            raise LinkTimeout(f"{self.name}: no reading in {min(timeout_s, _STREAMS_S):g} s") from None
+
     async def _greet(self, dialogue: Dialogue[Message]) -> None:
-        """Silence the stream, see who is there, and go over to trigger mode."""
+        """Silence the stream, see who is there, and go over to trigger mode; what cannot be silenced is read so."""
+        self._is_first = False
         dialogue.post(OUTPUT_OFF)
-        await dialogue.ask(VERSION, _is_version, timeout_s=_ANSWER_S, tries=_TRIES)
-        dialogue.post(FORMAT_CM + RATE_0 + OUTPUT_ON)
+        try:
+            await dialogue.ask(VERSION, _is_version, timeout_s=_ANSWER_S, tries=_TRIES)
+        except LinkTimeout:
+            await self._greet_first(dialogue)
+        else:
+            dialogue.post(FORMAT_CM + RATE_0 + OUTPUT_ON)
+
+    async def _greet_first(self, dialogue: Dialogue[Message]) -> None:
+        """See whether it is one that answers nothing and streams; raises LinkTimeout if nothing is heard of it."""
+        if self._model is Model.TFMINI:
+            dialogue.post(FIRST_STANDARD)
+        await self._fresh(_STREAMS_S, stale=0)
+        if self._model is not Model.TFMINI:
+            raise RemoteProtocolError(
+                f"{self.name}: it streams readings and answers no command: a TFmini of the first generation "
+                f'(dialect = "{Model.TFMINI}"), or its RX wire is not connected'
+            )
+        self._is_first = True
 
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
-        """It speaks only when asked, so that it is still there must be asked."""
+        """It speaks only when asked, so that it is still there must be asked; one that streams is heard."""
+        if self._is_first:
+            await dialogue.until_lost(_SILENCE_S)
         while True:
             await dialogue.until_idle(_IDLE_POLL_S)
             await dialogue.ask(VERSION, _is_version, timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True)
@@ -105,7 +152,10 @@ class TfminiRangefinder(BoughtDevice[Message]):
 
         It streams if it was switched off and on, or missed what it was told when greeted.
         """
-        if isinstance(heard.message, Data) and self._dialogue is not None:
+        if not isinstance(heard.message, Data):
+            return
+        self._streamed.publish(Heard(heard.message, heard.time_ns))
+        if self._dialogue is not None and not self._is_first:
             self._dialogue.post(RATE_0)
 
 

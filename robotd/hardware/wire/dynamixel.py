@@ -23,6 +23,14 @@ BUS_WATCHDOG_MS = 20
 ALERT = 0x80
 """Bit of the error byte: read the hardware error."""
 
+_HARDWARE_ERRORS = {
+    0x01: "supply voltage out of range",
+    0x04: "overheated",
+    0x08: "encoder broken",
+    0x10: "electrical shock",
+    0x20: "overloaded",
+}
+
 _STUFF, _STUFFED = b"\xff\xff\xfd", b"\xff\xff\xfd\xfd"
 
 
@@ -67,6 +75,16 @@ class Instruction:
 
 
 Message = Status | Instruction
+
+
+def hardware_error(bits: int) -> str:
+    """Return what a servo says is wrong with it, in words.
+
+    >>> hardware_error(0x24)
+    'overheated, overloaded'
+    """
+    known = [text for bit, text in _HARDWARE_ERRORS.items() if bits & bit]
+    return ", ".join(known) or f"hardware error {bits:#04x}"
 
 
 def packet(servo: int, instruction: int, parameters: bytes = b"") -> bytes:

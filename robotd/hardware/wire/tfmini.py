@@ -4,6 +4,10 @@ Data frames are ``59 59``, distance, strength, two more bytes and a sum; command
 number, payload and a sum. ``59 59`` may stand inside a frame, so one is locked on only if its sum fits, and else one
 byte is let go. Whether a reading can be believed is told by strength first, then by a sentinel that differs from model
 to model.
+
+The first generation of the TFmini says the same data frames, a hundred a second, and understands none of these
+commands: its own begin with ``42 57``. Drivers of flight controllers send it only the choice of the format, and read
+its stream, and so does ours.
 """
 
 import enum
@@ -82,6 +86,8 @@ VERSION = command(0x01)
 TRIGGER = command(0x04)
 RATE_0 = command(0x03, b"\0\0")
 OUTPUT_OFF, OUTPUT_ON = command(0x07, b"\0"), command(0x07, b"\1")
+FIRST_STANDARD = bytes.fromhex("42 57 02 00 00 00 01 02  42 57 02 00 00 00 01 06  42 57 02 00 00 00 00 02")
+"""For a TFmini of the first generation, which understands nothing else: configure, say data frames, done."""
 FORMAT_CM, FORMAT_MM = command(0x05, b"\1"), command(0x05, b"\6")
 
 

@@ -64,6 +64,7 @@ PANTILTS: Mapping[str, Emulator[HeadPlant]] = {
 RANGEFINDERS: Mapping[str, Emulator[ScannerPlant]] = {
     "board": Emulator(lambda plant, boot_id: RangefinderBoard(plant, boot_id=boot_id)),
     "tfmini-s": Emulator(lambda plant, _: Paced(TfminiEmulator(plant), LineFormat(115_200))),
+    "tfmini": Emulator(lambda plant, _: Paced(TfminiEmulator(plant, is_first=True), LineFormat(115_200))),
     "dimetix": Emulator(lambda plant, _: Paced(DimetixEmulator(plant), LineFormat(19_200, 7, "E", 1))),
     "disto": Emulator(lambda plant, _: Paced(DistoEmulator(plant), LineFormat(9_600, 7, "E", 1))),
     "lw20": Emulator(lambda plant, _: Paced(Lw20Emulator(plant), LineFormat(115_200))),

@@ -11,6 +11,7 @@ from robotd.sim.plant import HeadPlant
 _COUNTS_PER_RAD = 4096 / math.tau
 _CENTRE = 2048
 _MODEL = struct.pack("<HB", 1060, 45)
+_BOOTS_US = 250_000
 _UNKNOWN_INSTRUCTION, _RANGE, _ACCESS = 2, 4, 7
 
 
@@ -26,8 +27,16 @@ class DynamixelEmulator:
         self._torque = {pan: 0, tilt: 0}
         self._watchdog = {pan: 0, tilt: 0}
         self._is_expired = {pan: False, tilt: False}
+        self._hardware_error = {pan: 0, tilt: 0}
+        self._boots_until_us = {pan: 0, tilt: 0}
         self._heard_us = 0
         self._now_us = 0
+
+    def shut_down(self, servo: int, hardware_error: int) -> None:
+        """Let go of the axis, as a servo does that is overloaded; only a reboot ends that."""
+        self._hardware_error[servo] = hardware_error
+        self._torque[servo] = 0
+        self._plant.halt()
 
     def receive(self, data: bytes, now_us: int) -> None:
         """Take bytes from the host."""
@@ -74,7 +83,7 @@ class DynamixelEmulator:
                     if servo in self._servos:
                         self._write(servo, register, order.parameters[at + 1 : at + 1 + size])
             return
-        if order.servo not in self._servos:
+        if order.servo not in self._servos or self._now_us < self._boots_until_us[order.servo]:
             return
         if order.instruction == dynamixel.PING:
             self._answer(order.servo, 0, _MODEL)
@@ -83,13 +92,19 @@ class DynamixelEmulator:
         elif order.instruction == dynamixel.WRITE:
             register = struct.unpack_from("<H", order.parameters)[0]
             self._answer(order.servo, self._write(order.servo, register, order.parameters[2:]))
+        elif order.instruction == dynamixel.REBOOT:
+            self._answer(order.servo, 0)
+            self._boots_until_us[order.servo] = self._now_us + _BOOTS_US
+            self._hardware_error[order.servo] = self._torque[order.servo] = self._watchdog[order.servo] = 0
+            self._is_expired[order.servo] = False
+            self._plant.halt()
         else:
             self._answer(order.servo, _UNKNOWN_INSTRUCTION)
 
     def _read(self, servo: int, register: int, size: int) -> None:
         values = {
             dynamixel.TORQUE_ENABLE: self._torque[servo],
-            dynamixel.HARDWARE_ERROR: 0,
+            dynamixel.HARDWARE_ERROR: self._hardware_error[servo],
             dynamixel.BUS_WATCHDOG: -1 if self._is_expired[servo] else self._watchdog[servo],
             dynamixel.GOAL_POSITION: self._goals[servo],
             dynamixel.MOVING: int(self._plant.arrives_us is not None),
@@ -104,6 +119,8 @@ class DynamixelEmulator:
             self._watchdog[servo] = value
             self._is_expired[servo] = False
         elif register == dynamixel.TORQUE_ENABLE:
+            if value and self._hardware_error[servo]:
+                return _ACCESS
             self._torque[servo] = value
             if not value:
                 self._plant.halt()
@@ -125,4 +142,5 @@ class DynamixelEmulator:
         return (counts - _CENTRE) / _COUNTS_PER_RAD
 
     def _answer(self, servo: int, error: int, parameters: bytes = b"") -> None:
-        self._said += dynamixel.packet(servo, STATUS, bytes((error,)) + parameters)
+        alert = dynamixel.ALERT if self._hardware_error[servo] else 0
+        self._said += dynamixel.packet(servo, STATUS, bytes((error | alert,)) + parameters)

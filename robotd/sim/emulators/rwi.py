@@ -26,6 +26,7 @@ class RwiEmulator:
         self._bumper_watch = BumperWatch(plant)
         self._typed = bytearray()
         self._said = bytearray()
+        self._has_failed = False
         self._echoes = True
         self._speeds = {"T": 0, "R": 0}
         self._directions = {"T": 0, "R": 0}
@@ -68,6 +69,12 @@ class RwiEmulator:
         self._said.clear()
         return said
 
+    def fail(self) -> None:
+        """Report a servo error and run no motor until it is acknowledged."""
+        self._has_failed = True
+        self._halt()
+        self._say("%TERR")
+
     def _pass(self, to_us: int) -> None:
         self._now_us = max(self._now_us, to_us)
         self._plant.advance(self._now_us)
@@ -99,7 +106,7 @@ class RwiEmulator:
 
     def _obey(self, name: str, argument: int | None) -> None:
         axis, what = name[0], name[1]
-        if axis in _AXES and what in "V+-HLW":
+        if axis in _AXES and what in ("HLW" if self._has_failed else "V+-HLW"):
             self._drive(axis, what, argument)
         elif name == "KI":
             self._directions = {"T": 0, "R": 0}
@@ -110,7 +117,13 @@ class RwiEmulator:
             self._say(f"BV {round(self._plant.battery_mv / 100):X}")
         elif name == "CL":
             self._say(f"CL {round(self._now_us / _US_PER_TICK) % 0x100000000:X}")
-        elif name == "HD":
+        elif name == "EA":
+            self._has_failed = False
+        else:
+            self._set_up(name, argument)
+
+    def _set_up(self, name: str, argument: int | None) -> None:
+        if name == "HD":
             self._echoes = False
         elif name == "BE" and argument is not None:
             self._stops_on_bump = argument == 0

@@ -1,4 +1,7 @@
-"""An emulated Benewake TFmini-S: streams from power-up, and measures on a trigger once it is told to."""
+"""An emulated Benewake TFmini-S: streams from power-up, and measures on a trigger once it is told to.
+
+And a TFmini of the first generation, which streams and hears nothing.
+"""
 
 from firmware_proto.rangefinder import ShotStatus
 from robotd.hardware.wire.tfmini import FORMAT_CM, OUTPUT_OFF, OUTPUT_ON, RATE_0, TRIGGER, VERSION, command
@@ -14,14 +17,16 @@ _SENTINELS = {
     ShotStatus.SATURATED: (0xFFFE, 0xFFFF),
     ShotStatus.AMBIENT: (0xFFFC, 500),
 }
+_SENTINELS_OF_FIRST = {ShotStatus.OVER_RANGE: (1200, 60), ShotStatus.WEAK: (0xFFFF, 10)}
 _STRENGTH_MIN, _STRENGTH_MAX = 101, 30_000
 
 
 class TfminiEmulator:
     """Its light is always on."""
 
-    def __init__(self, plant: LaserPlant) -> None:
+    def __init__(self, plant: LaserPlant, *, is_first: bool = False) -> None:
         self._plant = plant
+        self._is_first = is_first
         self._plant.switch(on=True)
         self._typed = bytearray()
         self._said = bytearray()
@@ -33,6 +38,8 @@ class TfminiEmulator:
     def receive(self, data: bytes, now_us: int) -> None:
         """Take bytes from the host."""
         self.advance(now_us)
+        if self._is_first:
+            return
         self._typed += data
         while self._typed:
             if self._typed[0] != 0x5A:
@@ -96,6 +103,7 @@ class TfminiEmulator:
             strength = min(max(answer.strength, _STRENGTH_MIN), _STRENGTH_MAX)
             distance = round(answer.range_m * 100)
         else:
-            distance, strength = _SENTINELS.get(answer.status, (0, 0))
+            sentinels = _SENTINELS_OF_FIRST if self._is_first else _SENTINELS
+            distance, strength = sentinels.get(answer.status, (0xFFFF, 0))
         frame = b"\x59\x59" + distance.to_bytes(2, "little") + strength.to_bytes(2, "little") + _TEMPERATURE
         self._said += frame + bytes((sum(frame) & 0xFF,))

@@ -10,6 +10,7 @@ from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.device import LinkState
 from robotd.sim.emulators import lw20, lwnx
+from robotd.sim.emulators.catalogue import RANGEFINDERS
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.tfmini import TfminiEmulator
 from robotd.sim.plant import ShotAnswer
@@ -114,3 +115,38 @@ async def test_a_stream_that_begins_again_is_ended_again() -> None:
         await asyncio.sleep(3.0)
         assert not emulator._streams
         assert (await s.device.shoot(timeout_s=1.0)).status is ReadingStatus.OK
+
+
+async def test_a_tfmini_of_the_first_generation_is_read_from_its_stream() -> None:
+    async with sensor("tfmini") as s:
+        s.wall.answer = ShotAnswer(ShotStatus.OK, 1.23, 900, 4_000)
+        await s.device.switch_laser(on=True)
+        shot = await s.device.shoot(timeout_s=1.0)
+        assert (shot.status, shot.strength) == (ReadingStatus.OK, 900)
+        assert shot.range_m == pytest.approx(1.24)
+        began_ns = now_ns()
+        s.wall.answer = ShotAnswer(ShotStatus.OK, 3.21, 900, 4_000)
+        assert (await s.device.shoot(timeout_s=1.0)).range_m == pytest.approx(3.22)
+        assert now_ns() - began_ns < 0.05 * NS_PER_S
+        s.wall.answer = ShotAnswer(ShotStatus.OVER_RANGE, 0.0, 0, 4_000)
+        assert (await s.device.shoot(timeout_s=1.0)).status is ReadingStatus.MISS
+        await asyncio.sleep(5.0)
+        assert dict(s.device.status.counters)["sessions"] == 1
+
+
+async def test_a_first_tfmini_that_falls_silent_is_lost() -> None:
+    async with sensor("tfmini") as s:
+        assert isinstance(s.board, Paced)
+        emulator = s.board.device
+        assert isinstance(emulator, TfminiEmulator)
+        emulator._speaks = False
+        assert (await s.device.shoot(timeout_s=1.0)).status is ReadingStatus.TIMEOUT
+        assert "silent for 1 s" in (await s.until(LinkState.ABSENT)).detail
+
+
+async def test_a_first_tfmini_in_place_of_another_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(RANGEFINDERS, "tfmini-plus", RANGEFINDERS["tfmini"])
+    async with sensor("tfmini-plus", greeted=False) as s:
+        await s.until(LinkState.CONNECTING)
+        status = await s.until(LinkState.ABSENT)
+        assert 'a TFmini of the first generation (dialect = "tfmini")' in status.detail

@@ -192,3 +192,14 @@ async def test_the_battery_is_read_in_volts() -> None:
         readout = b.device.readouts.latest
         assert readout is not None
         assert readout.battery_v == pytest.approx(25.6, abs=0.1)
+
+
+async def test_a_servo_error_is_acknowledged_by_clear_and_the_base_runs_again() -> None:
+    async with base() as b:
+        b.emulator.fail()
+        await asyncio.sleep(0.2)
+        assert b.device.status.faults == ("servo",)
+        await b.device.clear_faults()
+        await b.device.arm()
+        await b.drive(Twist2(0.2, 0.0), 1.0)
+        assert b.velocity[0] > 0.1
