@@ -62,7 +62,7 @@ def compose(config: Config, connects: Mapping[str, Connect], compute: Compute, j
     supervisor = Supervisor(
         robot,
         lambda publish: MissionContext(robot, settings, noted, publish),
-        lambda event, place: note_result(journal, event, place),
+        lambda event, place, made: note_result(journal, event, place, made),
         lambda: None if journal.path is None or journal.error is not None else str(journal.path),
         battery_min_v=config.drive.battery_min_v,
     )

@@ -15,10 +15,14 @@ OCCUPIED_GREY, UNKNOWN_GREY, FREE_GREY = 0, 205, 254
 _SURE = 255
 
 
-def encode_pgm(grey: NDArray[np.uint8]) -> bytes:
+def encode_pgm(grey: NDArray[np.uint8]) -> memoryview:
     """Return the binary PGM (P5) of ``uint8[rows, cols]`` whose row 0 has the smallest y."""
     rows, cols = grey.shape
-    return b"P5\n%d %d\n255\n" % (cols, rows) + np.ascontiguousarray(grey[::-1]).tobytes()
+    header = b"P5\n%d %d\n255\n" % (cols, rows)
+    found = np.empty(len(header) + grey.size, np.uint8)  # bytes put together would keep other threads waiting
+    found[: len(header)] = np.frombuffer(header, np.uint8)
+    found[len(header) :].reshape(rows, cols)[:] = grey[::-1]
+    return found.data
 
 
 def trinary_from_cells(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -31,4 +35,7 @@ def trinary_from_cells(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
     grey = np.full(256, UNKNOWN_GREY, np.uint8)
     grey[probability >= OCCUPIED_THRESH] = OCCUPIED_GREY
     grey[probability <= FREE_THRESH] = FREE_GREY
-    return grey[cells]
+    found = np.empty_like(cells)
+    for row, line in enumerate(cells):  # all at once would make an index of eight bytes for each cell
+        found[row] = grey[line]
+    return found

@@ -123,7 +123,9 @@ class OccupancyGrid:
         """Return the SHA-256 of placement and cells, in hexadecimal: equal exactly if the maps are."""
         spec = self.spec
         place = f"{spec.resolution_m!r} {spec.origin_x_m!r} {spec.origin_y_m!r} {spec.rows} {spec.cols}\n"
-        return hashlib.sha256(place.encode() + self.cells.tobytes()).hexdigest()
+        found = hashlib.sha256(place.encode())
+        found.update(np.ascontiguousarray(self.cells).data)  # not a copy of it: a copy keeps other threads waiting
+        return found.hexdigest()
 
     def _usable(self, sweep: Sweep) -> tuple[RangeReading, ...]:
         if self.settings.over_range is OverRange.CLEAR:

@@ -6,13 +6,17 @@ the rename is synced. All calls that change the disk are here, through :mod:`os`
 
 import os
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 
 _READABLE_BY_ALL = 0o644
 _LISTABLE_BY_ALL = 0o755
 
 
-def write_synced(path: Path, data: bytes) -> None:
+Buffer = bytes | memoryview
+
+
+def write_synced(path: Path, data: Buffer) -> None:
     """Write a new file down to the disk.
 
     Raises:
@@ -47,7 +51,7 @@ def make_directory(path: Path) -> None:
     sync_directory(path.parent)
 
 
-def publish_directory(temporary: Path, final: Path, files: dict[str, bytes]) -> None:
+def publish_directory(temporary: Path, final: Path, files: Mapping[str, Buffer]) -> None:
     """Make the directory ``final`` with these files: after a crash at any moment it is there whole, or not there.
 
     ``temporary`` must lie on the same file system; after a crash it may be left behind.

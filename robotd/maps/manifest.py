@@ -33,7 +33,7 @@ class FileSum:
     sha256: str
 
     @classmethod
-    def of(cls, data: bytes) -> Self:
+    def of(cls, data: bytes | memoryview) -> Self:
         """Return the sum of these bytes."""
         return cls(len(data), hashlib.sha256(data).hexdigest())
 

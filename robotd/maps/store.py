@@ -20,7 +20,7 @@ from robotd.grid.image import encode_pgm, trinary_from_cells
 from robotd.grid.map_yaml import map_yaml
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.grid.spec import GridSpec
-from robotd.maps.atomic import make_directory, publish_directory, remove_leftover, withdraw_directory
+from robotd.maps.atomic import Buffer, make_directory, publish_directory, remove_leftover, withdraw_directory
 from robotd.maps.manifest import FileSum, Manifest, check_name, decode_manifest
 
 MANIFEST, CELLS, IMAGE, YAML = "manifest.json", "cells.bin", "map.pgm", "map.yaml"
@@ -174,9 +174,9 @@ def _disk_errors(what: str) -> Iterator[None]:
 
 def _files_of(
     name: str, version: int, grid: OccupancyGrid, metadata: dict[str, Any], created_unix_ns: int
-) -> tuple[dict[str, bytes], Manifest]:
-    files = {
-        CELLS: grid.cells.tobytes(),
+) -> tuple[dict[str, Buffer], Manifest]:
+    files: dict[str, Buffer] = {
+        CELLS: grid.cells.data.cast("B"),
         IMAGE: encode_pgm(trinary_from_cells(grid.cells)),
         YAML: map_yaml(IMAGE, grid.spec).encode(),
     }

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 from robotd.core.clock import now_ns
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
@@ -11,6 +12,7 @@ from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepDon
 from robotd.mission.robot import Robot
 from robotd.mission.settings import MissionSettings
 from robotd.mission.stop_and_sweep import Sweeper
+from robotd.recording.entries import ResultEntry
 
 _PROGRESS_EVERY = 10
 _LONGEST_MESSAGE = 500
@@ -33,6 +35,13 @@ class Reporter:
         self.publish(MissionProgress(now_ns(), self.mission_id, self.kind, phase, self.stop, self.stops, words))
 
 
+class Publish(Protocol):
+    """Hands an event to the world, and to the journal; ``made`` is its entry there if that was made already."""
+
+    def __call__(self, event: Event, made: ResultEntry | None = None) -> None:
+        """Return at once."""
+
+
 @dataclass(frozen=True, slots=True)
 class MissionContext:
     """Robot, settings, worker and ear of the world."""
@@ -40,7 +49,7 @@ class MissionContext:
     robot: Robot
     settings: MissionSettings
     compute: Compute
-    publish: Callable[[Event], None]
+    publish: Publish
 
     @property
     def sweeper(self) -> Sweeper:

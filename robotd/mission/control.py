@@ -9,6 +9,7 @@ may, is noted.
 import base64
 import logging
 import zlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,8 @@ from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Occasion
 from robotd.mission.requests import Mission
 from robotd.mission.supervisor import Supervisor
+from robotd.recording.encoding import encoded
+from robotd.recording.entries import CommandEntry
 from robotd.recording.preroll import PrerollJournal
 
 log = logging.getLogger(__name__)
@@ -115,7 +118,7 @@ class Control:
     async def stored_map(self, name: str, version: int | None) -> MapChanged:
         """Return every cell of a stored map; MapError if it is missing or damaged."""
         grid, entry = await self._compute.run("read map", self._store.load, name, version)
-        return MapInUse(entry.digest, entry.name, grid, None).whole(now_ns())
+        return MapInUse(entry.digest, entry.name, grid, None, entry.digest).whole(now_ns())
 
     async def list_maps(self) -> tuple[MapEntry, ...]:
         """Return what is in the store."""
@@ -143,20 +146,22 @@ class Control:
             MissionError: a mission is under way.
         """
         grid, entry = await self._compute.run("read map", self._store.load, name, version)
-        packed = await self._compute.run("pack map", _packed, grid)
         pose = None if robot_in_map is None else msgspec.to_builtins(robot_in_map)
-        self._use({"map_id": entry.digest, "name": name, "grid": packed, "robot_in_map": pose}, grid)
+        arguments = {"map_id": entry.digest, "name": name, "robot_in_map": pose}
+        command = await self._compute.run("pack map", _use_map, arguments, grid)
+        self._use(command, grid, entry.digest)
         return entry
 
-    def _use(self, arguments: dict[str, Any], grid: OccupancyGrid) -> None:
-        place = MapInUse(arguments["map_id"], arguments["name"], grid, None)
+    def _use(self, command: CommandEntry, grid: OccupancyGrid, digest: str) -> None:
+        arguments = command.arguments
+        place = MapInUse(arguments["map_id"], arguments["name"], grid, None, digest)
         here = self._supervisor.robot.drive.odometry.latest
         if arguments["robot_in_map"] is not None:
             if here is None:
                 raise MissionError("there is no odometry yet to tie to the map")
             place.tie(msgspec.convert(arguments["robot_in_map"], Pose2), here.in_odom)
         self._supervisor.require_replaceable_map()
-        self._journal.command(now_ns(), "use_map", arguments)
+        self._journal.note(replace(command, time_ns=now_ns()))
         self._supervisor.use(place)
 
     async def start_recording(self, path: str | None) -> str:
@@ -198,7 +203,8 @@ class Control:
                 kind = _MISSIONS[arguments["kind"]]
                 self.start(msgspec.convert(arguments["mission"], kind), arguments["lease_s"])
             case "use_map":
-                self._use(arguments, _unpacked(arguments["grid"]))
+                grid = _unpacked(arguments["grid"])
+                self._use(CommandEntry(now_ns(), name, arguments), grid, grid.digest())
             case _:
                 raise MissionError(f"unknown request {name!r}")
 
@@ -222,9 +228,11 @@ def _make_directory(directory: Path) -> None:
         raise RecordingError(f"cannot record to {directory}: {error.strerror}") from error
 
 
-def _packed(grid: OccupancyGrid) -> dict[str, Any]:
-    cells = base64.b64encode(zlib.compress(grid.cells.tobytes())).decode()
-    return {"spec": msgspec.to_builtins(grid.spec), "cells": cells}
+def _use_map(arguments: dict[str, Any], grid: OccupancyGrid) -> CommandEntry:
+    """Return the journal's entry of taking a map into use, encoded: for a large one that takes a second."""
+    cells = base64.b64encode(zlib.compress(grid.cells.data)).decode()
+    packed = {"spec": msgspec.to_builtins(grid.spec), "cells": cells}
+    return encoded(CommandEntry(0, "use_map", arguments | {"grid": packed}))
 
 
 def _unpacked(packed: dict[str, Any]) -> OccupancyGrid:

@@ -19,8 +19,10 @@ from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import MissionPhase
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.requests import LocalizeMission, PriorHeading
+from robotd.mission.results import result_of
 from robotd.mission.settings import MissionSettings
 from robotd.mission.stop_and_sweep import faults_text, standing
+from robotd.recording.entries import ResultEntry
 
 _BATCH = 20
 """Readings between two estimates while the heading is known and readings are counted as they come."""
@@ -128,14 +130,17 @@ class Narrowing:
         while True:
             batch = await self._batches.get()
             final = batch is None
-            estimate = await self._context.compute.run("narrow", self._narrow, batch or (), now_ns(), final)
-            self._context.publish(estimate)
+            estimate, made = await self._context.compute.run("narrow", self._narrow, batch or (), now_ns(), final)
+            self._context.publish(estimate, made)
             if final:
                 return estimate
 
-    def _narrow(self, batch: tuple[RangeReading, ...], time_ns: int, final: bool) -> PoseEstimate:
+    def _narrow(
+        self, batch: tuple[RangeReading, ...], time_ns: int, final: bool
+    ) -> tuple[PoseEstimate, ResultEntry | None]:
         self._localizer.add(*(reading for reading in batch if reading.is_measured))
-        return self._localizer.estimate(time_ns, final=final)
+        estimate = self._localizer.estimate(time_ns, final=final)
+        return estimate, result_of(estimate)
 
 
 def pose_text(pose: Pose2) -> str:

@@ -16,6 +16,17 @@ from robotd.mission.readiness import Readiness
 _NO_CELLS: NDArray[np.intp] = np.empty(0, dtype=np.intp)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Laid:
+    """A grid with one more sweep in it."""
+
+    grid: OccupancyGrid
+    cells: NDArray[np.intp]
+    """Those that changed, as flat indices, ascending."""
+    digest: str
+    """Of the grid."""
+
+
 @dataclass(slots=True)
 class MapInUse:
     """One map and its ties; the supervisor has one at a time.
@@ -29,6 +40,8 @@ class MapInUse:
     grid: OccupancyGrid
     map_from_odom: Pose2 | None
     """Where the odometry frame lies on the map; None while nothing ties them."""
+    digest: str = ""
+    """Of the grid as it is now; made where the grid was, since for the largest it takes a tenth of a second."""
     generation: int = 0
     """Counts its changes since it came into use."""
     readiness: Readiness = field(default_factory=Readiness)
@@ -36,6 +49,10 @@ class MapInUse:
     is_doubted: bool = False
     """Whether the tie is no longer believed: a robot that looked and did not find itself, or was out of sight of
     its wheels, does not know where it is, though it may still know which way it looks."""
+
+    def __post_init__(self) -> None:
+        """Make the digest, unless somebody did."""
+        self.digest = self.digest or self.grid.digest()
 
     def pose_of(self, odometry: Odometry) -> Pose2 | None:
         """Return where odometry places the robot on the map, if anything ties them that is believed."""
@@ -50,8 +67,8 @@ class MapInUse:
         self.map_from_odom = map_from_robot @ in_odom.inverse()
         self.is_doubted = False
 
-    def grid_with(self, sweep: Sweep) -> tuple[OccupancyGrid, NDArray[np.intp]]:
-        """Return the grid with a sweep laid in where odometry places it, and the changed cells as flat indices.
+    def grid_with(self, sweep: Sweep) -> "Laid":
+        """Return the grid with a sweep laid in where odometry places it.
 
         Raises:
             ValueError: nothing ties odometry to the map.
@@ -60,13 +77,13 @@ class MapInUse:
             raise ValueError("a sweep cannot be inserted: odometry is not tied to the map")
         grid = OccupancyGrid(self.grid.spec, self.grid.cells, self.grid.settings)
         changed = grid.insert(sweep, self.map_from_odom @ sweep.in_odom)
-        return grid, changed
+        return Laid(grid, changed, grid.digest())
 
-    def take(self, grid: OccupancyGrid, cells: NDArray[np.intp]) -> None:
-        """Go on with a grid in which these cells changed, flat indices in ascending order."""
-        self.grid = grid
+    def take(self, laid: "Laid") -> None:
+        """Go on with the grid that a sweep was laid in."""
+        self.grid, self.digest = laid.grid, laid.digest
         self.generation += 1
-        self.readiness.note(CellWindow.bounding(cells, grid.spec.shape))
+        self.readiness.note(CellWindow.bounding(laid.cells, laid.grid.spec.shape))
 
     def changes(self, time_ns: int, cells: NDArray[np.intp]) -> MapChanged:
         """Return the event for these changed cells."""

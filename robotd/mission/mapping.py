@@ -52,7 +52,7 @@ async def run_mapping(
         sweep = await looking_again(context, report, lambda: context.sweep(take_number()))
         faulty += [f"stop {stop}: {text}" for text in [faults_text(sweep)] if text]
         report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
-        grid, cells = await context.compute.run("insert", place.grid_with, sweep)
-        place.take(grid, cells)
-        context.publish(place.changes(now_ns(), cells))
+        laid = await context.compute.run("insert", place.grid_with, sweep)
+        place.take(laid)
+        context.publish(place.changes(now_ns(), laid.cells))
     return MappingResult(1 + len(mission.stops_m) - len(unreachable), tuple(unreachable), tuple(faulty))

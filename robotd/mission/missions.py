@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from robotd.core.errors import MissionError
-from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.spec import GridSpec
 from robotd.localization.estimate import PoseEstimate
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.driving import run_driving
@@ -82,13 +83,20 @@ async def _begin_map(context: MissionContext, mission: MapMission, report: Repor
     settings = context.settings.grid
     points_m = ((mission.start.x_m, mission.start.y_m), *mission.stops_m)
     try:
-        grid = OccupancyGrid(settings.spec_covering(points_m, _MARGIN_M), settings=settings)
+        spec = settings.spec_covering(points_m, _MARGIN_M)
     except ValueError as error:
         raise MissionError(f"these stops do not fit on one map: {error}") from error
+    grid, digest = await context.compute.run("begin map", _blank, spec, settings)
     here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
-    place = MapInUse(f"new-{report.mission_id}", mission.name, grid, None)
+    place = MapInUse(f"new-{report.mission_id}", mission.name, grid, None, digest)
     place.tie(mission.start, here.in_odom)
     return place
+
+
+def _blank(spec: GridSpec, settings: GridSettings) -> tuple[OccupancyGrid, str]:
+    """Return a map on which nothing is known, and its digest."""
+    grid = OccupancyGrid(spec, settings=settings)
+    return grid, grid.digest()
 
 
 def describe(estimate: PoseEstimate) -> str:

@@ -13,26 +13,42 @@ from robotd.core.reading import Sweep
 from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import Event, MapChanged, MissionProgress, SweepDone
 from robotd.mission.map_in_use import MapInUse
+from robotd.recording.encoding import encoded
+from robotd.recording.entries import ResultEntry
 from robotd.recording.journal import Journal
 
 
-def note_result(journal: Journal, event: Event, place: MapInUse | None) -> None:
-    """Note an event in the journal if it is a result."""
+def note_result(journal: Journal, event: Event, place: MapInUse | None, made: ResultEntry | None = None) -> None:
+    """Note an event in the journal if it is a result; ``made`` is its entry if that was made already."""
+    if isinstance(event, MapChanged):
+        if place is not None:
+            content = {"map_id": event.map_id, "generation": event.generation}
+            journal.result(event.time_ns, "map", content, place.digest)
+        return
+    entry = result_of(event) if made is None else made
+    if entry is not None:
+        journal.note(entry)
+
+
+def result_of(event: Event) -> ResultEntry | None:
+    """Return the entry of a sweep, an estimate or the end of a mission, encoded; None for what is no such result.
+
+    Takes milliseconds for an estimate of many large regions: those are made where they are computed.
+    """
     match event:
         case SweepDone():
-            _note(journal, event.time_ns, "sweep", _sweep(event.sweep))
+            return _result(event.time_ns, "sweep", _sweep(event.sweep))
         case PoseEstimate() if event.state is not PoseState.PREDICTED:
-            _note(journal, event.time_ns, "estimate", _without_time(msgspec.to_builtins(event)))
-        case MapChanged() if place is not None:
-            content = {"map_id": event.map_id, "generation": event.generation}
-            journal.result(event.time_ns, "map", content, place.grid.digest())
+            return _result(event.time_ns, "estimate", _without_time(msgspec.to_builtins(event)))
         case MissionProgress() if event.is_last:
-            _note(journal, event.time_ns, "mission", _without_time(msgspec.to_builtins(event)))
+            return _result(event.time_ns, "mission", _without_time(msgspec.to_builtins(event)))
+        case _:
+            return None
 
 
-def _note(journal: Journal, time_ns: int, kind: str, content: dict[str, Any]) -> None:
+def _result(time_ns: int, kind: str, content: dict[str, Any]) -> ResultEntry:
     text = json.dumps(content, sort_keys=True)
-    journal.result(time_ns, kind, content, hashlib.sha256(text.encode()).hexdigest())
+    return encoded(ResultEntry(time_ns, kind, content, hashlib.sha256(text.encode()).hexdigest()))
 
 
 def _sweep(sweep: Sweep) -> dict[str, Any]:

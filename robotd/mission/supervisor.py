@@ -19,7 +19,7 @@ from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
 from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.battery import low_battery
-from robotd.mission.context import MissionContext, Reporter
+from robotd.mission.context import MissionContext, Publish, Reporter
 from robotd.mission.events import Event, MissionPhase, Status
 from robotd.mission.lease import Lease
 from robotd.mission.map_in_use import MapInUse
@@ -28,6 +28,7 @@ from robotd.mission.modes import UNDER_WAY, Mode, Occasion, next_mode
 from robotd.mission.prediction import Predictor, unlocalized
 from robotd.mission.requests import Mission
 from robotd.mission.robot import Robot
+from robotd.recording.entries import ResultEntry
 
 _STATUS_PERIOD_S = 1.0
 _DEVICE_TIMEOUT_S = 5.0
@@ -42,8 +43,8 @@ class Supervisor:
     def __init__(
         self,
         robot: Robot,
-        make_context: Callable[[Callable[[Event], None]], MissionContext],
-        note: Callable[[Event, MapInUse | None], None],
+        make_context: Callable[[Publish], MissionContext],
+        note: Callable[[Event, MapInUse | None, ResultEntry | None], None],
         recording: Callable[[], str | None] = lambda: None,
         *,
         battery_min_v: float = 0.0,
@@ -53,7 +54,8 @@ class Supervisor:
         Args:
             robot: what to watch over.
             make_context: makes what missions work with, given where to publish.
-            note: told every event, and the map in use at that moment, before the world is.
+            note: told every event, the map in use at that moment, and the journal's entry if it was made already,
+                before the world is.
             recording: says which file is being recorded to.
             battery_min_v: below it, stop and latch a fault.
         """
@@ -108,11 +110,11 @@ class Supervisor:
     def _busy(self) -> bool:
         return self._mission is not None and not self._mission.done()
 
-    def publish(self, event: Event) -> None:
+    def publish(self, event: Event, made: ResultEntry | None = None) -> None:
         """Hand an event to the world, and to the journal."""
         if isinstance(event, PoseEstimate) and event.state is PoseState.LOCALIZED and event.final:
             self._predictor.said = event.best
-        self._note(event, self.place)
+        self._note(event, self.place, made)
         self.events.publish(event)
 
     async def run(self) -> None:

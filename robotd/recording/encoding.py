@@ -6,8 +6,8 @@ of the file, so that a lost chunk shows.
 """
 
 import json
-from dataclasses import asdict
-from typing import Any
+from dataclasses import asdict, fields, replace
+from typing import Any, TypeVar
 
 from robotd.core.errors import RecordingError
 from robotd.hardware.link.tap import Direction
@@ -30,6 +30,8 @@ _JSON_ENTRIES: dict[str, type[CommandEntry | ComputedEntry | ResultEntry]] = {
     "computed": ComputedEntry,
     "result": ResultEntry,
 }
+_NOT_SENT = {"time_ns", "encoded"}
+"""The message has a time of its own, and does not hold itself."""
 _TOPICS = {entry: topic for topic, entry in _JSON_ENTRIES.items()}
 
 
@@ -60,9 +62,27 @@ def encode(entry: Entry) -> tuple[str, bytes]:
         return f"{_SERIAL}/{entry.device}/{entry.direction}", bytes(entry.data)
     if isinstance(entry, LineEntry):
         return f"{_LINE}/{entry.device}", _dumps({"up": entry.up})
-    fields = asdict(entry)
-    del fields["time_ns"]
-    return _TOPICS[type(entry)], _dumps(fields)
+    return _TOPICS[type(entry)], _message_of(entry)
+
+
+E = TypeVar("E", bound=Entry)
+
+
+def encoded(entry: E) -> E:
+    """Return an entry that holds its message, so that :func:`encode` has nothing left to do, however often.
+
+    Raises:
+        TypeError: as :func:`encode`.
+    """
+    if isinstance(entry, CommandEntry | ResultEntry) and entry.encoded is None:
+        return replace(entry, encoded=_message_of(entry))
+    return entry
+
+
+def _message_of(entry: CommandEntry | ComputedEntry | ResultEntry) -> bytes:
+    made: bytes | None = getattr(entry, "encoded", None)
+    names = (field.name for field in fields(entry) if field.name not in _NOT_SENT)
+    return _dumps({name: getattr(entry, name) for name in names}) if made is None else made
 
 
 def decode(topic: str, time_ns: int, data: bytes) -> Entry | None:

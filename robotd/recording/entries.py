@@ -1,6 +1,6 @@
 """What a recording holds: typed entries in the order in which they happened."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from robotd.hardware.link.tap import Direction
@@ -47,6 +47,9 @@ class CommandEntry:
     time_ns: int
     name: str
     arguments: dict[str, Any]
+    encoded: bytes | None = field(default=None, compare=False, repr=False)
+    """The message of this entry, once it was made: the making takes long for large ones, so it is done once, and where
+    nobody waits for it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +71,8 @@ class ResultEntry:
     """Enough of it to show to people."""
     digest: str
     """Of all of it."""
+    encoded: bytes | None = field(default=None, compare=False, repr=False)
+    """As of :class:`CommandEntry`."""
 
 
 Entry = BytesEntry | LineEntry | CommandEntry | ComputedEntry | ResultEntry

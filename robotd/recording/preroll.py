@@ -11,7 +11,7 @@ from pathlib import Path
 
 from robotd.core.errors import RecordingError
 from robotd.recording.budget import Budgets, Source, source_of
-from robotd.recording.encoding import encode
+from robotd.recording.encoding import encode, encoded
 from robotd.recording.entries import Entry, RecordingHeader
 from robotd.recording.journal import Journal
 from robotd.recording.recorder import Recorder
@@ -48,7 +48,8 @@ class PrerollJournal(Journal):
         return self._recorder.error if self._recorder else None
 
     def note(self, entry: Entry) -> None:
-        """Remember an entry, and record it."""
+        """Remember an entry, and record it; it is encoded once, unless it was before."""
+        entry = encoded(entry)
         if self._recorder is not None:
             self._recorder.note(entry)
         if self._remembered is None:

@@ -14,6 +14,7 @@ from robotd.core.errors import RobotdError, ServerError
 from robotd.server.api import Arm, Command, Done, ErrorCode, Stop
 from robotd.server.envelope import BadRequest, Request, decode_request, encode_error, encode_result, refuse_frames
 from robotd.server.handlers import Handlers, as_refusal
+from robotd.server.map_wire import MapPayload
 from robotd.server.replies import Asker, Replies
 from robotd.server.request_log import RequestLog
 from robotd.server.router import Letter, Router
@@ -114,7 +115,10 @@ class Commands:
     async def _carry_out(self, request: Request, letter: Letter) -> bytes:
         try:
             result = await self._handlers.carry_out(request.command)
-            reply = encode_result(request.id, result)
+            if isinstance(result, MapPayload):
+                reply = await asyncio.to_thread(encode_result, request.id, result)  # megabytes
+            else:
+                reply = encode_result(request.id, result)
         except asyncio.CancelledError:
             if asyncio.current_task() not in self._overtaken:
                 raise

@@ -36,7 +36,7 @@ class MapPayload(msgspec.Struct, frozen=True):
 
 def pack_map(change: MapChanged) -> MapPayload:
     """Return a map for the wire. A whole one is compressed, which takes milliseconds: do it off the loop."""
-    values = np.ascontiguousarray(change.values, dtype=np.uint8).tobytes()
+    values = np.ascontiguousarray(change.values, dtype=np.uint8)
     spec = change.spec
     return MapPayload(
         time_ns=change.time_ns,
@@ -48,9 +48,9 @@ def pack_map(change: MapChanged) -> MapPayload:
         origin_y_m=float(spec.origin_y_m),
         rows=int(spec.rows),
         cols=int(spec.cols),
-        cells_zlib=zlib.compress(values, _QUICK) if change.whole else b"",
+        cells_zlib=zlib.compress(values.data, _QUICK) if change.whole else b"",
         indices_u32le=b"" if change.whole else change.cells.astype(_INDEX).tobytes(),
-        values_u8=b"" if change.whole else values,
+        values_u8=b"" if change.whole else values.tobytes(),
     )
 
 

@@ -7,7 +7,7 @@ from typing import NoReturn
 import zmq
 import zmq.asyncio
 
-from robotd.server.topics import Topic, encode_frame
+from robotd.server.topics import EVENTS, Published, Topic, encode_frame, to_wire
 
 _JOIN = b"\x01"
 BETWEEN_GREETINGS_S = 0.02
@@ -25,9 +25,19 @@ class Outlet:
 
     async def send(self, topic: Topic, fields: dict[str, object]) -> None:
         """Publish; a reader that is too slow misses it and sees the gap. Never waits."""
+        await self._send(topic, encode_frame(topic, self._session, self._number(topic), fields))
+
+    async def send_large(self, event: Published) -> None:
+        """Publish what takes long to encode; one call at a time, or the numbers may come out of order."""
+        topic, _ = EVENTS[type(event)]
+        await self._send(topic, await asyncio.to_thread(_frame_of, event, self._session, self._number(topic)))
+
+    def _number(self, topic: Topic) -> int:
         seq = self._seq.get(topic, 0)
         self._seq[topic] = seq + 1
-        frame = encode_frame(topic, self._session, seq, fields)
+        return seq
+
+    async def _send(self, topic: Topic, frame: bytes) -> None:
         self._last[topic] = frame
         await self._socket.send(frame)
 
@@ -52,6 +62,11 @@ class Outlet:
             for _ in range(_MOST_JOINS):
                 topics |= _topics_of(await self._socket.recv(zmq.NOBLOCK))
         return topics
+
+
+def _frame_of(event: Published, session: str, seq: int) -> bytes:
+    topic, fields = to_wire(event)
+    return encode_frame(topic, session, seq, fields)
 
 
 def _topics_of(message: bytes) -> set[Topic]:

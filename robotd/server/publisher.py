@@ -71,8 +71,7 @@ class Publisher:
             change = await self._map_queue.get()
             change = self._whole() if change is None else change
             if change is not None:
-                topic, fields = await asyncio.to_thread(to_wire, change)
-                await self._maps.send(topic, fields)
+                await self._maps.send_large(change)
 
     def _whole(self) -> MapChanged | None:
         try:

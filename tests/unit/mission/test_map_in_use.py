@@ -30,14 +30,15 @@ def at(x_m: float, y_m: float = 0.0, heading_rad: float = 0.0) -> Odometry:
 def test_a_sweep_makes_a_new_grid_and_leaves_every_snapshot_alone() -> None:
     here = place()
     before, snapshot = here.grid, here.whole(1)
-    grid, cells = here.grid_with(sweep_at(IDENTITY))
+    laid = here.grid_with(sweep_at(IDENTITY))
     assert here.grid is before
     assert np.all(before.cells == before.cells[0, 0])
-    here.take(grid, cells)
-    assert here.grid is grid
+    here.take(laid)
+    assert here.grid is laid.grid
+    assert here.digest == laid.grid.digest() != before.digest()
     assert here.generation == 1
     assert np.all(snapshot.values == before.cells)
-    change = here.changes(2, cells)
+    change = here.changes(2, laid.cells)
     patched = snapshot.values.copy()
     patched.reshape(-1)[change.cells] = change.values
     assert np.array_equal(patched, here.whole(3).values)

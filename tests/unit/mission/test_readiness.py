@@ -32,7 +32,7 @@ def place() -> MapInUse:
 
 
 def insert(here: MapInUse, x_m: float) -> None:
-    here.take(*here.grid_with(swept(here, x_m)))
+    here.take(here.grid_with(swept(here, x_m)))
 
 
 def arrays(ready: ReadyMap) -> list[Any]:

@@ -9,7 +9,7 @@ from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepDone
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.prediction import unlocalized
-from robotd.mission.results import note_result
+from robotd.mission.results import note_result, result_of
 from robotd.recording.entries import ResultEntry
 from robotd.recording.journal import MemoryJournal
 
@@ -46,9 +46,19 @@ def test_a_map_is_noted_whenever_it_changes() -> None:
         "m", "m", OccupancyGrid(GridSettings(rows=60, cols=60).spec_covering(((0.0, 0.0),), 1.0)), IDENTITY
     )
     before = digest(place.whole(1), place)
-    grid, cells = place.grid_with(SWEEP)
-    place.take(grid, cells)
-    assert digest(place.changes(2, cells), place) == place.grid.digest() != before
+    laid = place.grid_with(SWEEP)
+    place.take(laid)
+    assert digest(place.changes(2, laid.cells), place) == place.grid.digest() != before
+
+
+def test_an_entry_that_was_made_where_the_estimate_was_is_noted_as_it_is() -> None:
+    event = unlocalized(1, "m")
+    journal, made = MemoryJournal(), result_of(event)
+    assert made is not None
+    assert made.encoded is not None
+    note_result(journal, event, None, made)
+    assert journal.entries == [noted(event)]
+    assert journal.entries[0] is made
 
 
 def test_what_is_no_result_is_not_noted() -> None:

@@ -163,7 +163,7 @@ async def rig(*, armed: bool = True, talking: bool = True, battery_min_v: float 
     supervisor = Supervisor(
         robot,
         lambda say: MissionContext(robot, settings, compute, say),
-        lambda event, place: None,
+        lambda event, place, made: None,
         battery_min_v=battery_min_v,
     )
     with supervisor.events.subscribe(10_000) as events:

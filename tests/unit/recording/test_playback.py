@@ -291,6 +291,17 @@ async def test_results_of_computing_come_no_earlier_than_recorded_and_in_order()
 
 
 @recorded
+async def test_a_job_that_was_none_when_it_was_recorded_takes_no_time() -> None:
+    old, new = (RecordedCompute(recording_of(ComputedEntry(5, name, 0))) for name in ("insert", "begin map"))
+    assert await old.run("begin map", lambda: 7) == 7
+    waiting = asyncio.create_task(new.run("begin map", lambda: 7))
+    await asyncio.sleep(0)
+    assert not waiting.done()
+    new.release(ComputedEntry(5, "begin map", 0))
+    assert await waiting == 7
+
+
+@recorded
 async def test_a_job_that_fails_or_is_cancelled_does_not_count() -> None:
     compute = RecordedCompute(recording_of(ComputedEntry(5, "rank", 0)))
     with pytest.raises(ZeroDivisionError):
