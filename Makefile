@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults liars fuzz safety lag firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults liars fuzz safety stops lag firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -60,6 +60,9 @@ fuzz: .venv/.dev  ## Strange bytes for every parser, a minute each: make fuzz FU
 
 safety: .venv/.dev  ## How late stops are on the wires in real time, all processors busy (half an hour; make safety SHARE=0.1)
 	@$(BIN)/python -m tests.safety.run $(if $(SHARE),--share $(SHARE))
+
+stops: .venv/.dev  ## Whether the robot comes to rest whatever ends the daemon, whatever its devices speak: a table (minutes)
+	@$(BIN)/python -m tests.stops.run $(if $(ONLY),--only $(ONLY)) $(if $(TRIALS),--trials $(TRIALS))
 
 lag: .venv/.dev  ## How late the event loop is while the daemon works hard, quiet and beside busy programs: writes docs/benchmarks/loop-lag.md
 	@$(BIN)/python -m tests.lag.run

@@ -4,7 +4,6 @@ import argparse
 import asyncio
 import logging
 import secrets
-import signal
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -13,6 +12,7 @@ from pathlib import Path
 
 from robotd import __version__
 from robotd.app.compose import Daemon, compose, serial_connectors
+from robotd.app.ending import Ending
 from robotd.app.stall_guard import STALL_S, guarded
 from robotd.config import Config, default_path, effective_text, load
 from robotd.core.clock import now_ns, wall_offset_ns
@@ -33,7 +33,7 @@ log = logging.getLogger(__name__)
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run the daemon until SIGTERM or SIGINT; return the exit code."""
+    """Run the daemon until a signal ends it; return the exit code."""
     arguments = _parser().parse_args(argv)
     try:
         config = load(arguments.config or default_path())
@@ -44,7 +44,7 @@ def main(argv: list[str] | None = None) -> int:
     configure(arguments.log_level)
     exit_code = 0
     try:
-        asyncio.run(run(config))
+        exit_code = asyncio.run(run(config))
     except* RobotdError as errors:  # foreseen, so they need no traceback; others end the program with theirs
         for one in _one_by_one(errors):
             log.error("%s", one)  # noqa: TRY400  # as above
@@ -74,38 +74,35 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-async def run(config: Config) -> None:
-    """Serve until told to stop.
+async def run(config: Config) -> int:
+    """Serve until told to stop; return the exit code.
 
     Raises:
         RobotdError: as it is or in a group: another daemon serves here, the sockets cannot be had, or the recording is
             incomplete.
     """
-    stopping = asyncio.Event()
     with ExitStack() as stack:
         journal = new_journal(config)
         compute = ThreadCompute()
         stack.callback(compute.close)
         daemon = compose(config, serial_connectors(config), compute, journal)
-        for number in (signal.SIGTERM, signal.SIGINT):
-            asyncio.get_running_loop().add_signal_handler(number, _stop_first, daemon, stopping)
+        ending = Ending(daemon.robot.stop_now)
         try:
             async with guarded(daemon.robot.stop_past_loop, partial(_stalled, daemon)):
-                await _serve(config, daemon, stopping)
+                await _serve(config, daemon, ending)
+        except asyncio.CancelledError:
+            if not ending.is_hastened:
+                raise
         finally:
             await daemon.control.stop_recording()
+    return ending.exit_code
 
 
 def _stalled(daemon: Daemon) -> None:
     daemon.supervisor.halt(Occasion.STOP, f"the event loop stood still for more than {STALL_S:g} s")
 
 
-def _stop_first(daemon: Daemon, stopping: asyncio.Event) -> None:
-    daemon.robot.stop_now()
-    stopping.set()
-
-
-async def _serve(config: Config, daemon: Daemon, stopping: asyncio.Event) -> None:
+async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
     server = Server(config.server, daemon.control)
     notifier = Notifier.of()
     async with asyncio.TaskGroup() as group:
@@ -113,18 +110,35 @@ async def _serve(config: Config, daemon: Daemon, stopping: asyncio.Event) -> Non
         await server.serving.wait()  # then this is the only daemon here, and may open the lines
         if config.recording.from_start:
             await daemon.control.start_recording(None)
-        tasks = [serving, *(group.create_task(part, name=name) for name, part in daemon.parts().items())]
+        parts = {name: group.create_task(part, name=name) for name, part in daemon.parts().items()}
+        tasks = [serving, *parts.values()]
+        for task in tasks:
+            task.add_done_callback(partial(_stop_if_failed, daemon))
         within_s = watchdog_s()
         if within_s is not None:
             feeding = feed_watchdog(notifier, within_s, lambda: not any(task.done() for task in tasks))
             tasks.append(group.create_task(feeding, name="watchdog"))
         _announce(notifier)
-        await stopping.wait()
-        log.info("stopping")
+        await ending.asked.wait()
+        log.info("stopping: %s", ending.reason)
         notifier.stopping()
         await daemon.control.stop("the daemon is ending")
+        await _cancelled(serving, *(parts[device.name] for device in daemon.robot.devices))
         for task in tasks:
             task.cancel()
+
+
+def _stop_if_failed(daemon: Daemon, task: "asyncio.Task[None]") -> None:
+    """Stop before the others are told to end, which they do as they come."""
+    if not task.cancelled() and task.exception() is not None:
+        daemon.robot.stop_now()
+
+
+async def _cancelled(*tasks: "asyncio.Task[None]") -> None:
+    """Let nobody ask for anything more, and each device come to rest; who watches over it watches until then."""
+    for task in tasks:
+        task.cancel()
+    await asyncio.wait(tasks)
 
 
 def _announce(notifier: Notifier) -> None:

@@ -12,7 +12,10 @@ import sys
 import threading
 import traceback
 from collections.abc import AsyncIterator, Callable
+from itertools import count
 from typing import NoReturn
+
+from robotd.hardware.devices.device import PAST_LOOP_S
 
 STALL_S = 0.2
 """So long without a turn of the loop is a stall."""
@@ -25,11 +28,12 @@ log = logging.getLogger(__name__)
 
 
 @contextlib.asynccontextmanager
-async def guarded(stop_past_loop: Callable[[], None], stalled: Callable[[], None]) -> AsyncIterator[None]:
+async def guarded(stop_past_loop: Callable[[int], None], stalled: Callable[[], None]) -> AsyncIterator[None]:
     """Guard the running loop for as long as the block lasts.
 
     Args:
-        stop_past_loop: puts the stop on every wire; called in the guard's thread, once for each stall.
+        stop_past_loop: puts the stop on every wire; called in the guard's thread, every :data:`PAST_LOOP_S` until the
+            loop turns again, and told how often it was called before in this stall.
         stalled: called on the loop, as soon as it turns again, so that everybody learns of the stop.
     """
     guard = _Guard(stop_past_loop)
@@ -49,7 +53,7 @@ async def guarded(stop_past_loop: Callable[[], None], stalled: Callable[[], None
 
 
 class _Guard:
-    def __init__(self, stop_past_loop: Callable[[], None]) -> None:
+    def __init__(self, stop_past_loop: Callable[[int], None]) -> None:
         self._stop_past_loop = stop_past_loop
         self._loop_thread = threading.get_ident()
         self._stuck_in = ""
@@ -75,11 +79,18 @@ class _Guard:
         """Wait for one beat after the other; stop the robot when one is late."""
         while not self._is_ending:
             if not self._beaten.wait(STALL_S):
-                self._stop_past_loop()
+                self._stop_past_loop(0)
                 self._stuck_in = self._where()
                 self._fired.set()
-                self._beaten.wait()
+                self._go_on_stopping()
             self._beaten.clear()
+
+    def _go_on_stopping(self) -> None:
+        """Say the stop until the loop turns, which then sees whether it was obeyed: from here nobody can."""
+        for before in count(1):
+            if self._beaten.wait(PAST_LOOP_S):
+                return
+            self._stop_past_loop(before)
 
     def _where(self) -> str:
         """Return where the loop's thread is: who reads the log wants to know what held it up."""

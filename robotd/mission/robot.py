@@ -36,10 +36,10 @@ class Robot:
         """Latched faults as ``device: fault``."""
         return tuple(f"{device.name}: {fault}" for device in self.devices for fault in device.status.faults)
 
-    def stop_past_loop(self) -> None:
-        """Put stop on every wire from any thread, while the event loop is stuck."""
+    def stop_past_loop(self, before: int = 0) -> None:
+        """Put stop on every wire from any thread, while the event loop is stuck; see :class:`Device`."""
         for device in self.devices:
-            device.stop_past_loop()
+            device.stop_past_loop(before)
 
     def stop_now(self) -> None:
         """Put stop on every wire, at once."""

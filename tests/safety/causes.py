@@ -82,7 +82,7 @@ async def loop_stall(rig: Rig, trials: int) -> AsyncIterator[float]:
         for _ in range(trials):
             await armed(client)
             rig.expect_stops()
-            os.kill(daemon.pid, signal.SIGUSR1)
+            os.kill(daemon.pid, signal.SIGRTMIN)
             stalled_ns = int(await daemon.stdout.readline())
             yield ms_since(stalled_ns + round(STALL_S * NS_PER_S), await rig.stopped_ns())
 

@@ -1,4 +1,4 @@
-"""The daemon, with one thing more: on SIGUSR1 its event loop stands still, and says since when on standard output."""
+"""The daemon, with one thing more: on SIGRTMIN its event loop stands still, and says since when on standard output."""
 
 import asyncio
 import signal
@@ -21,7 +21,7 @@ def _stand_still() -> None:
 
 
 async def _main() -> None:
-    asyncio.get_running_loop().add_signal_handler(signal.SIGUSR1, _stand_still)
+    asyncio.get_running_loop().add_signal_handler(signal.SIGRTMIN, _stand_still)
     await run(load(Path(sys.argv[1])))
 
 

@@ -9,8 +9,9 @@ from firmware_proto.schema import Message
 from robotd.core.broadcast import Broadcast
 from robotd.core.errors import DeviceError, TransportError
 from robotd.hardware.devices.credible import IMPLAUSIBLE, Times
-from robotd.hardware.devices.device import DeviceStatus, LinkState
+from robotd.hardware.devices.device import PAST_LOOP_EVERY, DeviceStatus, LinkState
 from robotd.hardware.devices.health import Health
+from robotd.hardware.devices.rest import Rest
 from robotd.hardware.devices.settings import PortSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.handshake import Terms
@@ -25,6 +26,8 @@ class BoardDevice:
     """One of our boards, as a device: a subclass adds what it measures and what it moves."""
 
     KIND: ClassVar[BoardKind]
+    REPORTED: ClassVar[frozenset[str]] = frozenset({"armed"})
+    """What its telemetry tells that is over when it rests."""
 
     def __init__(self, settings: PortSettings, wiring: Wiring) -> None:
         """Make the device; nothing happens before :meth:`run`."""
@@ -36,6 +39,7 @@ class BoardDevice:
         self._is_distrusted = False
         """Whether it said what cannot be, and nobody has cleared that."""
         self._times = Times(self.name)
+        self._rest = Rest()
         self._health = Health(self.name, self._counted)
         self._link = Link(
             device=self.name,
@@ -90,11 +94,11 @@ class BoardDevice:
         if self._session is not None:
             self._session.stop_now()
 
-    def stop_past_loop(self) -> None:
-        """Put the stop on the wire from any thread, while the loop is stuck; never blocks, never raises."""
+    def stop_past_loop(self, before: int = 0) -> None:
+        """Put the stop on the wire from any thread, while the loop is stuck; see :class:`Device`."""
         self._may_move = False
         session = self._session
-        if session is not None:
+        if session is not None and before % PAST_LOOP_EVERY == 0:
             session.stop_past_loop()
 
     # What the link tells
@@ -122,10 +126,16 @@ class BoardDevice:
         """Take a message that nobody asked for; a subclass takes its own first."""
         if isinstance(message, BoardStatus):
             is_armed = message.state == BoardState.ARMED
+            self._rest.told("armed", goes_on=is_armed)
             if is_armed and not self._may_move:
                 self.stop_now()
             ours = (IMPLAUSIBLE,) if self._is_distrusted else ()
             self._health.change(armed=is_armed, faults=(*fault_names(message.faults), *ours))
+
+    async def come_to_rest(self) -> None:
+        """Return once the board reported, since this was asked, that it is not armed and moves nothing."""
+        if self._session is not None:  # else there was no board yet that could have been armed
+            await self._rest.seen(self.REPORTED)
 
     # What a subclass uses
 

@@ -27,6 +27,7 @@ class BoardDrive(BoardDevice):
     """Implements :class:`robotd.hardware.devices.drive.Drive`."""
 
     KIND: ClassVar[BoardKind] = BoardKind.DRIVE
+    REPORTED: ClassVar[frozenset[str]] = frozenset({"armed", "moving"})
 
     def __init__(self, settings: DriveSettings, wiring: Wiring) -> None:
         """Make the device; its ``odom`` frame begins where the base is first seen."""
@@ -59,6 +60,7 @@ class BoardDrive(BoardDevice):
         """Take odometry, battery, bumpers, and what every board tells."""
         with contextlib.suppress(DeviceError), self._judging():
             if isinstance(message, OdometryReport):
+                self._rest.told("moving", goes_on=bool(message.speed_mmps or message.turn_mradps))
                 self._moved(message)
             elif isinstance(message, DriveReport):
                 self._readouts.publish(self._read_out(message))

@@ -33,6 +33,7 @@ class BoardPanTilt(BoardDevice):
     """Implements :class:`robotd.hardware.devices.pantilt.PanTilt`."""
 
     KIND: ClassVar[BoardKind] = BoardKind.PANTILT
+    REPORTED: ClassVar[frozenset[str]] = frozenset({"armed", "moving"})
 
     def __init__(self, settings: PanTiltSettings, wiring: Wiring) -> None:
         """Make the device; angles outside it have the zeros of its mount applied."""
@@ -106,6 +107,7 @@ class BoardPanTilt(BoardDevice):
     def telemetry(self, message: Message) -> None:
         """Take where the head points, and what every board tells."""
         if isinstance(message, proto.AimReport):
+            self._rest.told("moving", goes_on=message.moving == proto.Motion.TURNING)
             self._reports.publish(message)
         else:
             super().telemetry(message)

@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterator
 from typing import ClassVar, Generic, NoReturn, TypeVar
 
 from robotd.core.broadcast import Broadcast
-from robotd.core.errors import DeviceError, TransportError
+from robotd.core.errors import DeviceError, RemoteProtocolError, TransportError
 from robotd.hardware.devices.credible import IMPLAUSIBLE
-from robotd.hardware.devices.device import DeviceStatus, LinkState
+from robotd.hardware.devices.device import PAST_LOOP_EVERY, DeviceStatus, LinkState
 from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, DialogueCounters, Heard, Wire
 from robotd.hardware.link.keep_up import keep_up
+from robotd.hardware.link.rest import seen_at_rest
 from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.link.together import together
 
@@ -40,6 +41,8 @@ class BoughtDevice(ABC, Generic[M]):
         self._quiet_s = quiet_s
         self._counters = DialogueCounters()
         self._dialogue: Dialogue[M] | None = None
+        self._ending: Dialogue[M] | None = None
+        """The conversation that is over but for the stop, while it is waited for the device to rest."""
         self._may_move = False
         """Whether it was armed, and no stop since."""
         self._stops = 0
@@ -109,12 +112,13 @@ class BoughtDevice(ABC, Generic[M]):
             self._dialogue.stop_now(self.STOP)
         self._health.change(armed=False)
 
-    def stop_past_loop(self) -> None:
-        """Put the stop on the wire from any thread, while the loop is stuck; never blocks, never raises."""
+    def stop_past_loop(self, before: int = 0) -> None:
+        """Put the stop on the wire from any thread, while the loop is stuck; see :class:`Device`."""
         self._may_move = False
-        dialogue = self._dialogue
-        if dialogue is not None:
-            dialogue.stop_past_loop(self.STOP)
+        dialogue = self._dialogue or self._ending
+        data = self._past_loop(before)
+        if dialogue is not None and data:
+            dialogue.stop_past_loop(data)
 
     # What the line tells
 
@@ -132,9 +136,16 @@ class BoughtDevice(ABC, Generic[M]):
                 found = self._health.detail  # what it said of itself when it was greeted
                 self._health.change(link=LinkState.READY, armed=False, detail="" if found == _WAITING else found)
                 await together(self._attend(dialogue), dialogue.until_lost())
+            except BaseException as error:  # whatever ended it, nothing must go on moving
+                self._dialogue, self._ending = None, dialogue
+                dialogue.stop_now(self.STOP)
+                if isinstance(error, Exception):
+                    self.line_lost(str(error))  # the others are stopped now, not when this one was seen to rest
+                if not isinstance(error, RemoteProtocolError):  # a stranger is told no more
+                    await seen_at_rest(self._come_to_rest(dialogue))
+                raise
             finally:
-                self._dialogue = None
-                dialogue.stop_now(self.STOP)  # whatever ended it, nothing must go on moving
+                self._ending = None
 
     def line_lost(self, reason: str) -> None:
         """Note that there is no device, and why; latched faults stay latched, for the device does not keep them."""
@@ -165,6 +176,16 @@ class BoughtDevice(ABC, Generic[M]):
 
     async def _acknowledge(self, dialogue: Dialogue[M]) -> None:
         """Tell it that its faults were seen; nothing to do for most."""
+
+    async def _come_to_rest(self, dialogue: Dialogue[M]) -> None:
+        """Say the stop again, as the dialect needs it, until the device reports that it rests.
+
+        One that moves nothing, or cannot say whether it moves, is not waited for.
+        """
+
+    def _past_loop(self, before: int) -> bytes:
+        """Return what is next of the stop that a thread says, ``before`` pieces after it began; empty if nothing is."""
+        return self.STOP if before % PAST_LOOP_EVERY == 0 else b""
 
     # What a subclass uses
 

@@ -6,6 +6,11 @@ from typing import Protocol
 
 from robotd.core.broadcast import Broadcast
 
+PAST_LOOP_S = 0.015
+"""No device needs more time between two orders."""
+PAST_LOOP_EVERY = 8
+"""Most devices are told again a tenth of a second later: a slow line must not fill up with stops."""
+
 
 class LinkState(enum.StrEnum):
     """Whether there is a device to talk to. A missing device is a state, not an error."""
@@ -66,8 +71,12 @@ class Device(Protocol):
         Nothing may move until the next :meth:`arm`: should the stop be lost, the device says it again.
         """
 
-    def stop_past_loop(self) -> None:
+    def stop_past_loop(self, before: int = 0) -> None:
         """Put the stop on the wire from any thread, while the event loop is stuck; never blocks, never raises.
+
+        Called again and again, every :data:`PAST_LOOP_S`, for as long as the loop is stuck, as nobody can see whether
+        it was obeyed; ``before`` counts how often in this stall. The first call puts down the whole stop, later ones
+        what the dialect can do with.
 
         The device and its callers learn of it by a :meth:`stop_now` as soon as the loop turns again.
         """

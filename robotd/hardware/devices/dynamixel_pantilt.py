@@ -141,6 +141,17 @@ class DynamixelPanTilt(BoughtDevice[Message]):
                     await self._read(dialogue, servo, dynamixel.PRESENT_POSITION, 4)
             await dialogue.until_idle(_IDLE_POLL_S)
 
+    async def _come_to_rest(self, dialogue: Dialogue[Message]) -> None:
+        """Nothing acknowledges what is told to both servos at once: say it until both let go and rest."""
+        while True:
+            goes_on = False
+            for servo in (self._pan, self._tilt):
+                for register in (dynamixel.TORQUE_ENABLE, dynamixel.MOVING):
+                    goes_on |= bool((await self._read(dialogue, servo, register, 1))[0])
+            if not goes_on:
+                return
+            dialogue.post(self.STOP)
+
     def _report(self, heard: Heard[Message]) -> None:
         """Let go by echoes and late answers."""
 

@@ -74,7 +74,7 @@ class FixedPanTilt:
         self._is_armed = False
         self._health.change(armed=False)
 
-    def stop_past_loop(self) -> None:
+    def stop_past_loop(self, before: int = 0) -> None:
         """Allow no aiming; nothing moves."""
         self._is_armed = False
 

@@ -25,6 +25,7 @@ RESET_S = 40.0
 """A reset takes up to 30 s."""
 _ANSWER_S = 0.5
 _TRIES = 3
+_HALT_S = 0.1
 _IDLE_POLL_S = 1.0
 _FINEST_ARC_SECONDS, _COARSEST_ARC_SECONDS = 0.1, 3600.0
 _ARC_SECONDS_PER_RAD = 3600.0 * 180.0 / math.pi
@@ -138,6 +139,21 @@ class PtuPanTilt(BoughtDevice[Message]):
                 await dialogue.ask(
                     command("PP"), is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
                 )
+
+    async def _come_to_rest(self, dialogue: Dialogue[Message]) -> None:
+        """Halt it until it says so and is twice where it was; while it resets it does not listen."""
+        before: tuple[int | None, int | None] | None = None
+        while not self._is_resetting:
+            at = [
+                (
+                    await dialogue.ask(data, is_a(Done, Refused), timeout_s=_HALT_S, tries=_TRIES, despite_stops=True)
+                ).message
+                for data in (STOP_BYTES, command("PP"), command("TP"))
+            ]
+            here = _whole(at[1]), _whole(at[2])
+            if isinstance(at[0], Done) and here == before:
+                return
+            before = here
 
     async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
         """Reset, if it does not know where it points: both axes turn to their stops."""

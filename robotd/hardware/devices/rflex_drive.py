@@ -10,6 +10,8 @@ emergency stop that a person can reach, or a relay that drops with the host.
 import asyncio
 import contextlib
 import logging
+from collections.abc import Iterator
+from itertools import cycle, islice
 from typing import ClassVar, NoReturn
 
 from robotd.core.broadcast import Broadcast
@@ -49,8 +51,10 @@ _ACCELERATIONS = (0.5, 1.5)
 _TORQUES = (30_000, 35_000)
 _TRANSLATION, _ROTATION = 0, 1
 _US_PER_MS = 1000
-_SPACING_S = 0.01
-"""What comes sooner after another order may be dropped."""
+_SPACING_S = 0.012
+"""What comes less than 10 ms after another order may be dropped; clocks differ, and lines are late."""
+_HALTS_LEAST = 4
+"""Both axes twice: each heard alone, whatever came just before."""
 _QUIET_S = 0.005
 """It reports on and on, so it is never quiet for long; and an answer that comes late is a voltage all the same."""
 _SILENCE_S = 1.0
@@ -71,7 +75,7 @@ class RflexDrive(BoughtDevice[Message]):
 
     NAME: ClassVar[str] = "drive"
     STOP = b"".join(_HALT)
-    """Of what comes in a burst only the first may be heard, so both are said again, with pauses."""
+    """Of a burst only the first may be heard, so both are said again, with pauses, until they are obeyed."""
 
     def __init__(self, settings: DriveSettings, wiring: Wiring) -> None:
         """Make the device; its ``odom`` frame begins where the base is first seen."""
@@ -85,7 +89,11 @@ class RflexDrive(BoughtDevice[Message]):
         self._wanted = STANDSTILL
         self._deadline_ns = 0
         self._new_set_point = asyncio.Event()
-        self._is_halting = False
+        self._standing: set[int] = set()
+        """The axes that were reported to stand since a halt of each must have been heard."""
+        self._calm = asyncio.Event()
+        """Set unless a stop is being said."""
+        self._calm.set()
 
     @property
     def odometry(self) -> Broadcast[Odometry]:
@@ -106,7 +114,7 @@ class RflexDrive(BoughtDevice[Message]):
     def stop_now(self) -> None:
         """Put the preformatted stop on the wire; see :meth:`BoughtDevice.stop_now`."""
         self._wanted = STANDSTILL
-        self._is_halting = True
+        self._calm.clear()
         self._new_set_point.set()
         super().stop_now()
 
@@ -128,16 +136,15 @@ class RflexDrive(BoughtDevice[Message]):
         sent = STANDSTILL
         while True:
             self._new_set_point.clear()
-            if self._is_halting:
-                self._is_halting, sent = False, STANDSTILL
-                for order in reversed(_HALT):
-                    await asyncio.sleep(_SPACING_S)
-                    dialogue.post(order)
+            if not self._calm.is_set():
+                sent = STANDSTILL
+                await self._come_to_rest(dialogue)
+                self._calm.set()
             twist = self._wanted
             if self._may_move and (twist != sent or not twist.is_zero):
                 sent = twist
                 for axis, counts_per_s in enumerate(self._counts(twist)):
-                    if self._is_halting or not self._may_move:
+                    if not (self._calm.is_set() and self._may_move):
                         break  # stopped since the axis before: nothing may follow a stop
                     dialogue.post(self._run(axis, counts_per_s))
                     await asyncio.sleep(_SPACING_S)
@@ -151,8 +158,24 @@ class RflexDrive(BoughtDevice[Message]):
                 sent = STANDSTILL
                 self._latch("deadman", "no set-point came in time")
 
+    async def _come_to_rest(self, dialogue: Dialogue[Message]) -> None:
+        """Say the halts one at a time, no quicker than they are heard, until both axes were reported to stand."""
+        for order in _halts(_HALTS_LEAST):
+            await asyncio.sleep(_SPACING_S)
+            dialogue.post(order)
+        self._standing.clear()
+        for order in _halts():
+            await asyncio.sleep(_SPACING_S)
+            if self._standing >= {_TRANSLATION, _ROTATION} or self._may_move:  # armed anew: it has been told
+                return
+            dialogue.post(order)
+
+    def _past_loop(self, before: int) -> bytes:
+        return self.STOP if before == 0 else _HALT[before % len(_HALT)]
+
     async def _watch_battery(self, dialogue: Dialogue[Message]) -> NoReturn:
         while True:
+            await self._calm.wait()  # a question in between is lost, or the halt is
             heard = await dialogue.ask(
                 STATUS, is_a(SystemStatus), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
             )
@@ -179,6 +202,10 @@ class RflexDrive(BoughtDevice[Message]):
     def _report(self, heard: Heard[Message]) -> None:
         message = heard.message
         if isinstance(message, AxisReport):
+            if message.speed:
+                self._standing.discard(message.axis)
+            else:
+                self._standing.add(message.axis)
             with contextlib.suppress(DeviceError), self._judging():
                 self._moved(message, heard.time_ns)
         elif isinstance(message, Switches) and self._dialogue is not None and _is_pressed(message):
@@ -197,8 +224,13 @@ class RflexDrive(BoughtDevice[Message]):
         check_twist(self.NAME, twist)
         in_odom = self._odometer.update(self.sessions, self._translated.position, report.position, time_ns)
         self._odometry.publish(Odometry(time_ns, in_odom, twist))
-        if not self._may_move and not twist.is_zero:
-            self.stop_now()  # a stop can be lost like any order
+        if not self._may_move and not twist.is_zero and self._calm.is_set():
+            self.stop_now()  # it moves though nobody may let it
+
+
+def _halts(count: int | None = None) -> Iterator[bytes]:
+    """Return the halts of the axes in turn, that of the rotation first: in a burst it is the one not heard."""
+    return islice(cycle(reversed(_HALT)), count)
 
 
 def _is_pressed(switches: Switches) -> bool:

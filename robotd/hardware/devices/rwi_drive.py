@@ -148,6 +148,18 @@ class RwiDrive(BoughtDevice[Message]):
                 self._read_out(await self._ask(dialogue, "BV"))
             polls += 1
 
+    async def _come_to_rest(self, dialogue: Dialogue[Message]) -> None:
+        """Say the stop before each look at the wheels, until they were twice where they were."""
+        before: tuple[int, int] | None = None
+        while True:
+            dialogue.post(STOP_BYTES)
+            translate = await self._ask(dialogue, "TW")
+            rotate = await self._ask(dialogue, "RW")
+            counts = translate.message.value, rotate.message.value
+            if counts == before:
+                return
+            before = counts
+
     def _say_stop_again(self, twist: Twist2) -> None:
         """A stop can be lost like any command: a base that moves though nobody may let it is told again."""
         if not self._may_move and not twist.is_zero:

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
 from firmware_proto.schema import Message
+from robotd.core.errors import RobotdError
 from robotd.hardware.link.handshake import Terms, shake_hands
 from robotd.hardware.link.keep_up import keep_up
+from robotd.hardware.link.rest import seen_at_rest
 from robotd.hardware.link.session import LinkCounters, Session
 from robotd.hardware.link.tap import Tap
 from robotd.hardware.link.tapped import TappedLine
@@ -30,6 +32,9 @@ class LinkListener(Protocol):
 
     def telemetry(self, message: Message) -> None:
         """Take a message that nobody asked for."""
+
+    async def come_to_rest(self) -> None:
+        """Return once the board reported, since this was asked, that it is not armed and moves nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,5 +88,10 @@ class _Talk:
                 link.counters.sessions += 1
                 self.listener.link_ready(session)
                 await session.serve()
-            finally:
-                session.stop_now()  # whatever ended it, nothing must go on moving
+            except BaseException as error:  # whatever ended it, nothing must go on moving
+                session.stop_now()
+                if not isinstance(error, Exception):  # else it is for the board's deadman
+                    await seen_at_rest(self.listener.come_to_rest())
+                elif not isinstance(error, RobotdError):  # a mistake of ours: the others are stopped now
+                    self.listener.link_lost(repr(error))
+                raise

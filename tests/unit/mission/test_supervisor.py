@@ -58,7 +58,7 @@ class Scripted:
     async def clear_faults(self) -> None:
         self.change(armed=False, faults=self.faults_left)
 
-    def stop_past_loop(self) -> None:
+    def stop_past_loop(self, before: int = 0) -> None:
         """No thread is in these tests."""
 
     def stop_now(self) -> None:

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import pytest
 
+from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Twist2
-from robotd.hardware.devices.device import LinkState
+from robotd.hardware.devices.device import PAST_LOOP_S, LinkState
 from robotd.hardware.devices.rflex_drive import NO_WATCHDOG, RflexDrive
 from robotd.hardware.devices.settings import DriveSettings
 from robotd.hardware.devices.wiring import Wiring
@@ -37,6 +38,7 @@ class Base:
     robot: SimulatedRobot
     emulator: RflexEmulator
     lines: list[Transport]
+    running: "asyncio.Task[None]"
 
     @property
     def velocity(self) -> tuple[float, float]:
@@ -73,7 +75,7 @@ async def base() -> AsyncIterator[Base]:
             while device.status.link is not LinkState.READY:
                 await changes.get()
         await device.arm()
-        yield Base(device, robot, emulator, lines)
+        yield Base(device, robot, emulator, lines, running)
         running.cancel()
         await asyncio.wait({running})
 
@@ -100,6 +102,71 @@ async def test_a_stop_halts_both_axes_though_the_controller_drops_bursts() -> No
         assert b.velocity == (0.0, 0.0)
         with pytest.raises(DeviceError, match="arm first"):
             b.device.set_velocity(Twist2(0.1, 0.0), TTL_S)
+
+
+PHASES_S = [0.0, 0.003, 0.007, 0.011, 0.017, 0.023, 0.029, 0.037]
+"""Of the end, between one set-point and the next: some fall less than 10 ms after an order."""
+
+
+@pytest.mark.parametrize("twist", [Twist2(0.3, 0.0), Twist2(0.0, 0.5), Twist2(0.3, 0.5)], ids=str)
+@pytest.mark.parametrize("phase_s", PHASES_S)
+async def test_whatever_ends_it_in_motion_it_was_halted_before_the_line_is_given_up(
+    twist: Twist2, phase_s: float
+) -> None:
+    async with base() as b:
+        await b.drive(twist, 1.0)
+        await asyncio.sleep(phase_s)
+        b.running.cancel()
+        await asyncio.wait({b.running})
+        assert b.emulator._speeds == [0.0, 0.0]
+        await asyncio.sleep(1.0)
+        assert b.velocity == (0.0, 0.0)
+
+
+async def test_the_end_of_a_base_at_rest_is_not_waited_for_longer_than_it_takes_to_see_it() -> None:
+    async with base() as b:
+        began_ns = now_ns()
+        b.running.cancel()
+        await asyncio.wait({b.running})
+        assert now_ns() - began_ns < 0.11e9
+
+
+async def test_who_hastens_the_end_has_its_way() -> None:
+    async with base() as b:
+        await b.drive(Twist2(0.3, 0.5), 1.0)
+        began_ns = now_ns()
+        b.running.cancel()
+        await asyncio.sleep(0.001)
+        b.running.cancel()
+        await asyncio.wait({b.running})
+        assert now_ns() - began_ns < 0.002e9
+
+
+@pytest.mark.parametrize("phase_s", PHASES_S)
+async def test_a_stop_right_after_a_set_point_is_heard_though_it_is_part_of_a_burst(phase_s: float) -> None:
+    async with base() as b:
+        await b.drive(Twist2(0.3, 0.5), 1.0)
+        b.device.set_velocity(Twist2(0.2, 0.3), TTL_S)
+        await asyncio.sleep(phase_s)
+        b.device.stop_now()
+        await asyncio.sleep(0.08)
+        assert b.emulator._speeds == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("phase_s", PHASES_S)
+async def test_what_a_thread_writes_while_the_loop_is_stuck_halts_both_axes(
+    phase_s: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with base() as b:
+        await b.drive(Twist2(0.3, 0.5), 1.0)
+        await asyncio.sleep(phase_s)
+        clock = b.robot.clocks["drive"]
+        now_us = clock.board_us(now_ns() // 1000) + 200_000  # from here on the loop stands still
+        monkeypatch.setattr(b.lines[-1], "write_past_loop", lambda data: b.emulator.receive(data, now_us))
+        for before in range(4):
+            b.device.stop_past_loop(before)
+            now_us += round(PAST_LOOP_S * 1e6)
+        assert b.emulator._speeds == [0.0, 0.0]
 
 
 async def test_a_set_point_ends_in_its_time_by_our_own_timer_and_is_a_fault() -> None:

@@ -71,6 +71,9 @@ class Diary:
         self.session = session
         self.entries.append(("ready", now_ns()))
 
+    async def come_to_rest(self) -> None:
+        self.entries.append(("rest asked", now_ns()))
+
     def link_lost(self, reason: str) -> None:
         self.session = None
         self.reasons.append(reason)
