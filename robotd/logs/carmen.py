@@ -26,9 +26,12 @@ from robotd.logs.mount import mount_of
 from robotd.logs.no_returns import code_from_m, named_limit_m
 from robotd.logs.numbers import DamagedLineError
 from robotd.logs.odometry import OdometryTrack, pose_between
-from robotd.logs.provenance import contradict_each_other, lie_on_odometry
+from robotd.logs.provenance import Fit, fit_of, lie_on_odometry
 from robotd.logs.records import KINDS, RAW_KINDS, LaserRecord, Odom, Parameter, parse_line
 from robotd.logs.scan import PoseSource, Problem, RecordedLog, Scan
+
+_NEAREST_M = 0.02
+"""No scanner measures less; Hokuyo's write what went wrong as so many millimetres."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -190,7 +193,7 @@ def _scan(one: _Placed, robot: Pose2, frame: _Frame, bearings: Bearings | None, 
         odometry=one.chained @ frame.mount.inverse() if frame.is_corrected or told is None else told,
         angles_rad=angles_rad,
         ranges_m=record.ranges_m,
-        hit=(record.ranges_m > 0.0) & ~missed & np.isfinite(record.ranges_m),
+        hit=(record.ranges_m >= _NEAREST_M) & ~missed & np.isfinite(record.ranges_m),
         missed=missed,
     )
 
@@ -202,12 +205,15 @@ def _provenance(
         return PoseSource.RAW_ODOMETRY, f"{placed[0].record.kind} has none: they are those of the ODOM lines around it"
     if frame.is_corrected:
         return PoseSource.CORRECTED, "an ODOM line after each scan copies its pose, as GMapping does"
+    fit = fit_of(scans)
+    if fit is Fit.GOOD:
+        return PoseSource.LOG, "where the robot came by again, its scans fit each other"
+    if fit is Fit.BAD:
+        return PoseSource.RAW_ODOMETRY, "where the robot came by again, its scans do not fit each other"
     robots = [scan.robot_pose for scan in scans]
     places = [one.odom_lines for one in placed]
     if lie_on_odometry(robots, places, [one.record.time_s for one in placed], reader.track.lines):
         return PoseSource.RAW_ODOMETRY, "they are those of the ODOM lines around them"
-    if contradict_each_other(scans):
-        return PoseSource.RAW_ODOMETRY, "where the robot came by again, its scans do not fit each other"
     return PoseSource.LOG, ""
 
 

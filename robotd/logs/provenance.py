@@ -1,10 +1,11 @@
 """Are the poses of a log those of a mapping program, or raw odometry in their place?
 
-Nothing in such a log says so. Three things show it: GMapping puts a copy of the pose behind each scan; raw poses lie
-on the ODOM lines around them; and where the robot comes by again after a long way, scans at corrected poses fit
-each other, while at raw ones walls stand where the other scan saw through.
+Nothing in such a log says so. Three things show it: GMapping puts a copy of the pose behind each scan; where the robot
+comes by again after a long way, scans at corrected poses fit each other, while at raw ones walls stand where the other
+scan saw through; and raw poses lie on the ODOM lines around them.
 """
 
+import enum
 import math
 from collections.abc import Iterator, Sequence
 
@@ -30,7 +31,8 @@ _REACH_M = 12.0
 _POINTS_MIN = 20
 _PAIRS_MIN = 12
 _PAIRS_MAX = 400
-_FITTING_SHARE = 0.5
+_GOOD_SHARE = 0.9
+_BAD_SHARE = 0.5
 
 
 def lie_on_odometry(
@@ -62,10 +64,23 @@ def _is_near(pose: Pose2, lines: Sequence[Odom], place: int, time_s: float | Non
     )
 
 
-def contradict_each_other(scans: Sequence[Scan]) -> bool:
-    """Whether scans of the same place, taken before and after a long way, do not fit at the poses that they have."""
+class Fit(enum.Enum):
+    """Whether scans of the same place, taken before and after a long way, fit at the poses that they have."""
+
+    UNKNOWN = enum.auto()
+    """The robot hardly came by again, or it is neither the one nor the other."""
+    GOOD = enum.auto()
+    """As no odometry is after such a way."""
+    BAD = enum.auto()
+
+
+def fit_of(scans: Sequence[Scan]) -> Fit:
+    """Return how the scans of a log fit each other."""
     shares = fitting_shares(scans)
-    return len(shares) >= _PAIRS_MIN and float(np.median(shares)) < _FITTING_SHARE
+    if len(shares) < _PAIRS_MIN:
+        return Fit.UNKNOWN
+    share = float(np.median(shares))
+    return Fit.GOOD if share >= _GOOD_SHARE else Fit.BAD if share < _BAD_SHARE else Fit.UNKNOWN
 
 
 def fitting_shares(scans: Sequence[Scan]) -> list[float]:

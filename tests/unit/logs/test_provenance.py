@@ -64,6 +64,14 @@ def test_poses_that_lie_on_the_odometry_are_raw() -> None:
     log = parse_carmen(log_lines(poses, believed, believed))
     assert log.poses is PoseSource.RAW_ODOMETRY
     assert "ODOM lines around them" in log.why
+    short = parse_carmen(log_lines(poses[:12], believed[:12], believed[:12]))
+    assert short.poses is PoseSource.RAW_ODOMETRY
+    assert "ODOM lines around them" in short.why
+
+
+def test_corrected_poses_of_a_program_that_corrects_the_odometry_lines_too_are_believed() -> None:
+    poses = true_poses()
+    assert parse_carmen(log_lines(poses, poses, poses)).poses is PoseSource.LOG
 
 
 def test_poses_at_which_the_scans_do_not_fit_are_raw_even_if_no_odometry_is_there_to_tell() -> None:

@@ -51,7 +51,7 @@ def test_infinity_is_a_miss(word: str) -> None:
     assert all(scan.missed[7] and not scan.hit[7] and scan.missed.sum() == 1 for scan in log.scans)
 
 
-@pytest.mark.parametrize("word", ["0", "-1", "-0.0"])
+@pytest.mark.parametrize("word", ["0", "-1", "-0.0", "0.006", "0.019"])
 def test_zero_and_less_is_nothing_measured(word: str) -> None:
     log = parse_carmen([with_range(line, 7, word) for line in flaser()])
     assert not any(scan.hit[7] or scan.missed[7] for scan in log.scans)
