@@ -10,20 +10,23 @@ from pathlib import Path
 from robotd.core.errors import TransportError
 
 _NAME = "robotd.lock"
+_MODE = 0o600
 
 
 @contextmanager
 def lock_directory(directory: Path) -> Iterator[None]:
     """Hold the runtime directory, made if need be, for the length of a ``with`` block.
 
-    The lock is the kernel's and ends with the process, however it ends; the file stays behind.
+    The lock is the kernel's and ends with the process, however it ends; the file stays behind. Whoever may open the
+    file, if only to read it, may lock it and keep the daemon out: so nobody but the daemon's user may.
 
     Raises:
         TransportError: another process holds it, or the directory cannot be had.
     """
     try:
         directory.mkdir(mode=0o750, parents=True, exist_ok=True)
-        descriptor = os.open(directory / _NAME, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o640)
+        descriptor = os.open(directory / _NAME, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, _MODE)
+        os.fchmod(descriptor, _MODE)  # one of an earlier version may be open to the group
     except OSError as error:
         raise TransportError(f"runtime directory {directory}: {error.strerror}") from error
     try:

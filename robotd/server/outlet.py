@@ -2,26 +2,33 @@
 
 import asyncio
 import contextlib
+import logging
 from typing import NoReturn
 
 import zmq
 import zmq.asyncio
 
+from robotd.core.log_limit import LogLimit
 from robotd.server.topics import EVENTS, Published, Topic, encode_frame, to_wire
 
 _JOIN = b"\x01"
 BETWEEN_GREETINGS_S = 0.02
 _MOST_JOINS = 1000
+_AFTER_ERROR_S = 0.1
+"""A socket that fails again and again must not keep the loop busy."""
+
+log = logging.getLogger(__name__)
 
 
 class Outlet:
-    """Publishes single frames and hears who subscribes."""
+    """Publishes single frames and hears who subscribes; no message that goes wrong ends the daemon."""
 
     def __init__(self, socket: zmq.asyncio.Socket, session: str) -> None:
         self._socket = socket
         self._session = session
         self._seq: dict[Topic, int] = {}
         self._last: dict[Topic, bytes] = {}
+        self._complaints = LogLimit()
 
     async def send(self, topic: Topic, fields: dict[str, object]) -> None:
         """Publish; a reader that is too slow misses it and sees the gap. Never waits."""
@@ -39,7 +46,7 @@ class Outlet:
 
     async def _send(self, topic: Topic, frame: bytes) -> None:
         self._last[topic] = frame
-        await self._socket.send(frame)
+        await self._put(frame)
 
     async def greet(self) -> NoReturn:
         """Tell whoever subscribes the last message of each topic, until cancelled.
@@ -50,18 +57,34 @@ class Outlet:
         while True:
             for topic in sorted(await self.joined(), key=lambda topic: topic is Topic.STATUS):
                 if topic in self._last:
-                    await self._socket.send(self._last[topic])
+                    await self._put(self._last[topic])
             await asyncio.sleep(BETWEEN_GREETINGS_S)
 
     async def joined(self) -> set[Topic]:
         """Wait until somebody subscribes, and return to which topics."""
         topics: set[Topic] = set()
         while not topics:
-            topics |= _topics_of(await self._socket.recv())
-        with contextlib.suppress(zmq.Again):
+            try:
+                topics |= _topics_of(await self._socket.recv())
+            except zmq.ZMQError as error:
+                self._complain("a subscription could not be received", error)
+                await asyncio.sleep(_AFTER_ERROR_S)
+        with contextlib.suppress(zmq.ZMQError):  # none waits, or the next wait will tell
             for _ in range(_MOST_JOINS):
                 topics |= _topics_of(await self._socket.recv(zmq.NOBLOCK))
         return topics
+
+    async def _put(self, frame: bytes) -> None:
+        try:
+            await self._socket.send(frame)
+        except zmq.ZMQError as error:  # its readers see the gap
+            self._complain("a message could not be published", error)
+
+    def _complain(self, what: str, error: zmq.ZMQError) -> None:
+        if self._socket.closed:
+            raise error
+        if line := self._complaints.line(f"{what}: {error.strerror}"):
+            log.warning("%s", line)
 
 
 def _frame_of(event: Published, session: str, seq: int) -> bytes:

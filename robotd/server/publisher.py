@@ -1,10 +1,12 @@
 """Everything that happens, to whoever listens; maps on a socket of their own, so that they never crowd out a pose."""
 
 import asyncio
+import logging
 from typing import NoReturn
 
 from robotd.core.broadcast import Subscription
 from robotd.core.errors import RobotdError
+from robotd.core.log_limit import LogLimit
 from robotd.mission.events import Event, MapChanged
 from robotd.server.control import Control
 from robotd.server.decimation import Decimator
@@ -15,6 +17,8 @@ from robotd.server.topics import LogEntry, Published, Topic, to_wire
 
 DEPTH = 4096
 """How many events, or lines of the log, may wait for their turn."""
+
+log = logging.getLogger(__name__)
 
 
 class Publisher:
@@ -30,6 +34,7 @@ class Publisher:
         self._maps = maps
         self._routine_hz = routine_hz
         self._map_queue = MapQueue()
+        self._complaints = LogLimit()
 
     async def run(self) -> None:
         """Publish until cancelled."""
@@ -57,8 +62,15 @@ class Publisher:
             await self._publish(await lines.get())
 
     async def _publish(self, event: Published) -> None:
-        topic, fields = to_wire(event)
-        await self._state.send(topic, fields)
+        try:
+            topic, fields = to_wire(event)
+            await self._state.send(topic, fields)
+        except Exception as error:  # one event that has no form on the wire must not end those that have one
+            self._complain(event, error)
+
+    def _complain(self, event: Published, error: Exception) -> None:
+        if line := self._complaints.line(f"{type(event).__name__} was not published: {error!r}"):
+            log.error("%s", line)
 
     async def _greet_map_readers(self) -> NoReturn:
         while True:
@@ -71,7 +83,13 @@ class Publisher:
             change = await self._map_queue.get()
             change = self._whole() if change is None else change
             if change is not None:
-                await self._maps.send_large(change)
+                await self._publish_map(change)
+
+    async def _publish_map(self, change: MapChanged) -> None:
+        try:
+            await self._maps.send_large(change)
+        except Exception as error:  # no memory, no thread: the next one may have them
+            self._complain(change, error)
 
     def _whole(self) -> MapChanged | None:
         try:

@@ -8,25 +8,31 @@ from robotd.hardware.transport.descriptor import DescriptorTransport
 from robotd.hardware.transport.readiness import OnLoop
 
 _CONNECT_TIMEOUT_S = 5.0
+_MOST_ADDRESSES = 4
+"""Addresses of one name that are tried; they share the time."""
+_Address = tuple[str, int] | tuple[str, int, int, int] | tuple[int, bytes]
 _KERNEL_BUFFER_BYTES = 16 * 1024
 """Kept small, because what waits in the kernel cannot be overtaken by a stop."""
 
 
 async def open_tcp(host: str, port: int) -> DescriptorTransport:
-    """Connect.
+    """Connect to the first address of a name where somebody listens.
 
     Raises:
-        TransportError: nobody answers there within five seconds, or nobody listens.
+        TransportError: nobody does, at any of them; says of each why not.
     """
     name = f"tcp://{host}:{port}"
-    try:
-        async with asyncio.timeout(_CONNECT_TIMEOUT_S):
-            connection = await _connect(host, port)
-    except TimeoutError as error:
-        raise TransportError(f"{name}: no answer within {_CONNECT_TIMEOUT_S:g} s") from error
-    except OSError as error:
-        raise TransportError(f"{name}: {error.strerror}") from error
-    return tcp_transport(name, connection)
+    addresses = (await _look_up(name, host, port))[:_MOST_ADDRESSES]
+    reasons = []
+    for family, address in addresses:
+        try:
+            async with asyncio.timeout(_CONNECT_TIMEOUT_S / len(addresses)):
+                return tcp_transport(name, await _connect(family, address))
+        except TimeoutError:
+            reasons.append(f"no answer from {address[0]} within {_CONNECT_TIMEOUT_S / len(addresses):g} s")
+        except OSError as error:
+            reasons.append(f"{address[0]}: {error.strerror}")
+    raise TransportError(f"{name}: {'; '.join(reasons)}")
 
 
 def tcp_transport(name: str, connection: socket.socket) -> DescriptorTransport:
@@ -37,13 +43,24 @@ def tcp_transport(name: str, connection: socket.socket) -> DescriptorTransport:
     return DescriptorTransport(name, connection.fileno(), OnLoop(connection.fileno()), connection.close)
 
 
-async def _connect(host: str, port: int) -> socket.socket:
-    loop = asyncio.get_running_loop()
-    (family, kind, protocol, _, address), *_ = await loop.getaddrinfo(host, port, type=socket.SOCK_STREAM)
-    connection = socket.socket(family, kind, protocol)
+async def _look_up(name: str, host: str, port: int) -> list[tuple[int, _Address]]:
+    try:
+        async with asyncio.timeout(_CONNECT_TIMEOUT_S):
+            found = await asyncio.get_running_loop().getaddrinfo(host, port, type=socket.SOCK_STREAM)
+    except TimeoutError as error:
+        raise TransportError(f"{name}: the name was not found within {_CONNECT_TIMEOUT_S:g} s") from error
+    except OSError as error:
+        raise TransportError(f"{name}: {error.strerror}") from error
+    except UnicodeError as error:
+        raise TransportError(f"{name}: no name of a host: {error}") from error
+    return [(family, address) for family, *_, address in found]
+
+
+async def _connect(family: int, address: _Address) -> socket.socket:
+    connection = socket.socket(family, socket.SOCK_STREAM)
     connection.setblocking(False)
     try:
-        await loop.sock_connect(connection, address)
+        await asyncio.get_running_loop().sock_connect(connection, address)
     except BaseException:
         connection.close()
         raise

@@ -298,6 +298,43 @@ async def test_the_lock_of_a_killed_daemon_is_free_and_its_sockets_are_replaced(
     assert names_in(tmp_path) == ["robotd.lock"]
 
 
+READER = """
+import fcntl, os, sys
+os.setgroups([]); os.setgid(int(sys.argv[2])); os.setuid(65534)
+try:
+    fcntl.flock(os.open(sys.argv[1] + "/robotd.lock", os.O_RDONLY), fcntl.LOCK_SH)
+except PermissionError:
+    sys.exit(13)
+"""
+"""Holds the lock as a member of the daemon's group who may only read would."""
+
+
+@pytest.mark.parametrize("mode", [None, 0o640, 0o644])
+async def test_the_lock_is_for_the_daemons_user_alone(serving: Serving, tmp_path: Path, mode: int | None) -> None:
+    if mode is not None:
+        (tmp_path / "robotd.lock").touch(mode)
+    async with serving():
+        pass
+    assert mode_of(tmp_path / "robotd.lock") == 0o600
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can become somebody else")
+async def test_a_reader_cannot_keep_the_daemon_out(serving: Serving, tmp_path: Path) -> None:
+    async with serving():
+        pass
+    for directory in (tmp_path, *tmp_path.parents[:2]):
+        directory.chmod(0o755)
+    words = [sys.executable, "-c", READER, str(tmp_path), str(os.getgid())]
+    assert (await asyncio.to_thread(subprocess.run, words, check=False)).returncode == 13
+
+
+async def test_a_lock_that_leads_elsewhere_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "robotd.lock").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(TransportError, match="runtime directory"):
+        await Server(ServerSettings(runtime_dir=str(tmp_path)), unreached_control()).run()
+    assert not (tmp_path / "elsewhere").exists()
+
+
 async def test_sockets_are_for_the_group_only(serving: Serving, tmp_path: Path) -> None:
     async with serving():
         modes = [mode_of(path) for path in Endpoints(tmp_path).paths]

@@ -113,10 +113,21 @@ def test_the_rules_name_the_ports_of_the_configuration() -> None:
     assert {f"/dev/{name}" for name in re.findall(r'SYMLINK\+="([^"]+)"', "\n".join(RULES))} == ports
 
 
-def test_the_rules_give_the_lines_to_the_group_of_the_service() -> None:
-    text = "\n".join(RULES)
-    assert f'GROUP="{settings()["Group"][0]}"' in text
-    assert 'ENV{ID_MM_DEVICE_IGNORE}="1"' in text
+def test_the_rules_give_the_lines_to_the_user_of_the_service_alone() -> None:
+    (rule,) = [rule for rule in RULES if "OWNER=" in rule]
+    assert f'OWNER="{settings()["User"][0]}"' in rule
+    assert f'GROUP="{settings()["Group"][0]}"' in rule
+    assert 'MODE="0600"' in rule
+    assert 'ENV{ID_MM_DEVICE_IGNORE}="1"' in rule
+
+
+def test_the_rules_keep_brltty_from_the_boards_and_only_from_them() -> None:
+    (rule,) = [rule for rule in RULES if "SYSTEMD_WANTS" in rule]
+    assert 'SUBSYSTEM=="usb"' in rule
+    before = RULES[: RULES.index(rule)]
+    assert 'ENV{ROBOTD_BOARD}!="?*", GOTO="robotd_end"' in before
+    assert len([one for one in before if "ID_SERIAL_SHORT" in one]) == 3
+    assert not any("SYMLINK" in one for one in before), "the name is that of the line, not of the adapter"
 
 
 def test_the_directories_are_those_of_the_configuration() -> None:
