@@ -18,7 +18,7 @@ def _carmen(arguments: argparse.Namespace) -> int:
     kept_out = sum(stop.kept_out for stop in stops)
     if arguments.json:
         facts = {"stops": len(stops) - kept_out, "kept_out": kept_out}
-        print_json({"file": str(arguments.out), **facts, "poses": log.poses.value, "damaged_lines": len(log.problems)})
+        print_json({"file": str(arguments.out), **facts, "poses": log.poses.value, "damaged_lines": log.damaged_lines})
     else:
         words = f"{len(stops) - kept_out} stops to map, {kept_out} kept out to localize at"
         out().print(f"{arguments.out}: {words}; now: robotctl sim {arguments.out}")

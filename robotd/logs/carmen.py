@@ -30,6 +30,7 @@ from robotd.logs.provenance import Fit, fit_of, lie_on_odometry
 from robotd.logs.records import KINDS, RAW_KINDS, LaserRecord, Odom, Parameter, parse_line
 from robotd.logs.scan import PoseSource, Problem, RecordedLog, Scan
 
+_PROBLEMS_MAX = 100
 _NEAREST_M = 0.02
 """No scanner measures less; Hokuyo's write what went wrong as so many millimetres."""
 
@@ -54,13 +55,20 @@ class _Reader:
     params: dict[str, str] = field(default_factory=dict)
     track: OdometryTrack = field(default_factory=OdometryTrack)
     problems: list[Problem] = field(default_factory=list)
+    damaged_lines: int = 0
+
+    def note(self, line: int, message: str) -> None:
+        """Note a damaged line; of very many, the first are enough."""
+        self.damaged_lines += 1
+        if len(self.problems) < _PROBLEMS_MAX:
+            self.problems.append(Problem(line, message))
 
     def take(self, number: int, line: str) -> None:
         """Take one line; a damaged one is noted and left out."""
         try:
             record = parse_line(line)
         except DamagedLineError as error:
-            self.problems.append(Problem(number, str(error)))
+            self.note(number, str(error))
             return
         if isinstance(record, Parameter):
             self.params[record.name] = record.value
@@ -83,7 +91,8 @@ class _Reader:
                 layout = max(usual, key=lambda pair: (pair[1], pair[0][1]))[0]
                 unusual = [one for one in placed if one.record.layout != layout]
                 words = f"{kind}: its end is laid out unlike that of the other lines: numbers are missing, or too many"
-                self.problems += [Problem(one.line, words) for one in unusual]
+                for one in unusual:
+                    self.note(one.line, words)
                 return [one for one in placed if one.record.layout == layout]
         return []
 
@@ -122,7 +131,7 @@ def parse_carmen(lines: Iterable[str], *, file: str = "log", fov_rad: float | No
 def _nothing(reader: _Reader) -> str:
     if not reader.problems:
         return "no FLASER, RLASER, ROBOTLASER1 or RAWLASER1 record in it; is this a CARMEN log?"
-    count = len(reader.problems)
+    count = reader.damaged_lines
     lines = "the only damaged line" if count == 1 else f"the first of {count} damaged lines"
     return f"there is no whole scan in it; {lines} is {reader.problems[0]}"
 
@@ -147,7 +156,7 @@ def _log(reader: _Reader, placed: list[_Placed], file: str, fov_rad: float | Non
     poses, why = _provenance(reader, placed, scans, frame)
     assumed = (*_assumed(bearings.values()), *_steps(records), *_code(code_m), *_flat(records))
     problems = tuple(sorted(reader.problems, key=lambda problem: problem.line))
-    return RecordedLog(scans, min(code_m, *limits_m), poses, why, problems, assumed)
+    return RecordedLog(scans, min(code_m, *limits_m), poses, why, problems, reader.damaged_lines, assumed)
 
 
 def _limits_m(reader: _Reader, records: list[LaserRecord], scanner: str) -> list[float]:

@@ -20,6 +20,8 @@ _PILE_PLACES = 3
 _PLACE_M = 0.2
 _PILE_SHARE = 0.05
 """Of all ranges: a pile like that is a code, even if the robot never moved."""
+_PILE_SHARE_MAX = 0.9
+"""Where nearly all ranges are the same, they may well be distances: in a round room, or in a test."""
 
 
 def named_limit_m(params: Mapping[str, str], scanner: str) -> float:
@@ -68,11 +70,12 @@ def _largest_m(below: Sequence[_Ranges]) -> float:
 def _is_pile(below: Sequence[_Ranges], poses: Sequence[Pose2], largest_m: float) -> bool:
     pile = [int((ranges_m >= largest_m - _SAME_M).sum()) for ranges_m in below]
     beside = sum(int((ranges_m >= largest_m - _BESIDE_M).sum()) for ranges_m in below) - sum(pile)
-    if sum(pile) < max(_PILE_MIN, beside):
+    total = sum(map(len, below))
+    if not max(_PILE_MIN, beside) <= sum(pile) <= _PILE_SHARE_MAX * total:
         return False
     places = {
         (round(pose.x_m / _PLACE_M), round(pose.y_m / _PLACE_M))
         for pose, count in zip(poses, pile, strict=True)
         if count
     }
-    return len(places) >= _PILE_PLACES or sum(pile) >= _PILE_SHARE * sum(map(len, below))
+    return len(places) >= _PILE_PLACES or sum(pile) >= _PILE_SHARE * total

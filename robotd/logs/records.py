@@ -25,6 +25,8 @@ _ROBOT_TAIL = 14
 _RAW_TAIL = 3
 """Fields after the ranges of RAWLASER1: time, host, time."""
 _ROUND_RAD = math.tau + 0.01
+_FARTHEST_M = 1e4
+"""No scanner measures more: such a number says that nothing came back."""
 _FINEST_RAD = 1e-5
 """No scanner has its beams nearer to each other."""
 
@@ -199,6 +201,7 @@ class _Angles:
 def _several(ranges_m: NDArray[np.float64]) -> NDArray[np.float64]:
     if len(ranges_m) < 2:
         raise DamagedLineError(f"a scan of {len(ranges_m)} beams")
+    ranges_m[ranges_m > _FARTHEST_M] = math.inf
     return ranges_m
 
 

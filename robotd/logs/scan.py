@@ -73,7 +73,9 @@ class RecordedLog:
     why: str = ""
     """How it is known where the poses are from."""
     problems: tuple[Problem, ...] = ()
-    """The damaged lines, all left out, in file order."""
+    """The damaged lines, left out, in file order: the first of them."""
+    damaged_lines: int = 0
+    """How many there are."""
     assumed: tuple[str, ...] = ()
     """What the log does not say and was taken for granted, a line each."""
 
@@ -85,9 +87,9 @@ class RecordedLog:
     def remarks(self) -> Iterator[str]:
         """Yield what people must be told of it, a line each."""
         if self.problems:
-            lines = "a damaged line was" if len(self.problems) == 1 else f"{len(self.problems)} damaged lines were"
+            lines = "a damaged line was" if self.damaged_lines == 1 else f"{self.damaged_lines} damaged lines were"
             named = "; ".join(map(str, self.problems[:_NAMED_LINES]))
-            yield f"{lines} left out: {named}{'; ...' * (len(self.problems) > _NAMED_LINES)}"
+            yield f"{lines} left out: {named}{'; ...' * (self.damaged_lines > _NAMED_LINES)}"
         yield from self.assumed
         if self.is_raw_odometry:
             yield f"ITS POSES ARE RAW ODOMETRY ({self.why}): a map made with them is bent, and none is the truth"

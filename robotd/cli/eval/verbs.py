@@ -120,7 +120,7 @@ def _evaluate(plan: _Plan, name: str, log: RecordedLog) -> LogReport:
             cases.append(case)
             bar.update(task, advance=1)
     counts = len(log.scans), len(division.map_scans), len(division.queries)
-    return LogReport(name, *counts, grid, tuple(cases), log.poses, len(log.problems))
+    return LogReport(name, *counts, grid, tuple(cases), log.poses, log.damaged_lines)
 
 
 def _bar() -> Progress:

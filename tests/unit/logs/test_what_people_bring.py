@@ -155,6 +155,19 @@ def test_a_code_below_a_code_is_found_too() -> None:
     assert all(scan.missed[7] for scan in log.scans)
 
 
+@pytest.mark.parametrize("ranges", [[2.0] * 180, [1.0] + [2.0] * 179, [2.0, 3.0] * 2])
+def test_few_ranges_and_such_as_are_nearly_all_the_same_are_no_code(ranges: list[float]) -> None:
+    line = f"FLASER {len(ranges)} {' '.join(map(str, ranges))} {text(POSES[0])} {text(POSES[0])} 0 h 0"
+    assert all(scan.hit.all() for scan in parse_carmen([line]).scans)
+
+
+def test_a_range_that_no_scanner_has_is_a_miss() -> None:
+    log = parse_carmen([with_range(line, 7, "1e300") for line in flaser()])
+    assert_the_room_is_seen(log)
+    assert all(scan.missed[7] for scan in log.scans)
+    assert not log.assumed
+
+
 def test_the_farthest_corner_seen_from_one_place_again_and_again_is_no_code() -> None:
     lines = flaser(poses=[POSES[0]] * 40)
     assert parse_carmen(lines).no_return_from_m == math.inf
@@ -344,6 +357,12 @@ def test_of_many_damaged_lines_only_some_are_named() -> None:
     assert said.startswith("12 damaged lines were left out: line 2: FLASER: 4 numbers are announced, 2 follow")
     assert said.count("line ") == 5
     assert said.endswith("; ...")
+
+
+def test_very_many_damaged_lines_cost_no_memory() -> None:
+    log = parse_carmen([*flaser(), *["FLASER 4 1 2"] * 5000])
+    assert log.damaged_lines == 5000
+    assert len(log.problems) == 100
 
 
 def test_a_damaged_setting_is_left_out_and_named() -> None:
