@@ -2,30 +2,30 @@
 
 TOML has ``outline_m`` for a room (all beyond is solid) and ``[[obstacle]]`` with ``points_m`` and ``holes_m``; the
 simulation's worlds are read as well: the closed ``[[wall]]`` around the start is the room, the others are solid.
-Points and lines have no inside: in GeoJSON and WKT they are passed over. A third coordinate is left out.
+Points and lines have no inside: in GeoJSON and WKT they are passed over. A third coordinate is left out. Coordinates
+are metres: degrees of longitude and latitude are refused where they are named, or plain to see.
 """
 
 import json
 import re
 import tomllib
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import Any, Final, Protocol
 
+from robotd.localization.exact.degrees import Rings, refuse_degrees, refuse_geographic
 from robotd.localization.exact.locate import contains
 from robotd.localization.exact.planar import PlanarSet, area_within
 from robotd.localization.exact.points import Point
 from robotd.localization.exact.polygons import Polygon, Ring, ring_of, solid, turned
 from robotd.localization.exact.rationals import DEFAULT, Arithmetic, rational
 
-Rings = Sequence[Sequence[Sequence[Any]]]
-"""The rings of a polygon as they are written, its outer one first."""
-
-_REFERENCE = re.compile(r"SRID=\d+;", re.IGNORECASE)
+_REFERENCE = re.compile(r"SRID=(\d+);", re.IGNORECASE)
 """In which coordinates a geometry is, as some databases write before it."""
 _WORDS = re.compile(r"[A-Za-z]+|[(),;=]|[^\s(),;=]+")
 _WITHOUT_INSIDE = {"Point", "MultiPoint", "LineString", "MultiLineString"}
 _WKT_KINDS = {"POLYGON", "MULTIPOLYGON", "GEOMETRYCOLLECTION", *(kind.upper() for kind in _WITHOUT_INSIDE)}
+_SHOWN = 60
 _DIMENSIONS = {"Z", "M", "ZM"}
 
 
@@ -33,22 +33,31 @@ def map_of_geojson(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
     """Return the union of all polygons of a GeoJSON document, whatever features and collections they are in.
 
     Raises:
-        ValueError: it is none, or has no polygons, or one is impossible; says which.
+        ValueError: it is none, or has no polygons, or one is impossible, or its coordinates are degrees; says which.
     """
-    return _solid(_of_geometry(json.loads(text, parse_float=str)), arithmetic)
+    document = json.loads(text, parse_float=str)
+    _expect(isinstance(document, dict), "an object of GeoJSON", "it", document)
+    refuse_geographic(_crs_of(document))
+    written = list(_of_geometry(document, "it"))
+    refuse_degrees(written)
+    return _solid(written, arithmetic)
 
 
 def map_of_wkt(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
     """Return the union of all polygons of geometries in well-known text, one after another or in collections.
 
     Raises:
-        ValueError: there are none, or something is no such text, or a polygon is impossible; says which.
+        ValueError: there are none, or something is no such text, or a polygon is impossible, or its coordinates are
+            degrees; says which.
     """
+    for number in _REFERENCE.findall(text):
+        refuse_geographic(f"EPSG:{number}")
     words = deque(_WORDS.findall(_REFERENCE.sub("", text)))
-    obstacles = _solid(_of_wkt(words), arithmetic)
+    written = list(_of_wkt(words))
     if words:
         raise ValueError("a parenthesis is not opened")
-    return obstacles
+    refuse_degrees(written)
+    return _solid(written, arithmetic)
 
 
 def map_of_toml(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
@@ -107,23 +116,64 @@ def _refuse_unknown(table: dict[str, Any], known: set[str]) -> None:
             raise ValueError(f"unknown key {key}; known: {', '.join(sorted(known))}")
 
 
-def _of_geometry(item: dict[str, Any]) -> Iterator[Rings]:
+def _crs_of(document: dict[str, Any]) -> str:
+    """Return the name of the coordinate reference system that an older GeoJSON names; empty if there is none."""
+    crs = document.get("crs")
+    properties = crs.get("properties") if isinstance(crs, dict) else None
+    return str(properties.get("name", "")) if isinstance(properties, dict) else ""
+
+
+def _of_geometry(item: Any, where: str) -> Iterator[Rings]:
+    """Yield the rings of all polygons in an object of GeoJSON; ValueError that says where it is not built as one."""
+    _expect(isinstance(item, dict), "an object", where, item)
     match item.get("type"):
         case "FeatureCollection":
-            for feature in item["features"]:
-                yield from _of_geometry(feature)
+            yield from _of_all(item, "features", where)
         case "Feature":
-            if item["geometry"] is not None:
-                yield from _of_geometry(item["geometry"])
+            if item.get("geometry") is not None:
+                yield from _of_geometry(item["geometry"], f"{where}, geometry")
         case "GeometryCollection":
-            for geometry in item["geometries"]:
-                yield from _of_geometry(geometry)
+            yield from _of_all(item, "geometries", where)
         case "Polygon":
-            yield item["coordinates"]
+            yield _checked_rings(item.get("coordinates"), f"{where}, coordinates")
         case "MultiPolygon":
-            yield from item["coordinates"]
-        case kind if kind not in _WITHOUT_INSIDE:
-            raise ValueError(f"{kind!r} is no type of GeoJSON")
+            for number, rings in enumerate(_list_of(item, "coordinates", where), 1):
+                yield _checked_rings(rings, f"{where}, coordinates, polygon {number}")
+        case kind if str(kind) not in _WITHOUT_INSIDE:
+            raise ValueError(f"{where}: {_short(kind)} is no type of GeoJSON")
+
+
+def _of_all(item: dict[str, Any], key: str, where: str) -> Iterator[Rings]:
+    for number, one in enumerate(_list_of(item, key, where), 1):
+        yield from _of_geometry(one, f"{where}, {key} {number}")
+
+
+def _list_of(item: dict[str, Any], key: str, where: str) -> list[Any]:
+    found = item.get(key)
+    _expect(isinstance(found, list), f"a list of {key}", where, found)
+    return list(found or ())
+
+
+def _checked_rings(rings: Any, where: str) -> Rings:
+    """Return the rings of a polygon; ValueError if they are no lists of corners."""
+    _expect(isinstance(rings, list), "a list of rings", where, rings)
+    for ring in rings:
+        _expect(isinstance(ring, list), "a ring, which is a list of corners", where, ring)
+        for corner in ring:
+            is_text = isinstance(corner, str)  # which is refused as a corner, with the number of its polygon
+            is_pair = isinstance(corner, list) and all(isinstance(number, int | str) for number in corner)
+            _expect(is_text or is_pair, "a corner, which has x and y", where, corner)
+    return list(rings)
+
+
+def _expect(is_so: bool, what: str, where: str, found: Any) -> None:
+    if not is_so:
+        raise ValueError(f"{where} is not built as such a file is: expected {what}, got {_short(found)}")
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
 def _of_wkt(words: deque[str]) -> Iterator[Rings]:

@@ -154,3 +154,63 @@ def test_readings_are_read_exactly() -> None:
 def test_impossible_readings_are_refused(lines: list[str], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         beams_of(lines)
+
+
+CAMPUS = "[[[11.5676, 48.1488], [11.5690, 48.1488], [11.5690, 48.1496], [11.5676, 48.1496], [11.5676, 48.1488]]]"
+IN_METRES = "[[[691234.1, 5335678.2], [691240.1, 5335678.2], [691240.1, 5335684.2], [691234.1, 5335678.2]]]"
+
+
+def geojson(coordinates: str, crs: str | None = None) -> str:
+    linked = "" if crs is None else f'"crs": {{"type": "name", "properties": {{"name": "{crs}"}}}}, '
+    return f'{{{linked}"type": "Polygon", "coordinates": {coordinates}}}'
+
+
+@pytest.mark.parametrize(
+    ("read", "text"),
+    [
+        (map_of_geojson, geojson(CAMPUS)),
+        (map_of_geojson, geojson(IN_METRES, "urn:ogc:def:crs:OGC:1.3:CRS84")),
+        (map_of_geojson, geojson("[[[0, 0], [9, 0], [9, 9]]]", "EPSG:4326")),
+        (map_of_geojson, geojson("[[[0, 0], [9, 0], [9, 9]]]", "urn:ogc:def:crs:EPSG::4258")),
+        (map_of_wkt, "SRID=4326;POLYGON ((0 0, 9 0, 9 9))"),
+        (map_of_wkt, "POLYGON ((-122.33 47.66, -122.32 47.66, -122.32 47.67, -122.33 47.66))"),
+    ],
+)
+def test_longitude_and_latitude_are_no_metres(read, text: str) -> None:  # type: ignore[no-untyped-def]  # two readers
+    with pytest.raises(ValueError, match=r"longitude and latitude.*needs metres"):
+        read(text)
+
+
+@pytest.mark.parametrize(
+    ("read", "text"),
+    [
+        (map_of_geojson, geojson(IN_METRES, "urn:ogc:def:crs:EPSG::25832")),
+        (map_of_geojson, geojson(IN_METRES).replace("{", '{"crs": null, ', 1)),
+        (map_of_wkt, "POLYGON ((0 0, 0.6 0, 0.6 0.2))"),
+        (map_of_wkt, "SRID=32632;POLYGON ((0 0, 0.6 0, 0.6 0.2))"),
+        (map_of_toml, "outline_m = [[0, 0], [0.4, 0], [0.4, 0.3]]"),
+    ],
+)
+def test_metres_are_metres(read, text: str) -> None:  # type: ignore[no-untyped-def]  # three readers
+    assert edge_count(read(text)) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[]", "it is not built as such a file is: expected an object of GeoJSON"),
+        ('{"type": "FeatureCollection"}', "it is not built as such a file is: expected a list of features, got None"),
+        ('{"type": "FeatureCollection", "features": [7]}', "it, features 1 is not built .*: expected an object, got 7"),
+        ('{"type": "Feature", "geometry": "x"}', "it, geometry is not built .*: expected an object, got 'x'"),
+        (geojson("null"), "it, coordinates is not built .*: expected a list of rings, got None"),
+        (geojson("[7]"), "expected a ring, which is a list of corners, got 7"),
+        (geojson("[[7]]"), "expected a corner, which has x and y, got 7"),
+        (geojson("[[[{}, 0], [1, 0], [1, 1]]]"), "expected a corner"),
+        (geojson("[[[null, 0], [1, 0], [1, 1]]]"), "expected a corner"),
+        ('{"type": "MultiPolygon", "coordinates": [[[[0,0],[1,0],[1,1]]], {}]}', "coordinates, polygon 2 is not built"),
+        ('{"type": ["Polygon"], "coordinates": []}', r"\['Polygon'\] is no type of GeoJSON"),
+    ],
+)
+def test_what_is_not_built_as_geojson_is_named_with_its_place(text: str, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        map_of_geojson(text)
