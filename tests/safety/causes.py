@@ -107,7 +107,7 @@ async def daemon_killed(rig: Rig, trials: int) -> AsyncIterator[float]:
     for _ in range(trials):
         async with rig.daemon(config="quick.toml") as daemon, AsyncClient(rig.runtime_dir) as client:
             await armed(client)
-            await client.start(MapMission("safety", (_far_end(rig),), rig.robot.truth, Legs.STRAIGHT), 10.0)
+            await client.start(MapMission("safety", (far_end(rig),), rig.robot.truth, Legs.STRAIGHT), 10.0)
             await until(lambda: body.velocity[0] > _MOVING_MPS)
             killed_ns = now_ns()
             daemon.kill()
@@ -116,7 +116,7 @@ async def daemon_killed(rig: Rig, trials: int) -> AsyncIterator[float]:
             await until(lambda: rig.robot.at_rest)
 
 
-def _far_end(rig: Rig) -> tuple[float, float]:
+def far_end(rig: Rig) -> tuple[float, float]:
     """Return the end of a free way that is farther from here."""
     start, here = rig.robot.start, rig.robot.truth
     return max(

@@ -18,7 +18,7 @@ from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.server.async_client import AsyncClient
-from robotd.sim.emulators.catalogue import Dialects, Firmware
+from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.fault import Fault
 from robotd.sim.faults.laid import cables_on_ptys
 from robotd.sim.robot import SimulatedRobot
@@ -64,13 +64,14 @@ class Rig:
 
     @contextlib.asynccontextmanager
     async def daemon(
-        self, program: tuple[str, ...] = DAEMON, config: str = "robotd.toml"
+        self, program: tuple[str, ...] = DAEMON, config: str = "robotd.toml", more: tuple[str, ...] = ()
     ) -> AsyncIterator[asyncio.subprocess.Process]:
         """Start a daemon and wait until its devices are ready; kill it in the end if it still lives."""
         process = await asyncio.create_subprocess_exec(
             sys.executable,
             *program,
             str(self.directory / config),
+            *more,
             stdout=asyncio.subprocess.PIPE,
             cwd=_ROOT,
             start_new_session=True,
@@ -128,14 +129,15 @@ async def armed(client: AsyncClient) -> None:
 
 
 @contextlib.asynccontextmanager
-async def rig(directory: Path, boards: Firmware = Firmware.PYTHON) -> AsyncIterator[Rig]:
+async def rig(directory: Path, dialects: Dialects | None = None) -> AsyncIterator[Rig]:
     """Put a robot's boards on pseudo-terminals, with a configuration to run a daemon on them."""
-    robot = SimulatedRobot(load_world("laboratory"), seed=4, dialects=Dialects(boards=boards))
+    dialects = dialects or Dialects()
+    robot = SimulatedRobot(load_world("laboratory"), seed=4, dialects=dialects)
     async with cables_on_ptys(robot, directory / "devices") as (laid, ports):
         watches = tuple(Watch(device) for device in laid)
         for watch in watches:
             laid[watch.device].set_fault(watch)
-        text = config_text(ports)
+        text = config_text(ports, dialects.settings())
         for name, more in (("robotd.toml", ""), ("quick.toml", "\n[sweep]\nreadings = 4\n")):
             (directory / name).write_text(text + more)
         yield Rig(robot, watches, directory)

@@ -12,7 +12,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from robotd.sim.emulators.catalogue import Firmware
+from robotd.sim.emulators.catalogue import Dialects, Firmware
 from tests.safety.causes import CAUSES, ON_C_BOARDS
 from tests.safety.rig import NICE, give_precedence, rig
 
@@ -55,7 +55,7 @@ def _measure(cause: str, trials: int) -> bool:
 async def measured(cause: str, trials: int) -> list[float]:
     """Return how late the stop was in each trial [ms]."""
     with tempfile.TemporaryDirectory(prefix="robotd-safety-") as directory:
-        async with rig(Path(directory), Firmware.C if cause == ON_C_BOARDS else Firmware.PYTHON) as it:
+        async with rig(Path(directory), Dialects(boards=Firmware.C if cause == ON_C_BOARDS else Firmware.PYTHON)) as it:
             return [late_ms async for late_ms in CAUSES[cause](it, trials)]
 
 

@@ -1,4 +1,7 @@
-"""The daemon, with one thing more: on SIGRTMIN its event loop stands still, and says since when on standard output."""
+"""The daemon, with one thing more: on SIGRTMIN its event loop stands still, and says since when on standard output.
+
+For how long [s] may follow the configuration on the command line.
+"""
 
 import asyncio
 import signal
@@ -15,7 +18,7 @@ STALL_S = 0.4
 
 def _stand_still() -> None:
     print(now_ns(), flush=True)
-    until_s = time.monotonic() + STALL_S
+    until_s = time.monotonic() + (float(sys.argv[2]) if len(sys.argv) > 2 else STALL_S)
     while time.monotonic() < until_s:
         """Compute, and hold the interpreter's lock as computing does."""
 

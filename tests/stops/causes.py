@@ -1,4 +1,4 @@
-"""What ends a daemon; each is brought about at once, in the running program."""
+"""What ends a daemon, or stops the robot of one that lives on; each comes at once, in the running program."""
 
 import asyncio
 import os
@@ -6,6 +6,9 @@ import signal
 from collections.abc import Callable
 
 from robotd.app.compose import Daemon
+from tests.stops.rig import Rig
+
+Cause = Callable[[Rig, Daemon], None]
 
 SIGNALS = (
     signal.SIGTERM,
@@ -22,15 +25,14 @@ class OurMistakeError(Exception):
     """What nobody foresaw."""
 
 
-def _signal(number: signal.Signals) -> Callable[[Daemon], None]:
-    return lambda _: os.kill(os.getpid(), number)
+def _signal(number: signal.Signals) -> Cause:
+    return lambda *_: os.kill(os.getpid(), number)
 
 
-def _error_in(name: str) -> Callable[[Daemon], None]:
-    def fail(_: Daemon) -> None:
+def _error_in(name: str) -> Cause:
+    def fail(*_: object) -> None:
         (task,) = [task for task in asyncio.all_tasks() if task.get_name() == name]
-        coroutine = task.get_coro()
-        _throw(task, OurMistakeError(f"in {coroutine}"))
+        _throw(task, OurMistakeError(f"in {name}"))
 
     return fail
 
@@ -42,7 +44,23 @@ def _throw(task: "asyncio.Task[object]", error: Exception) -> None:
     waited_for.set_exception(error)
 
 
-CAUSES: dict[str, Callable[[Daemon], None]] = {
+def _stop(rig: Rig, daemon: Daemon) -> None:
+    rig.tasks.append(asyncio.create_task(daemon.control.stop("enough")))
+
+
+def _lease_ends(_: Rig, daemon: Daemon) -> None:
+    daemon.supervisor._lease_expired(daemon.supervisor._mission_id)
+
+
+def _head_lost(rig: Rig, _: Daemon) -> None:
+    rig.wires[HEAD].cut()
+
+
+HEAD = "pantilt"
+ENDINGS: dict[str, Cause] = {
     **{number.name: _signal(number) for number in SIGNALS},
     **{f"error: {name}": _error_in(name) for name in ("drive", "pantilt", "rangefinder", "supervisor", "server")},
 }
+"""After these the daemon ends."""
+HEAD_LOST = "head lost"
+CAUSES: dict[str, Cause] = ENDINGS | {"stop": _stop, "lease": _lease_ends, HEAD_LOST: _head_lost}

@@ -5,7 +5,7 @@ import contextlib
 import random
 import signal
 import tempfile
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from unittest import mock
@@ -57,6 +57,10 @@ class Wire:
     def close(self) -> None:
         self._line.close()
 
+    def cut(self) -> None:
+        """Cut it, at both ends."""
+        self._line.cut()  # type: ignore[attr-defined]  # a memory line can be cut
+
     def _write(self, write: Callable[[bytes], None], data: bytes) -> None:
         if self.is_dead:
             return
@@ -74,6 +78,8 @@ class Rig:
     connects: Mapping[str, Connect]
     random: random.Random
     wires: dict[str, Wire] = field(default_factory=dict)
+    tasks: list["asyncio.Task[None]"] = field(default_factory=list)
+    """What a cause has asked for."""
     composed: "asyncio.Future[Daemon] | None" = None
 
     @property
@@ -119,12 +125,12 @@ class Rig:
         running.cancel()
         await asyncio.wait({running})
 
-    def stopped_s(self, since_ns: int) -> float | None:
-        """Return after what time the stop was on every wire that knows one; None if it is not."""
+    def stopped_s(self, since_ns: int, devices: Sequence[str] = DEVICES) -> float | None:
+        """Return after what time the stop was on every wire of these that knows one; None if it is not."""
         first_ns = [
             min((at for at in wire.stops_ns if at >= since_ns), default=None)
-            for wire in self.wires.values()
-            if wire._stop
+            for device, wire in self.wires.items()
+            if wire._stop and device in devices
         ]
         times_ns = [at for at in first_ns if at is not None]
         if len(times_ns) < len(first_ns) or not times_ns:

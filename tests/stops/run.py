@@ -3,13 +3,15 @@
 import argparse
 import sys
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass
 from importlib.util import find_spec
 
 from robotd.hardware.devices.catalogue import MOTORLESS, SCANNERS
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects, Firmware
-from tests.stops.causes import CAUSES
+from tests.stops.causes import CAUSES, ENDINGS, HEAD_LOST
+from tests.stops.processes import ACTIVITIES, run_real_trials
+from tests.stops.processes import CAUSES as REAL_CAUSES
 from tests.stops.trial import Outcome, run_trial
 
 _WIDTH = 8
@@ -55,30 +57,64 @@ def failed(outcome: Outcome) -> bool:
 def main() -> None:
     """Try and print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--trials", type=int, default=8, help="of each kind (default: %(default)s)")
+    parser.add_argument("--trials", type=int, default=8, help="of each kind in memory (default: %(default)s)")
+    parser.add_argument("--real", type=int, default=2, help="of each kind with processes (default: %(default)s)")
     parser.add_argument("--only", default="", help="rows whose name holds this, for example rflex")
     parser.add_argument("--processes", type=int, default=2, help="at a time (default: %(default)s)")
     arguments = parser.parse_args()
     tried = [row for row in rows() if arguments.only in str(row)]
-    print(f"{arguments.trials} trials of each kind, on the virtual clock, each at a random moment of the motion:")
+    bad = 0
+    with ProcessPoolExecutor(arguments.processes) as pool:
+        if arguments.trials:
+            bad += _in_memory(pool, tried, arguments.trials)
+        if arguments.real:
+            bad += _as_processes(pool, [row for row in tried if row.activity in ACTIVITIES], arguments.real)
+    print(f"{bad} moved on, or were stopped later than in {STOP_S:g} s")
+    sys.exit(bad > 0)
+
+
+def _in_memory(pool: Executor, tried: Sequence[Row], trials: int) -> int:
+    """Return how many failed."""
+    print(f"{trials} trials of each kind, on the virtual clock, each at a random moment of the motion:")
     print(
         "how many came to rest; then the latest, in ms from the cause: stop on the last wire, rest, end of the daemon"
     )
-    columns = [name.removeprefix("SIG").removeprefix("error: ")[: _WIDTH - 1] for name in CAUSES]
-    print(f"{'':28}" + "".join(f"{name:>{_WIDTH}}" for name in columns) + f"{'stop':>{_WIDTH}}{'rest':>7}{'end':>6}")
+    _print_head(list(CAUSES), "stop", "rest", "end")
+    wanted = [(row, cause) for row in tried for cause in CAUSES if _applies(row, cause)]
+    running = pool.map(_trial, [(row, cause, seed) for row, cause in wanted for seed in range(trials)])
     bad = 0
-    with ProcessPoolExecutor(arguments.processes) as pool:
-        running = pool.map(
-            _trial, [(row, cause, seed) for row in tried for cause in CAUSES for seed in range(arguments.trials)]
+    for row in tried:
+        cells = {cause: [next(running) for _ in range(trials)] for cause in CAUSES if (row, cause) in wanted}
+        outcomes = [outcome for cell in cells.values() for outcome in cell]
+        bad += sum(failed(outcome) for outcome in outcomes)
+        latest = (
+            _ms([outcome.stop_s for outcome in outcomes]),
+            _ms([outcome.rest_s for outcome in outcomes]),
+            _ms([outcome.ended_s for cause in cells if cause in ENDINGS for outcome in cells[cause]]),
         )
-        for row in tried:
-            cells = [[next(running) for _ in range(arguments.trials)] for _ in CAUSES]
-            bad += sum(failed(outcome) for cell in cells for outcome in cell)
-            print(f"{row!s:28}" + "".join(f"{_passed(cell):>{_WIDTH}}" for cell in cells) + _latest(cells), flush=True)
-    print(
-        f"{bad} of {len(tried) * len(CAUSES) * arguments.trials} moved on, or were stopped later than in {STOP_S:g} s"
-    )
-    sys.exit(bad > 0)
+        _print_row(row, [_passed(cells[cause]) if cause in cells else "" for cause in CAUSES], *latest)
+    return bad
+
+
+def _as_processes(pool: Executor, tried: Sequence[Row], trials: int) -> int:
+    """Return how many failed."""
+    print(f"{trials} trials of each kind, processes on pseudo-terminals and the real clock; a stall lasts 2 s:")
+    _print_head(list(REAL_CAUSES), "rest")
+    running = pool.map(_real_trials, [(row, cause, trials) for row in tried for cause in REAL_CAUSES])
+    bad = 0
+    for row in tried:
+        cells = [next(running) for _ in REAL_CAUSES]
+        bad += sum(rest_s is None for cell in cells for rest_s in cell)
+        texts = [f"{sum(rest_s is not None for rest_s in cell)}/{len(cell)}" for cell in cells]
+        _print_row(row, texts, _ms([rest_s for cell in cells for rest_s in cell]))
+    return bad
+
+
+def _applies(row: Row, cause: str) -> bool:
+    """Whether a cause can be: a mission has a lease, a robot that is at something can be stopped, a head be lost."""
+    if cause == HEAD_LOST:
+        return row.activity in ACTIVITIES
+    return cause in ENDINGS or row.activity not in {"start-up", "head"}
 
 
 def _trial(what: tuple[Row, str, int]) -> Outcome:
@@ -86,18 +122,22 @@ def _trial(what: tuple[Row, str, int]) -> Outcome:
     return run_trial(row.dialects, row.activity, cause, seed)
 
 
+def _real_trials(what: tuple[Row, str, int]) -> list[float | None]:
+    row, cause, trials = what
+    return run_real_trials(row.dialects, row.activity, cause, trials)
+
+
+def _print_head(causes: Sequence[str], *latest: str) -> None:
+    short = [name.removeprefix("SIG").removeprefix("error: ")[: _WIDTH - 1] for name in causes]
+    _print_row("", short, *latest)
+
+
+def _print_row(row: object, cells: Sequence[str], *latest: str) -> None:
+    print(f"{row!s:28}" + "".join(f"{text:>{_WIDTH}}" for text in (*cells, *latest)), flush=True)
+
+
 def _passed(cell: list[Outcome]) -> str:
     return f"{sum(not failed(outcome) for outcome in cell)}/{len(cell)}"
-
-
-def _latest(cells: list[list[Outcome]]) -> str:
-    outcomes = [outcome for cell in cells for outcome in cell]
-    stop, rest, ended = (
-        _ms([outcome.stop_s for outcome in outcomes]),
-        _ms([outcome.rest_s for outcome in outcomes]),
-        _ms([outcome.ended_s for outcome in outcomes]),
-    )
-    return f"{stop:>{_WIDTH}}{rest:>7}{ended:>6}"
 
 
 def _ms(times_s: Sequence[float | None]) -> str:

@@ -1,13 +1,15 @@
 """One trial: a robot in motion, a cause that ends its daemon, and whether the robot came to rest."""
 
 import asyncio
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robotd.core.clock import NS_PER_S, now_ns, run_virtual
 from robotd.sim.emulators.catalogue import Dialects
+from robotd.sim.robot import DEVICES
 from tests.integration.living import until_ready
 from tests.stops.activities import ACTIVITIES, driving
-from tests.stops.causes import CAUSES
+from tests.stops.causes import CAUSES, HEAD, HEAD_LOST
 from tests.stops.rig import Rig, rig
 
 LOOK_S = 0.002
@@ -47,12 +49,19 @@ async def _trial(dialects: Dialects, activity: str, cause: str, seed: int) -> Ou
             else:
                 await until_ready(daemon)
                 clients = [await ACTIVITIES[activity](it, daemon)]
-            began_ns = now_ns()
-            CAUSES[cause](daemon)
-            outcome = await _watched(it, running, began_ns)
-            for client in clients:
-                client.cancel()
+            began_ns, wires = now_ns(), _wires_to_stop(activity, cause)
+            CAUSES[cause](it, daemon)
+            outcome = await _watched(it, running, began_ns, wires)
+            for task in (*clients, *it.tasks):
+                task.cancel()
             return outcome
+
+
+def _wires_to_stop(activity: str, cause: str) -> Sequence[str]:
+    """Return where a stop is due: not on a line that was cut, nor, at the start, where nothing can be armed."""
+    if activity == "start-up":
+        return ("drive",)
+    return [device for device in DEVICES if cause != HEAD_LOST or device != HEAD]
 
 
 async def _left_driving(it: Rig) -> None:
@@ -64,7 +73,7 @@ async def _left_driving(it: Rig) -> None:
         client.cancel()
 
 
-async def _watched(it: Rig, running: "asyncio.Task[int]", began_ns: int) -> Outcome:
+async def _watched(it: Rig, running: "asyncio.Task[int]", began_ns: int, wires: Sequence[str]) -> Outcome:
     moved_ns = ended_ns = began_ns
     while now_ns() < began_ns + WATCHED_S * NS_PER_S:
         if not running.done():
@@ -73,4 +82,4 @@ async def _watched(it: Rig, running: "asyncio.Task[int]", began_ns: int) -> Outc
             moved_ns = now_ns()
         await asyncio.sleep(LOOK_S)
     rest_s = None if it.is_moving else (moved_ns - began_ns) / NS_PER_S
-    return Outcome(it.stopped_s(began_ns), (ended_ns - began_ns) / NS_PER_S, rest_s)
+    return Outcome(it.stopped_s(began_ns, wires), (ended_ns - began_ns) / NS_PER_S, rest_s)
