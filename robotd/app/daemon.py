@@ -17,7 +17,8 @@ from robotd.app.stall_guard import STALL_S, guarded
 from robotd.config import Config, default_path, effective_text, load
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import ConfigError, RobotdError
-from robotd.core.log import configure
+from robotd.core.log import LONGEST_LINE, configure
+from robotd.core.text import printable
 from robotd.grid import kernels
 from robotd.mission.compute import ThreadCompute
 from robotd.mission.modes import Occasion
@@ -39,7 +40,7 @@ def main(argv: list[str] | None = None) -> int:
         config = load(arguments.config or default_path())
     except ConfigError as error:
         for problem in error.problems:
-            print(problem, file=sys.stderr)
+            print(printable(str(problem), LONGEST_LINE), file=sys.stderr)
         return EXIT_CONFIG
     configure(arguments.log_level)
     exit_code = 0

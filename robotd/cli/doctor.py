@@ -14,7 +14,7 @@ from serial.tools import list_ports
 
 import robotd
 from robotd import __version__, config
-from robotd.cli.terminal import print_json, print_pairs
+from robotd.cli.terminal import command_line, print_json, print_pairs
 from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.errors import ConfigError
 from robotd.grid import kernels
@@ -53,7 +53,8 @@ class CompiledFound:
             return "not compiled"
         if self.newer_source is None:
             return "compiled"
-        return f"compiled from older source than {self.newer_source}: run pip install -e . again"
+        again = command_line("pip", "install", "-e", _ROOT)
+        return f"compiled from older source than {self.newer_source}: run {again}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +103,8 @@ def _compiled(module: str, source: Path) -> CompiledFound:
     spec = importlib.util.find_spec(module)
     if spec is None or spec.origin is None:
         return CompiledFound(module, found=False, newer_source=None)
+    if not (_ROOT / "setup.py").exists():  # a wheel: its files have the times at which they were unpacked
+        return CompiledFound(module, found=True, newer_source=None)
     compiled_s = Path(spec.origin).stat().st_mtime
     changed = [file for file in sorted(source.glob("*.[ch]")) if file.stat().st_mtime > compiled_s]
     return CompiledFound(module, found=True, newer_source=str(changed[0]) if changed else None)

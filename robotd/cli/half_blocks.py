@@ -7,7 +7,8 @@ from rich.text import Text
 from robotd.grid.tables import NO_INFORMATION
 
 _SHADES = ("#f4f6f7", "#7c878f", "#11161a")  # free, unknown, occupied
-_PLAIN = {(False, False): " ", (True, False): "▀", (False, True): "▄", (True, True): "█"}
+_BLOCKS = {(False, False): " ", (True, False): "▀", (False, True): "▄", (True, True): "█"}
+_ASCII = {(False, False): " ", (True, False): "'", (False, True): ".", (True, True): "#"}
 
 
 def shrink(occupancy: NDArray[np.uint8], columns: int) -> NDArray[np.uint8]:
@@ -41,10 +42,24 @@ def coloured(cells: NDArray[np.uint8]) -> Text:
     return text
 
 
-def plain(cells: NDArray[np.uint8]) -> str:
-    """Return a shrunken map without colour: ink where there is an obstacle."""
+def can_draw_blocks(encoding: str) -> bool:
+    """Return whether a terminal of this encoding has half blocks.
+
+    >>> can_draw_blocks("utf-8"), can_draw_blocks("ascii"), can_draw_blocks("iso-8859-1"), can_draw_blocks("cp437")
+    (True, False, False, True)
+    """
+    try:
+        "".join(_BLOCKS.values()).encode(encoding)
+    except (UnicodeEncodeError, LookupError):
+        return False
+    return True
+
+
+def plain(cells: NDArray[np.uint8], *, blocks: bool = True) -> str:
+    """Return a shrunken map without colour: ink where there is an obstacle; without ``blocks`` in ASCII."""
+    ink = _BLOCKS if blocks else _ASCII
     rows = zip(cells[0::2] > NO_INFORMATION, cells[1::2] > NO_INFORMATION, strict=True)
-    return "\n".join("".join(_PLAIN[bool(a), bool(b)] for a, b in zip(*pair, strict=True)).rstrip() for pair in rows)
+    return "\n".join("".join(ink[bool(a), bool(b)] for a, b in zip(*pair, strict=True)).rstrip() for pair in rows)
 
 
 def _shade(value: int) -> str:

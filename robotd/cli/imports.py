@@ -6,7 +6,7 @@ from pathlib import Path
 from robotd.cli.logs import LOG_HELP, Reading, reading_arguments
 from robotd.cli.outputs import RECORDED_BUILDING, output_argument, write
 from robotd.cli.quantities import positive, whole
-from robotd.cli.terminal import out, print_json
+from robotd.cli.terminal import command_line, out, print_json
 from robotd.cli.verb import OK, Verb
 from robotd.sim.building import RecordedBuilding, encode_recorded_building, select_stops
 
@@ -21,7 +21,7 @@ def _carmen(arguments: argparse.Namespace) -> int:
         print_json({"file": str(arguments.out), **facts, "poses": log.poses.value, "damaged_lines": log.damaged_lines})
     else:
         words = f"{len(stops) - kept_out} stops to map, {kept_out} kept out to localize at"
-        out().print(f"{arguments.out}: {words}; now: robotctl sim {arguments.out}")
+        out().print(f"{arguments.out}: {words}; now: {command_line('robotctl', 'sim', arguments.out)}")
     return OK
 
 

@@ -5,6 +5,7 @@ Exit codes: 0 done, 1 failed, 2 wrong usage, 78 wrong configuration, 130 interru
 
 import argparse
 import importlib
+import io
 import os
 import signal
 import sys
@@ -95,6 +96,8 @@ def _add_verbs(parser: argparse.ArgumentParser, verbs: tuple[Verb, ...]) -> None
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``robotctl`` and return its exit code; wrong usage leaves by ``SystemExit(2)``, as argparse does."""
     words = sys.argv[1:] if argv is None else argv
+    if isinstance(sys.stdout, io.TextIOWrapper):  # a terminal that lacks a letter gets its number, not a traceback
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         with _ended_like_interrupted():
             arguments = build_parser(words).parse_args(words)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.cli.connection import connect
-from robotd.cli.half_blocks import coloured, plain, shrink
+from robotd.cli.half_blocks import can_draw_blocks, coloured, plain, shrink
 from robotd.cli.motion import carry_out
 from robotd.cli.outputs import PNG, output_argument
 from robotd.cli.plots import require_plots
@@ -130,10 +130,11 @@ def _show(arguments: argparse.Namespace) -> int:
         return OK
     columns = min(shutil.get_terminal_size().columns, arguments.width or 100)
     cells = shrink(shown.values, columns)
-    if out().is_terminal and out().color_system:
+    blocks = can_draw_blocks(out().encoding)
+    if out().is_terminal and out().color_system and blocks:
         out().print(coloured(cells))
     else:
-        out().print(plain(cells))
+        out().print(plain(cells, blocks=blocks))
     return OK
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from robotd.cli.emulated import config_text, recorded_config_text, write_config
 from robotd.cli.outputs import LINKS, MADE_CONFIG, TRUTH_LINES, output_argument
-from robotd.cli.terminal import err, out, print_json, print_pairs
+from robotd.cli.terminal import command_line, err, out, print_json, print_pairs
 from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.log import configure
 from robotd.recording.reader import read
@@ -85,7 +85,7 @@ def _announce(ports: dict[str, str], file: Path | None, *, as_json: bool) -> Non
         return
     print_pairs(ports.items())
     if file is not None:
-        err().print(f"now, in another terminal: robotd --config {file}")
+        err().print(f"now, in another terminal: {command_line('robotd', '--config', file)}")
     err().print("Ctrl-C ends it")
 
 

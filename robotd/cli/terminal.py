@@ -4,6 +4,7 @@ Every console is made here, and writes words as they are: ``[mm]`` is a unit, an
 """
 
 import json
+import shlex
 import sys
 from collections.abc import Iterable
 from typing import Any, TextIO
@@ -11,6 +12,8 @@ from typing import Any, TextIO
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
+
+from robotd.cli.printable_console import PrintableOnly
 
 _UNBROKEN = 10_000
 """Columns of a pipe: tables are not folded there, so that a line stays a line."""
@@ -32,8 +35,19 @@ def err() -> Console:
 
 
 def plain_console(file: TextIO, width: int | None = None) -> Console:
-    """Return a console that takes nothing for markup, and folds at a width; where it is None, at the terminal's."""
-    return Console(file=file, width=width, markup=False, emoji=False, highlight=False, soft_wrap=True)
+    """Return a console that takes nothing for markup or control; it folds at a width, or if None at the terminal's."""
+    console = Console(file=file, width=width, markup=False, emoji=False, highlight=False, soft_wrap=True)
+    console.push_render_hook(PrintableOnly())
+    return console
+
+
+def command_line(*words: object) -> str:
+    """Return a command to be copied into a shell, whatever its words hold.
+
+    >>> command_line("robotctl", "replay", "my robot/a.mcap")
+    "robotctl replay 'my robot/a.mcap'"
+    """
+    return shlex.join(map(str, words))
 
 
 def bold(text: str) -> Text:

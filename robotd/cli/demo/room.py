@@ -13,7 +13,7 @@ from robotd.cli.demo.truth import true_pose
 from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
 from robotd.cli.plots import require_plots
 from robotd.cli.quantities import whole
-from robotd.cli.terminal import bold
+from robotd.cli.terminal import bold, command_line
 from robotd.cli.verb import FAILED, OK
 from robotd.config import Config
 from robotd.core.errors import RobotdError
@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     console.print(f"Found in it, {len(trials)} times (position unknown in the whole map, heading from odometry):")
     print_trials(console, trials)
     _draw(directory, world, stops_m, the_map, trials[-1])
-    console.print(f"  every byte recorded: {recording}; try: robotctl replay {recording}")
+    console.print(f"  every byte recorded: {recording}; try: {command_line('robotctl', 'replay', recording)}")
     console.print(f"  pictures: {', '.join(str(file) for file in sorted(directory.glob('*.png')))}")
     return OK if all(trial.error_m is not None for trial in trials) else FAILED
 

@@ -47,21 +47,28 @@ def test_a_configuration_with_mistakes_is_a_failure_that_names_them(
     assert "buad" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("age_s", "code"), [(-10.0, 0), (10.0, 1)])
+@pytest.mark.parametrize(("age_s", "clone", "code"), [(-10.0, True, 0), (10.0, True, 1), (10.0, False, 0)])
 def test_a_library_older_than_its_source_is_a_failure_that_names_the_source(
-    age_s: float, code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    age_s: float,
+    clone: bool,
+    code: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setenv("ROBOTD_CONFIG", str(tmp_path / "absent.toml"))
     library, source = tmp_path / "robotd/lib.so", tmp_path / "firmware_proto/c/frame.c"
     for file in (library, source):
         file.parent.mkdir(parents=True)
         file.touch()
+    if clone:
+        (tmp_path / "setup.py").touch()
     now_s = library.stat().st_mtime
     os.utime(source, (now_s + age_s, now_s + age_s))
     monkeypatch.setattr(doctor, "_ROOT", tmp_path)
     monkeypatch.setattr("importlib.util.find_spec", lambda _: SimpleNamespace(origin=str(library)))
     assert main(["doctor"]) == code
-    assert ("frame.c: run pip install -e . again" in capsys.readouterr().out) == bool(code)
+    assert (f"frame.c: run pip install -e {tmp_path}" in capsys.readouterr().out) == bool(code)
 
 
 def test_what_was_not_compiled_is_said_and_no_failure(
