@@ -14,9 +14,11 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.address import connector
 from robotd.hardware.transport.transport import Connect
 from robotd.maps.store import MapStore
+from robotd.mission.causes import Causes
 from robotd.mission.compute import Compute, NotedCompute
 from robotd.mission.context import MissionContext
 from robotd.mission.control import Control
+from robotd.mission.lease import EndlessLease, Lease
 from robotd.mission.results import note_result
 from robotd.mission.robot import Robot
 from robotd.mission.settings import MissionSettings
@@ -31,6 +33,7 @@ class Daemon:
     robot: Robot
     supervisor: Supervisor
     control: Control
+    causes: Causes
 
     def parts(self) -> dict[str, Coroutine[Any, Any, None]]:
         """Return what must run, by name; all of it until cancelled."""
@@ -44,8 +47,18 @@ def serial_connectors(config: Config) -> dict[str, Connect]:
     return {name: connector(settings.port, line_format(name, settings)) for name, settings in ports.items()}
 
 
-def compose(config: Config, connects: Mapping[str, Connect], compute: Compute, journal: PrerollJournal) -> Daemon:
-    """Build the daemon on these lines; nothing is opened yet."""
+def compose(
+    config: Config,
+    connects: Mapping[str, Connect],
+    compute: Compute,
+    journal: PrerollJournal,
+    *,
+    leases_end_by_causes: bool = False,
+) -> Daemon:
+    """Build the daemon on these lines; nothing is opened yet.
+
+    With ``leases_end_by_causes`` leases do not run out by themselves, only by :meth:`Causes.repeat`: for replays.
+    """
     # One stream of nonces per device: who connects first must not change what the others draw.
     gaze = Gaze()
     wirings = {
@@ -65,6 +78,8 @@ def compose(config: Config, connects: Mapping[str, Connect], compute: Compute, j
         lambda event, place, made: note_result(journal, event, place, made),
         lambda: None if journal.path is None or journal.error is not None else str(journal.path),
         battery_min_v=config.drive.battery_min_v,
+        note_cause=lambda name, arguments: journal.cause(now_ns(), name, arguments),
+        make_lease=EndlessLease if leases_end_by_causes else Lease,
     )
     store = MapStore(Path(config.maps.dir), config.grid, keep=config.maps.keep)
     control = Control(
@@ -75,7 +90,7 @@ def compose(config: Config, connects: Mapping[str, Connect], compute: Compute, j
         recordings_dir=Path(config.recording.dir),
         config_text=effective_text(config),
     )
-    return Daemon(robot, supervisor, control)
+    return Daemon(robot, supervisor, control, Causes(supervisor, journal))
 
 
 def mission_settings(config: Config) -> MissionSettings:

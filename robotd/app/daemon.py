@@ -21,8 +21,7 @@ from robotd.core.log import LONGEST_LINE, configure
 from robotd.core.text import printable
 from robotd.grid import kernels
 from robotd.mission.compute import ThreadCompute
-from robotd.mission.modes import Occasion
-from robotd.recording.entries import RecordingHeader
+from robotd.recording.entries import CAUSES_ARE_NOTED, RecordingHeader
 from robotd.recording.preroll import PrerollJournal
 from robotd.server.health import Notifier, feed_watchdog, watchdog_s
 from robotd.server.server import Server
@@ -89,7 +88,7 @@ async def run(config: Config) -> int:
         daemon = compose(config, serial_connectors(config), compute, journal)
         ending = Ending(daemon.robot.stop_now)
         try:
-            async with guarded(daemon.robot.stop_past_loop, partial(_stalled, daemon)):
+            async with guarded(daemon.robot.stop_past_loop, partial(daemon.causes.stalled, STALL_S)):
                 await _serve(config, daemon, ending)
         except asyncio.CancelledError:
             if not ending.is_hastened:
@@ -97,10 +96,6 @@ async def run(config: Config) -> int:
         finally:
             await daemon.control.stop_recording()
     return ending.exit_code
-
-
-def _stalled(daemon: Daemon) -> None:
-    daemon.supervisor.halt(Occasion.STOP, f"the event loop stood still for more than {STALL_S:g} s")
 
 
 async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
@@ -158,7 +153,9 @@ def new_journal(config: Config) -> PrerollJournal:
         wall_offset_ns=wall_offset_ns(),
         started_ns=now_ns(),
     )
-    return PrerollJournal(header, config.recording.preroll_bytes)
+    journal = PrerollJournal(header, config.recording.preroll_bytes)
+    journal.cause(header.started_ns, CAUSES_ARE_NOTED, {})
+    return journal
 
 
 if __name__ == "__main__":

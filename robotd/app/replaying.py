@@ -10,7 +10,7 @@ from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RobotdError
 from robotd.hardware.wire.requests import summarize_requests
 from robotd.recording.comparison import Difference, compare, results_digest
-from robotd.recording.entries import CommandEntry, Entry, ResultEntry
+from robotd.recording.entries import CauseEntry, CommandEntry, Entry, ResultEntry
 from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback
 from robotd.recording.preroll import PrerollJournal
@@ -64,10 +64,13 @@ async def _play(recording: Recording, journal: PrerollJournal) -> tuple[Entry, .
         requests.add(task)
         task.add_done_callback(requests.discard)
 
-    playback = Playback(recording, carry_out)
+    def take_up(entry: CauseEntry) -> None:
+        daemon.causes.repeat(entry.name, entry.arguments)
+
+    playback = Playback(recording, carry_out, take_up)
     config = loads(recording.header.config_text, file="the recording's configuration")
     connects = {device: playback.line(device).connect for device in ("drive", "pantilt", "rangefinder")}
-    daemon = compose(config, connects, playback.compute, journal)
+    daemon = compose(config, connects, playback.compute, journal, leases_end_by_causes=recording.notes_causes)
     async with asyncio.TaskGroup() as group:
         parts = [group.create_task(part, name=name) for name, part in daemon.parts().items()]
         await playback.run()

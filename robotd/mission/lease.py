@@ -20,3 +20,16 @@ class Lease:
     def end(self) -> None:
         """Give it back."""
         self._timer.cancel()
+
+
+class EndlessLease(Lease):
+    """Does not run out by itself: a recording says when it did."""
+
+    def __init__(self, lasts_s: float, expired: Callable[[], None]) -> None:
+        """Take no time."""
+
+    def renew(self) -> None:
+        """Do nothing: there is no time to start anew."""
+
+    def end(self) -> None:
+        """Do nothing: there is nothing to give back."""

@@ -48,6 +48,8 @@ class Supervisor:
         recording: Callable[[], str | None] = lambda: None,
         *,
         battery_min_v: float = 0.0,
+        note_cause: Callable[[str, dict[str, int]], None] = lambda _name, _arguments: None,
+        make_lease: Callable[[float, Callable[[], None]], Lease] = Lease,
     ) -> None:
         """Prepare; nothing happens before :meth:`run`.
 
@@ -58,12 +60,16 @@ class Supervisor:
                 before the world is.
             recording: says which file is being recorded to.
             battery_min_v: below it, stop and latch a fault.
+            note_cause: told what stops the robot by a clock of the daemon, before it does.
+            make_lease: makes what calls a function once so many seconds have passed.
         """
         self.robot = robot
         self.events: Broadcast[Event] = Broadcast()
         self.place: MapInUse | None = None
         self._recording = recording
         self._battery_min_v = battery_min_v
+        self._note_cause = note_cause
+        self._make_lease = make_lease
         self._context = make_context(self.publish)
         self._note = note
         self._mode = Mode.DISARMED
@@ -218,7 +224,7 @@ class Supervisor:
         self._mission_id += 1
         mission_id = self._mission_id
         report = Reporter(mission_id, kind.name, kind.stops(mission), self.publish)
-        lease = self._lease = Lease(lease_s, lambda: self._lease_expired(mission_id))
+        lease = self._lease = self._make_lease(lease_s, lambda: self.lease_expired(mission_id))
         self._apply(kind.occasion, f"mission {mission_id}")
         self._mission = asyncio.create_task(self._run_mission(mission, report), name=f"mission {mission_id}")
         self._mission.add_done_callback(lambda task: self._mission_ended(task, lease, report))
@@ -289,8 +295,11 @@ class Supervisor:
         self._mode, self._reason = mode, reason
         self.publish(self.status)
 
-    def _lease_expired(self, mission_id: int) -> None:
+    def lease_expired(self, mission_id: int) -> None:
+        """Stop the mission whose client fell silent; nothing happens if it has ended."""
         if self._busy and mission_id == self._mission_id:
+            self.robot.stop_now()
+            self._note_cause("lease", {"mission_id": mission_id})
             self.halt(Occasion.STOP, f"the lease of mission {mission_id} expired: its client fell silent")
 
     async def _run_mission(self, mission: Mission, report: Reporter) -> None:

@@ -8,7 +8,7 @@ needs it.
 import enum
 from collections import Counter
 
-from robotd.recording.entries import BytesEntry, CommandEntry, Entry, LineEntry
+from robotd.recording.entries import BytesEntry, CauseEntry, CommandEntry, Entry, LineEntry
 
 
 class Source(enum.StrEnum):
@@ -23,7 +23,7 @@ class Source(enum.StrEnum):
 def source_of(entry: Entry) -> Source:
     """Return where an entry comes from."""
     match entry:
-        case BytesEntry() | LineEntry():
+        case BytesEntry() | LineEntry() | CauseEntry():
             return Source.LINES
         case CommandEntry():
             return Source.MAPS if "grid" in entry.arguments else Source.REQUESTS

@@ -13,6 +13,7 @@ from robotd.core.errors import RecordingError
 from robotd.hardware.link.tap import Direction
 from robotd.recording.entries import (
     BytesEntry,
+    CauseEntry,
     CommandEntry,
     ComputedEntry,
     Entry,
@@ -25,9 +26,10 @@ PROFILE = "robotd"
 HEADER_TOPIC = "header"
 _SERIAL = "serial"
 _LINE = "line"
-_JSON_ENTRIES: dict[str, type[CommandEntry | ComputedEntry | ResultEntry]] = {
+_JSON_ENTRIES: dict[str, type[CommandEntry | ComputedEntry | CauseEntry | ResultEntry]] = {
     "command": CommandEntry,
     "computed": ComputedEntry,
+    "cause": CauseEntry,
     "result": ResultEntry,
 }
 _NOT_SENT = {"time_ns", "encoded"}
@@ -79,7 +81,7 @@ def encoded(entry: E) -> E:
     return entry
 
 
-def _message_of(entry: CommandEntry | ComputedEntry | ResultEntry) -> bytes:
+def _message_of(entry: CommandEntry | ComputedEntry | CauseEntry | ResultEntry) -> bytes:
     made: bytes | None = getattr(entry, "encoded", None)
     names = (field.name for field in fields(entry) if field.name not in _NOT_SENT)
     return _dumps({name: getattr(entry, name) for name in names}) if made is None else made

@@ -5,6 +5,9 @@ from typing import Any
 
 from robotd.hardware.link.tap import Direction
 
+CAUSES_ARE_NOTED = "begun"
+"""The first cause in a recording that notes all of them; one without it is older, and its replay has to guess."""
+
 
 @dataclass(frozen=True, slots=True)
 class RecordingHeader:
@@ -62,6 +65,18 @@ class ComputedEntry:
 
 
 @dataclass(frozen=True, slots=True)
+class CauseEntry:
+    """The daemon took something up that no line, no client and no job brought: a stall of its loop, say.
+
+    Noted where it takes effect, in the order in which it does; a replay lets it take effect at the same place.
+    """
+
+    time_ns: int
+    name: str
+    arguments: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
 class ResultEntry:
     """The daemon came to a result: a sweep, an estimate, a map."""
 
@@ -75,4 +90,4 @@ class ResultEntry:
     """As of :class:`CommandEntry`."""
 
 
-Entry = BytesEntry | LineEntry | CommandEntry | ComputedEntry | ResultEntry
+Entry = BytesEntry | LineEntry | CommandEntry | ComputedEntry | CauseEntry | ResultEntry

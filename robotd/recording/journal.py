@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from typing import Any
 
 from robotd.hardware.link.tap import Direction
-from robotd.recording.entries import BytesEntry, CommandEntry, ComputedEntry, Entry, LineEntry, ResultEntry
+from robotd.recording.entries import BytesEntry, CauseEntry, CommandEntry, ComputedEntry, Entry, LineEntry, ResultEntry
 
 
 class Journal(ABC):
@@ -29,6 +29,10 @@ class Journal(ABC):
     def computed(self, time_ns: int, name: str, index: int) -> None:
         """Note that the ``index``-th job called ``name`` was handed back to the loop."""
         self.note(ComputedEntry(time_ns, name, index))
+
+    def cause(self, time_ns: int, name: str, arguments: dict[str, Any]) -> None:
+        """Note what is taken up now although no line, no client and no job brought it; ``arguments`` as in JSON."""
+        self.note(CauseEntry(time_ns, name, arguments))
 
     def result(self, time_ns: int, kind: str, content: dict[str, Any], digest: str) -> None:
         """Note a result; ``content`` must fit into JSON, ``digest`` stands for the whole of it."""

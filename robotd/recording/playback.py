@@ -21,7 +21,7 @@ from typing import TypeVar
 
 from robotd.core.errors import TransportError
 from robotd.hardware.link.tap import Direction
-from robotd.recording.entries import BytesEntry, CommandEntry, ComputedEntry, Entry, LineEntry
+from robotd.recording.entries import BytesEntry, CauseEntry, CommandEntry, ComputedEntry, Entry, LineEntry
 from robotd.recording.moments import RecordedTimeLoop
 from robotd.recording.reader import Recording
 
@@ -37,17 +37,24 @@ T = TypeVar("T")
 class Playback:
     """The outside world of a recording: lines, clients, and the time that computing took."""
 
-    def __init__(self, recording: Recording, carry_out: Callable[[CommandEntry], None]) -> None:
+    def __init__(
+        self,
+        recording: Recording,
+        carry_out: Callable[[CommandEntry], None],
+        take_up: Callable[[CauseEntry], None] = lambda _: None,
+    ) -> None:
         """Prepare to play.
 
         Args:
             recording: what to play.
             carry_out: called with each command at its time; must not block (start a task for what takes long).
+            take_up: called with each cause at its place; must not block.
         """
         self._entries = recording.entries
         self._at = 0
         self._over = asyncio.Event()
         self._carry_out = carry_out
+        self._take_up = take_up
         self._lines = {device: ReplayLine(device) for device in recording.devices}
         self.compute = RecordedCompute(recording)
 
@@ -87,6 +94,8 @@ class Playback:
                 self.line(entry.device).change(up=entry.up)
             case CommandEntry():
                 self._carry_out(entry)
+            case CauseEntry():
+                self._take_up(entry)
             case ComputedEntry():
                 self.compute.release(entry)
             case _:

@@ -17,7 +17,15 @@ from mcap.stream_reader import StreamReader, breakup_chunk
 
 from robotd.core.errors import RecordingError
 from robotd.recording.encoding import HEADER_TOPIC, decode, decode_header
-from robotd.recording.entries import BytesEntry, Entry, LineEntry, RecordingHeader, ResultEntry
+from robotd.recording.entries import (
+    CAUSES_ARE_NOTED,
+    BytesEntry,
+    CauseEntry,
+    Entry,
+    LineEntry,
+    RecordingHeader,
+    ResultEntry,
+)
 
 _RECORD_LIMIT_BYTES = 64 * 1024 * 1024
 _DAMAGE = (McapError, ValueError, OverflowError, struct.error)
@@ -41,6 +49,11 @@ class Recording:
     def end_ns(self) -> int:
         """Time of the last entry; of the start, if there is none."""
         return self.entries[-1].time_ns if self.entries else self.header.started_ns
+
+    @property
+    def notes_causes(self) -> bool:
+        """Whether it holds what the daemon's own clocks and threads decided, as all do since 0.2."""
+        return any(isinstance(entry, CauseEntry) and entry.name == CAUSES_ARE_NOTED for entry in self.entries[:1])
 
     @property
     def devices(self) -> tuple[str, ...]:

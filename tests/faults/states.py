@@ -2,11 +2,13 @@
 
 from collections.abc import Awaitable, Callable
 
+import msgspec
+
 from firmware_proto.common import Fault
 from robotd.core.pose import Odometry
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.mission.control import _use_map
 from robotd.mission.events import Event, MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Mode
 from robotd.mission.motion import next_odometry
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
@@ -91,8 +93,8 @@ def _is_fast(event: Event) -> bool:
 
 
 async def _use_blank_map(bench: Bench) -> None:
-    start, here = bench.robot.start, await next_odometry(bench.daemon.robot.drive, 1.0)
+    start = bench.robot.start
+    await next_odometry(bench.daemon.robot.drive, 1.0)
     grid = OccupancyGrid(GridSettings().spec_covering(((start.x_m, start.y_m),), 3.0))
-    place = MapInUse("blank", "blank", grid, None)
-    place.tie(start, here.in_odom)
-    bench.daemon.supervisor.use(place)
+    command = _use_map({"map_id": "blank", "name": "blank", "robot_in_map": msgspec.to_builtins(start)}, grid)
+    await bench.daemon.control.repeat("use_map", command.arguments)  # through the journal, so that a replay has it, too

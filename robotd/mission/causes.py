@@ -1,0 +1,44 @@
+"""What stops the robot although no line, client or job brought it: noted in the journal, and taken up from there.
+
+A replay knows what came over the lines and from the clients. What the daemon's own clocks and threads decided it would
+have to guess, and it would guess another moment: so each of these is noted where it takes effect, and a replay takes it
+up there, with its own clocks silenced.
+"""
+
+from typing import Any
+
+from robotd.core.clock import now_ns
+from robotd.core.errors import RecordingError
+from robotd.mission.modes import Occasion
+from robotd.mission.supervisor import Supervisor
+from robotd.recording.journal import Journal
+
+STALL = "stall"
+
+
+class Causes:
+    """Takes up what comes from within."""
+
+    def __init__(self, supervisor: Supervisor, journal: Journal) -> None:
+        self._supervisor = supervisor
+        self._journal = journal
+
+    def stalled(self, for_s: float) -> None:
+        """Take up that the event loop stood still for longer than ``for_s`` [s]; the guard has stopped the robot."""
+        self._supervisor.robot.stop_now()
+        self._journal.cause(now_ns(), STALL, {"for_s": for_s})
+        self._supervisor.halt(Occasion.STOP, f"the event loop stood still for more than {for_s:g} s")
+
+    def repeat(self, name: str, arguments: dict[str, Any]) -> None:
+        """Take up a cause as the journal noted it; one of a later version is left out.
+
+        Raises:
+            RecordingError: its arguments are not what it needs.
+        """
+        match name, arguments:
+            case "stall", {"for_s": float() | int() as for_s}:
+                self.stalled(for_s)
+            case "lease", {"mission_id": int() as mission_id}:
+                self._supervisor.lease_expired(mission_id)
+            case (("stall" | "lease"), _):
+                raise RecordingError(f"cause {name!r}: its arguments do not fit: {str(arguments)[:100]}")
