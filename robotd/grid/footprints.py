@@ -19,6 +19,20 @@ def disk_footprint(radius_cells: float) -> NDArray[np.bool_]:
     return disk
 
 
+def touching_footprint(radius_cells: float) -> NDArray[np.bool_]:
+    """Return the cells whose square comes nearer than ``radius_cells`` to the centre of the middle one.
+
+    >>> touching_footprint(0.6).astype(int).tolist()
+    [[0, 1, 0], [1, 1, 1], [0, 1, 0]]
+    """
+    if radius_cells < 0.0:
+        raise ValueError(f"radius_cells must not be negative, got {radius_cells}")
+    most = max(0, int(np.ceil(radius_cells + 0.5)) - 1)
+    nearest = np.maximum(np.abs(np.arange(-most, most + 1)) - 0.5, 0.0)
+    touching: NDArray[np.bool_] = nearest[:, None] ** 2 + nearest**2 < radius_cells**2
+    return touching
+
+
 def dilate(mask: NDArray[np.bool_], footprint: NDArray[np.bool_], *, outside: bool = False) -> NDArray[np.bool_]:
     """Return the Minkowski sum of a set of cells and a footprint centred on its middle cell.
 

@@ -115,7 +115,7 @@ class OccupancyGrid:
         Returns:
             Flat indices ``row * cols + col`` of the cells whose value changed, ascending. O(readings x cells a beam).
         """
-        readings, tables = numbers_of(self._usable(sweep)), (self._lower, self._raise)
+        readings, tables = numbers_of(self.usable(sweep)), (self._lower, self._raise)
         at_once = self.settings.policy is UpdatePolicy.PER_SWEEP
         return kernels.insert_sweep(self.cells, readings, map_from_robot, self.spec, tables, at_once=at_once)
 
@@ -127,7 +127,8 @@ class OccupancyGrid:
         found.update(np.ascontiguousarray(self.cells).data)  # not a copy of it: a copy keeps other threads waiting
         return found.hexdigest()
 
-    def _usable(self, sweep: Sweep) -> tuple[RangeReading, ...]:
+    def usable(self, sweep: Sweep) -> tuple[RangeReading, ...]:
+        """Return the readings of a sweep that change this grid."""
         if self.settings.over_range is OverRange.CLEAR:
             return sweep.measured
         return tuple(reading for reading in sweep.measured if reading.status is ReadingStatus.OK)

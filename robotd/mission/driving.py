@@ -1,13 +1,18 @@
 """From here to a place on the map: plan, then leg by leg."""
 
+import numpy as np
+from numpy.typing import NDArray
+
 from robotd.core.errors import MissionError
 from robotd.core.pose import Odometry, Pose2
+from robotd.grid.latest import HIT
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import MissionPhase
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.motion import drive_leg, next_odometry
 from robotd.mission.requests import DriveMission, Legs
-from robotd.planning.path import Path, plan
+from robotd.planning.path import Path, PlanningSettings, Unreachable, plan
 
 
 async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: float, legs: Legs) -> Odometry:
@@ -31,10 +36,20 @@ async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: fl
 async def _planned(
     context: MissionContext, place: MapInUse, start: Pose2, goal_m: tuple[float, float]
 ) -> tuple[tuple[float, float], ...]:
-    route = await context.compute.run("plan", plan, place.grid, start, goal_m, context.settings.planning)
+    route = await context.compute.run("plan", _plan, place.grid, place.latest, start, goal_m, context.settings.planning)
     if not isinstance(route, Path):
         raise MissionError(f"({goal_m[0]:.2f}, {goal_m[1]:.2f}) m cannot be reached: {route.reason}")
     return route.waypoints_m
+
+
+def _plan(
+    grid: OccupancyGrid,
+    latest: NDArray[np.uint8],
+    start: Pose2,
+    goal_m: tuple[float, float],
+    settings: PlanningSettings,
+) -> Path | Unreachable:
+    return plan(grid, start, goal_m, settings, latest == HIT)
 
 
 async def run_driving(context: MissionContext, place: MapInUse, mission: DriveMission, report: Reporter) -> str:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import Sweep
 from robotd.grid.binary import BinaryMap
+from robotd.grid.latest import latest_with
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.window import CellWindow
 from robotd.mission.events import MapChanged
@@ -23,6 +24,8 @@ class Laid:
     grid: OccupancyGrid
     cells: NDArray[np.intp]
     """Those that changed, as flat indices, ascending."""
+    latest: NDArray[np.uint8]
+    """As :attr:`MapInUse.latest`, of this grid."""
     digest: str
     """Of the grid."""
 
@@ -46,13 +49,19 @@ class MapInUse:
     """Counts its changes since it came into use."""
     readiness: Readiness = field(default_factory=Readiness)
     """What localization has made of it."""
+    latest: NDArray[np.uint8] = field(init=False)
+    """``uint8[rows, cols]``: what the latest sweep that met each cell said of it, of those laid in since this map came
+    into use; what was seen before is in the grid alone. Never changed, only replaced."""
     is_doubted: bool = False
     """Whether the tie is no longer believed: a robot that looked and did not find itself, or was out of sight of
     its wheels, does not know where it is, though it may still know which way it looks."""
 
     def __post_init__(self) -> None:
-        """Make the digest, unless somebody did."""
+        """Make the digest, unless somebody did; nothing was said of any cell yet."""
         self.digest = self.digest or self.grid.digest()
+        self.latest = np.zeros(
+            self.grid.spec.shape, np.uint8
+        )  # NOTHING, and not touched: that would take long on the loop
 
     def pose_of(self, odometry: Odometry) -> Pose2 | None:
         """Return where odometry places the robot on the map, if anything ties them that is believed."""
@@ -76,12 +85,14 @@ class MapInUse:
         if self.map_from_odom is None:
             raise ValueError("a sweep cannot be inserted: odometry is not tied to the map")
         grid = OccupancyGrid(self.grid.spec, self.grid.cells, self.grid.settings)
-        changed = grid.insert(sweep, self.map_from_odom @ sweep.in_odom)
-        return Laid(grid, changed, grid.digest())
+        map_from_robot = self.map_from_odom @ sweep.in_odom
+        changed = grid.insert(sweep, map_from_robot)
+        latest = latest_with(self.latest, grid.usable(sweep), map_from_robot, grid.spec)
+        return Laid(grid, changed, latest, grid.digest())
 
     def take(self, laid: "Laid") -> None:
         """Go on with the grid that a sweep was laid in."""
-        self.grid, self.digest = laid.grid, laid.digest
+        self.grid, self.latest, self.digest = laid.grid, laid.latest, laid.digest
         self.generation += 1
         self.readiness.note(CellWindow.bounding(laid.cells, laid.grid.spec.shape))
 

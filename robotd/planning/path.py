@@ -1,7 +1,8 @@
 """From here to there: the planner LILY used ([BrownDonald2000]_ sec. 2.3.2), its way pulled straight.
 
 Obstacles are grown by the robot, a distance field floods out from the goal, and the way is its descent. Whether there
-is a way at all is known as soon as the field is.
+is a way at all is known as soon as the field is. Along every leg, from where the robot stands to the goal itself, its
+disk meets no cell that is taken for an obstacle, whatever clearance is set.
 """
 
 import enum
@@ -16,8 +17,11 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.spec import GridSpec
 from robotd.grid.tables import NO_INFORMATION
 from robotd.planning.distance_field import NEIGHBOURS, STEP_CELLS, distance_field
-from robotd.planning.line_of_sight import in_sight, pulled_straight
-from robotd.planning.traversable import free_cells, inflated
+from robotd.planning.line_of_sight import Position, centre_of, distances_of_leg, in_sight, pulled_straight
+from robotd.planning.traversable import free_cells, inflated, lone_hits
+
+_AT_CELLS = 1.0
+"""What was hit so near to the goal is where the robot is sent to, not something on its way."""
 
 Cell = tuple[int, int]
 Point = tuple[float, float]
@@ -30,7 +34,7 @@ class PlanningSettings:
     robot_radius_m: float = 0.3
     """Radius of the disk that the robot fills."""
     clearance_m: float = 0.1
-    """What to keep free round it; covers the rounding to cells and small errors of the drive."""
+    """What to keep free round it for errors of the drive and of the map; the rounding to cells is seen to besides."""
     gap_cells: int = 2
     """Unknown gaps up to so wide, between cells seen free, are taken for free."""
 
@@ -90,24 +94,60 @@ class Unreachable:
         return f"{self.hindrance}; the nearest reachable point is ({self.nearest_m[0]:.2f}, {self.nearest_m[1]:.2f}) m"
 
 
-def plan(grid: OccupancyGrid, start: Pose2, goal_m: Point, settings: PlanningSettings) -> Path | Unreachable:
+def plan(
+    grid: OccupancyGrid,
+    start: Pose2,
+    goal_m: Point,
+    settings: PlanningSettings,
+    hit: NDArray[np.bool_] | None = None,
+) -> Path | Unreachable:
     """Find the shortest way for the robot's centre from a pose to a point.
 
+    Lone hits, which a wrong range may have left, are gone round like any other obstacle; only if then there is no way,
+    and none of them is at the goal itself, they are taken for wrong ranges.
+
     The robot stands where it stands: the cells under it count as free, and if it is nearer to an obstacle than it
-    should be, the way begins with a straight leg out of there.
+    should be, the way begins with a straight leg out of there that takes it no nearer.
+
+    Args:
+        grid: the map.
+        start: where the robot stands, map frame.
+        goal_m: where it shall go, map frame.
+        settings: the robot.
+        hit: ``bool[rows, cols]``, cells that are obstacles whatever the grid says of them.
     """
     spec = grid.spec
-    here, there = spec.cell_at(start.x_m, start.y_m), spec.cell_at(*goal_m)
-    if not spec.contains(*here):
+    if not spec.contains(*spec.cell_at(start.x_m, start.y_m)):
         return Unreachable(Hindrance.START_OUTSIDE, None)
-    ground = _Ground.of(grid, here, settings)
+    hit = np.zeros(spec.shape, np.bool_) if hit is None else hit
+    answer = _planned(grid, _Ground.of(grid, start, hit, None, settings), start, goal_m)
+    lone = lone_hits(grid, hit)
+    if isinstance(answer, Path) or not lone.any() or _is_at(lone, spec, goal_m):
+        return answer
+    doubting = _planned(grid, _Ground.of(grid, start, hit, lone, settings), start, goal_m)
+    return doubting if isinstance(doubting, Path) else answer
+
+
+def _is_at(lone: NDArray[np.bool_], spec: GridSpec, goal_m: Point) -> bool:
+    goal = _position(spec, goal_m)
+    return bool((distances_of_leg(np.argwhere(lone), goal, goal) <= _AT_CELLS).any())
+
+
+def _planned(grid: OccupancyGrid, ground: "_Ground", start: Pose2, goal_m: Point) -> Path | Unreachable:
+    spec = grid.spec
+    here, there = spec.cell_at(start.x_m, start.y_m), spec.cell_at(*goal_m)
     field = distance_field(ground.allowed, there) if spec.contains(*there) else np.full(spec.shape, np.inf)
     exit_cell = ground.way_out(here, field)
     if exit_cell is None:
         return Unreachable(_hindrance(grid, ground, there), _nearest_reachable_m(ground, spec, here, goal_m))
-    corners = pulled_straight(ground.allowed, _descent(field, exit_cell))
-    inner = corners[1:-1] if exit_cell == here else corners[:-1]
-    return Path((start.x_m, start.y_m), (*(spec.centre_of(*cell) for cell in inner), goal_m))
+    cells = _descent(field, exit_cell)
+    way = [centre_of(cell) for cell in cells] + [_position(spec, goal_m)]
+    points_m = [spec.centre_of(*cell) for cell in cells] + [goal_m]
+    if ground.allowed[here]:
+        way, points_m = [ground.start, *way], [(start.x_m, start.y_m), *points_m]
+    corners = pulled_straight(ground.allowed, way)
+    onward = corners[1:] if ground.allowed[here] else corners
+    return Path((start.x_m, start.y_m), tuple(points_m[corner] for corner in onward))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,31 +156,65 @@ class _Ground:
 
     free: NDArray[np.bool_]
     """``bool[rows, cols]``: no obstacle as far as anybody knows, or under the robot."""
+    met: NDArray[np.bool_]
+    """``bool[rows, cols]``: an obstacle that a beam met; the others that are not free were never seen."""
     allowed: NDArray[np.bool_]
     """``bool[rows, cols]``: the robot fits."""
+    start: Position
+    robot_cells: float
+    """Radius of its disk."""
     reach_cells: float
     """How far to look for a way out of a place where it does not fit."""
 
     @classmethod
-    def of(cls, grid: OccupancyGrid, here: Cell, settings: PlanningSettings) -> "_Ground":
-        resolution_m = grid.spec.resolution_m
-        free = free_cells(grid, settings.gap_cells)
+    def of(
+        cls,
+        grid: OccupancyGrid,
+        start: Pose2,
+        hit: NDArray[np.bool_],
+        doubted: NDArray[np.bool_] | None,
+        settings: PlanningSettings,
+    ) -> "_Ground":
+        resolution_m, here = grid.spec.resolution_m, grid.spec.cell_at(start.x_m, start.y_m)
+        robot_cells, clearance_cells = settings.robot_radius_m / resolution_m, settings.clearance_m / resolution_m
+        taken = hit if doubted is None else hit & ~doubted
+        free = free_cells(grid, settings.gap_cells, doubted) & ~taken
+        met = (grid.cells > NO_INFORMATION) | taken
         rows, cols = np.ogrid[: free.shape[0], : free.shape[1]]
-        free |= (rows - here[0]) ** 2 + (cols - here[1]) ** 2 <= (settings.robot_radius_m / resolution_m) ** 2
-        radius_cells = (settings.robot_radius_m + settings.clearance_m) / resolution_m
-        return cls(free, ~inflated(~free, radius_cells), 2.0 * radius_cells)
+        free |= (rows - here[0]) ** 2 + (cols - here[1]) ** 2 <= robot_cells**2
+        allowed = ~inflated(~free, robot_cells, clearance_cells)
+        reach_cells = 2.0 * (robot_cells + max(clearance_cells, 1.0))
+        return cls(free, met & ~free, allowed, _position(grid.spec, (start.x_m, start.y_m)), robot_cells, reach_cells)
 
     def way_out(self, here: Cell, field: NDArray[np.float64]) -> Cell | None:
-        """Return where to start on the field: here, or the nearest cell in sight on which the robot fits."""
+        """Return where to start on the field: here, or the nearest cell that can be reached on which the robot fits."""
         if self.allowed[here]:
             return here if np.isfinite(field[here]) else None
         cells = np.argwhere(self.allowed & np.isfinite(field))
         distances = np.hypot(*(cells - here).T)
         near = distances <= self.reach_cells
+        around = np.argwhere(self.met)
+        around = around[np.hypot(*(around - here).T) <= self.reach_cells + self.robot_cells + 2.0]
         for row, col in cells[near][np.argsort(distances[near], kind="stable")].tolist():
-            if in_sight(self.free, here, (row, col)):
+            if self._gets_out(around, (row, col)):
                 return row, col
         return None
+
+    def _gets_out(self, around: NDArray[np.intp], to: Cell) -> bool:
+        """Whether on a straight leg from the start the robot meets no obstacle, and none it met before comes nearer.
+
+        Never seen is what lies round a robot that has just begun: its middle must keep to what is free, no more.
+        """
+        if not in_sight(self.free, self.start, centre_of(to)):
+            return False
+        at_first = distances_of_leg(around, self.start, self.start)
+        on_the_way = distances_of_leg(around, self.start, centre_of(to))
+        return bool((on_the_way >= np.minimum(at_first, self.robot_cells) - 1e-9).all())
+
+
+def _position(spec: GridSpec, point_m: Point) -> Position:
+    row, col = spec.positions_at(np.array([point_m]))[0].tolist()
+    return row, col
 
 
 def _descent(field: NDArray[np.float64], start: Cell) -> list[Cell]:

@@ -92,7 +92,7 @@ class Test:
 def known_floor(grid: OccupancyGrid) -> NDArray[np.bool_]:
     """Return where the planner lets the robot stand on its map, ``bool[rows, cols]``."""
     radius_cells = ROBOT_RADIUS_M / grid.spec.resolution_m
-    return ~inflated(~free_cells(grid, PlanningSettings().gap_cells), radius_cells)
+    return ~inflated(~free_cells(grid, PlanningSettings().gap_cells), radius_cells, 0.0)
 
 
 def _is_inside(walls: Walls, point_m: Point) -> bool:

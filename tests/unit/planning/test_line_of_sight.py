@@ -9,33 +9,58 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
-from robotd.planning.line_of_sight import in_sight, pulled_straight
+from robotd.planning.line_of_sight import (
+    Position,
+    centre_of,
+    distances_of_leg,
+    in_sight,
+    pulled_straight,
+    touched_cells,
+)
 
 maps = hnp.arrays(np.bool_, (9, 11), elements=st.sampled_from([True] * 5 + [False]))
 cells = st.tuples(st.integers(0, 8), st.integers(0, 10))
 
 
-def crossed(one: tuple[int, int], other: tuple[int, int]) -> list[tuple[int, int]]:
-    """One cell per step along the dominant axis, by whole numbers; ties, which may go either way, are left out."""
-    rows, cols = other[0] - one[0], other[1] - one[1]
-    steps = max(abs(rows), abs(cols))
-    return [
-        (one[0] + math.floor(k * rows / steps + 0.5), one[1] + math.floor(k * cols / steps + 0.5))
-        for k in range(steps + 1)
-        if steps and not any(abs(2 * k * part) % (2 * steps) == steps for part in (rows, cols))
-    ]
+positions = st.tuples(st.floats(0.0, 8.99), st.floats(0.0, 10.99))
+on_quarters = st.tuples(st.integers(0, 35), st.integers(0, 43)).map(lambda at: (at[0] / 4, at[1] / 4))
+
+
+def slow_distance(cell: tuple[int, int], one: Position, other: Position) -> float:
+    """Return how near a leg comes to a cell, from very many points of it."""
+    shares = np.linspace(0.0, 1.0, 4001)[:, None]
+    points = np.array(one) + shares * (np.array(other) - np.array(one))
+    outside = np.maximum(np.maximum(np.array(cell) - points, points - np.array(cell) - 1.0), 0.0)
+    return float(np.hypot(*outside.T).min())
 
 
 @settings(max_examples=150)
-@given(maps, cells, cells)
-def test_in_sight_means_all_cells_between_are_free(
-    free: NDArray[np.bool_], one: tuple[int, int], other: tuple[int, int]
+@given(maps, st.one_of(positions, on_quarters), st.one_of(positions, on_quarters))
+def test_in_sight_means_that_no_cell_that_the_leg_runs_through_is_taken(
+    free: NDArray[np.bool_], one: Position, other: Position
 ) -> None:
-    between = crossed(one, other) or [one]
-    if not all(free[cell] for cell in between):
+    shares = np.linspace(0.0, 1.0, 2001)[:, None]
+    points = np.array(one) + shares * (np.array(other) - np.array(one))
+    inside = points[(np.abs(points - np.round(points)) > 1e-6).all(axis=1)]  # what lies on an edge is in two cells
+    cells = np.floor(inside).astype(np.intp)
+    if not free[tuple(cells.T)].all():
         assert not in_sight(free, one, other)
-    elif len(between) == max(abs(one[0] - other[0]), abs(one[1] - other[1])) + 1:
-        assert in_sight(free, one, other)
+    met = touched_cells(one, other)
+    assert all(slow_distance(tuple(cell), one, other) < 1e-2 for cell in met.tolist())
+    assert in_sight(free, one, other) == bool(free[tuple(met.T)].all())
+
+
+@settings(max_examples=100)
+@given(cells, st.one_of(positions, on_quarters), st.one_of(positions, on_quarters))
+def test_how_near_a_leg_comes_to_a_cell(cell: tuple[int, int], one: Position, other: Position) -> None:
+    found = float(distances_of_leg(np.array([cell]), one, other)[0])
+    assert found <= slow_distance(cell, one, other) + 1e-9
+    assert found >= slow_distance(cell, one, other) - 0.01
+
+
+def test_off_the_map_nothing_is_in_sight() -> None:
+    assert not in_sight(np.ones((3, 3), np.bool_), (1.5, 1.5), (1.5, 3.5))
+    assert not in_sight(np.ones((3, 3), np.bool_), (1.5, 1.5), (-0.5, 1.5))
 
 
 @st.composite
@@ -54,13 +79,24 @@ def ways(draw: st.DrawFn) -> list[tuple[int, int]]:
 def test_a_pulled_way_keeps_its_ends_and_stays_in_sight(free: NDArray[np.bool_], way: list[tuple[int, int]]) -> None:
     free = free.copy()
     free[tuple(np.array(way).T)] = True
-    corners = pulled_straight(free, way)
-    assert (corners[0], corners[-1]) == (way[0], way[-1])
-    assert all(corner in way for corner in corners)
-    assert all(in_sight(free, one, other) for one, other in itertools.pairwise(corners))
-    length = sum(math.dist(one, other) for one, other in itertools.pairwise(corners))
-    assert length <= sum(math.dist(one, other) for one, other in itertools.pairwise(way)) + 1e-9
+    points = [centre_of(cell) for cell in way]
+    corners = pulled_straight(free, points)
+    assert (corners[0], corners[-1]) == (0, len(way) - 1)
+    assert corners == sorted(corners)
+    for one, other in itertools.pairwise(corners):
+        assert other == one + 1 or in_sight(free, points[one], points[other])
+    length = sum(math.dist(points[one], points[other]) for one, other in itertools.pairwise(corners))
+    assert length <= sum(math.dist(one, other) for one, other in itertools.pairwise(points)) + 1e-9
 
 
 def test_an_open_floor_is_crossed_in_one_leg() -> None:
-    assert pulled_straight(np.ones((9, 11), np.bool_), [(0, 0), (0, 1), (1, 2), (2, 3), (2, 4)]) == [(0, 0), (2, 4)]
+    way = [(0, 0), (0, 1), (1, 2), (2, 3), (2, 4)]
+    assert pulled_straight(np.ones((9, 11), np.bool_), [centre_of(cell) for cell in way]) == [0, 4]
+
+
+def test_a_leg_does_not_cut_the_corner_of_a_cell() -> None:
+    """Sampled once a column, this leg runs through free cells alone; it cuts the corner of the one that is not."""
+    free = np.ones((2, 3), np.bool_)
+    free[1, 1] = False
+    assert [1, 1] in touched_cells((0.5, 0.5), (1.5, 2.5)).tolist()
+    assert not in_sight(free, (0.5, 0.5), (1.5, 2.5))

@@ -134,8 +134,41 @@ def test_the_ground_under_the_robot_is_free_though_nobody_saw_it() -> None:
     assert isinstance(plan(unseen, START, (2.0, 0.0), SETTINGS), Path)
 
 
+CORRIDOR = room((-1.0, -2.0, 3.0, -1.5), (-1.0, -0.5, 3.0, 1.0))
+
+
+@pytest.mark.parametrize(("values", "passes"), [((200,), True), ((244,), False), ((200, 200), False)])
+def test_only_where_nothing_leads_round_a_lone_hit_is_taken_for_a_wrong_range(
+    values: tuple[int, ...], passes: bool
+) -> None:
+    row, col = SPEC.cell_at(1.0, -1.0)
+    grid = OccupancyGrid(SPEC, CORRIDOR.cells)
+    grid.cells[row, col : col + len(values)] = values
+    assert isinstance(plan(grid, START, (2.3, -1.0), SETTINGS), Path) == passes
+    open_floor = room()
+    open_floor.cells[row, col : col + len(values)] = values
+    path = plan(open_floor, START, (2.3, -1.0), SETTINGS)
+    assert isinstance(path, Path)
+    assert clearance_m(path, open_floor) > 0.25
+
+
+def test_a_lone_hit_at_the_goal_is_not_doubted() -> None:
+    grid = OccupancyGrid(SPEC, CORRIDOR.cells)
+    grid.cells[SPEC.cell_at(2.0, -1.0)] = 200
+    answer = plan(grid, START, (2.02, -0.98), SETTINGS)
+    assert isinstance(answer, Unreachable)
+    assert answer.hindrance is Hindrance.OBSTACLE
+
+
 fields = hnp.arrays(np.uint8, SPEC.shape, elements=st.sampled_from([0] * 60 + [255]), fill=st.just(0))
 starts = st.tuples(st.floats(-0.6, 2.6), st.floats(-1.6, 0.6))
+
+
+def fits_at(centres_m: NDArray[np.float64], radius_m: float) -> bool:
+    """Whether no obstacle's centre is too near, and from nowhere in the cell the disk meets an obstacle's square."""
+    squares_m = np.maximum(np.abs(centres_m) - SPEC.resolution_m / 2, 0.0)
+    is_clear = np.hypot(*squares_m.T).min() > SETTINGS.robot_radius_m + math.sqrt(0.5) * SPEC.resolution_m
+    return bool(np.hypot(*centres_m.T).min() > radius_m + 1e-9 and is_clear)
 
 
 @settings(max_examples=60, deadline=None)
@@ -151,7 +184,7 @@ def test_a_plan_keeps_its_distance_and_there_is_one_exactly_if_the_ground_allows
     centres = obstacle_centres(grid)
     allowed = np.array(
         [
-            [np.hypot(*(centres - SPEC.centre_of(row, col)).T).min() > radius_m + 1e-9 for col in range(SPEC.cols)]
+            [fits_at(centres - SPEC.centre_of(row, col), radius_m) for col in range(SPEC.cols)]
             for row in range(SPEC.rows)
         ]
     )

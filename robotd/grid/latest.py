@@ -1,0 +1,28 @@
+"""What the latest sweep that met a cell said of it: that a beam ran through, or that one ended in it.
+
+An occupancy value weighs all that was ever said. Whoever is about to drive somewhere wants to know of what was seen
+there last, too: a chair that was put where ten sweeps saw nothing.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.pose import Pose2
+from robotd.core.reading import RangeReading
+from robotd.grid import kernels
+from robotd.grid.readings import numbers_of
+from robotd.grid.spec import GridSpec
+
+NOTHING, PASSED, HIT = 0, 1, 2
+"""Values of a cell: no sweep met it; beams ran through it and none ended in it; one ended in it."""
+
+_TABLES = (np.full(256, PASSED, np.uint8), np.full(256, HIT, np.uint8))
+
+
+def latest_with(
+    latest: NDArray[np.uint8], readings: tuple[RangeReading, ...], map_from_robot: Pose2, spec: GridSpec
+) -> NDArray[np.uint8]:
+    """Return what was said last with one more sweep, ``uint8[rows, cols]``; what went in is left as it is."""
+    found = latest.copy()
+    kernels.insert_sweep(found, numbers_of(readings), map_from_robot, spec, _TABLES, at_once=True)
+    return found
