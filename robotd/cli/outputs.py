@@ -143,16 +143,16 @@ def _paths(values: Iterable[object]) -> Iterator[Path]:
 def write(path: Path, content: bytes) -> None:
     """Write a file whole or not at all, in a directory that is made if it is not there.
 
-    What is no plain file, such as a terminal or a pipe, is written to as it is; a link stays one.
+    What is no plain file, such as a terminal, a pipe or ``/dev/stdout``, is written to as it is; a link stays one.
 
     Raises:
         RobotdError: it cannot be written; an older one is as it was.
     """
     try:
-        path = path.resolve()
-        if path.exists() and not path.is_file():
+        if path.exists() and (not path.is_file() or path.is_relative_to("/dev")):
             path.write_bytes(content)
             return
+        path = path.resolve()
         path.parent.mkdir(parents=True, exist_ok=True)
         _replace(path, content)
     except OSError as error:

@@ -2,7 +2,10 @@
 
 import argparse
 import os
+import shlex
 import stat
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,6 +18,7 @@ from robotd.cli.outputs import DEMO_MARK, OutputPath, write
 from robotd.core.errors import RobotdError
 from tests.unit.logs.room import flaser
 
+ROOT = Path(__file__).parents[3]
 LOG = "\n".join(flaser()) + "\n"
 PRECIOUS = {
     "a log": LOG.encode(),
@@ -183,6 +187,15 @@ def test_a_link_stays_a_link_and_what_is_no_plain_file_is_written_to(tmp_path: P
     assert (tmp_path / "real").read_bytes() == b"two"
     write(Path(os.devnull), b"gone")
     assert stat.S_ISCHR(Path(os.devnull).stat().st_mode)
+
+
+@pytest.mark.parametrize("redirected", [" > FILE", " | cat > FILE"])
+def test_the_name_of_standard_output_is_standard_output(redirected: str, tmp_path: Path) -> None:
+    program = "from pathlib import Path; from robotd.cli.outputs import write; write(Path('/dev/stdout'), b'said')"
+    file = tmp_path / "said"
+    command = f"{shlex.quote(sys.executable)} -c {shlex.quote(program)}{redirected.replace('FILE', str(file))}"
+    subprocess.run(command, shell=True, check=True, cwd=ROOT)
+    assert file.read_bytes() == b"said"
 
 
 def test_the_default_of_a_demonstration_is_looked_at_too(
