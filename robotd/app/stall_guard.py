@@ -79,7 +79,7 @@ class _Guard:
         """Wait for one beat after the other; stop the robot when one is late."""
         while not self._is_ending:
             if not self._beaten.wait(STALL_S):
-                self._stop_past_loop(0)
+                self._stop(0)
                 self._stuck_in = self._where()
                 self._fired.set()
                 self._go_on_stopping()
@@ -90,7 +90,14 @@ class _Guard:
         for before in count(1):
             if self._beaten.wait(PAST_LOOP_S):
                 return
+            self._stop(before)
+
+    def _stop(self, before: int) -> None:
+        """Stop; what goes wrong with it must not end the thread, which is all that is left."""
+        try:
             self._stop_past_loop(before)
+        except Exception:
+            log.exception("the robot could not be stopped past the loop")
 
     def _where(self) -> str:
         """Return where the loop's thread is: who reads the log wants to know what held it up."""

@@ -1,15 +1,20 @@
 """Telling systemd how the daemon is: ``sd_notify``, and a watchdog that only a healthy loop feeds."""
 
 import asyncio
+import logging
 import os
 import socket
 from collections.abc import Callable, Mapping
 
 from robotd.core.clock import NS_PER_S, now_ns
 
+_KIND = socket.SOCK_DGRAM | socket.SOCK_CLOEXEC | socket.SOCK_NONBLOCK
 _LOOKS_PER_PERIOD = 20
 _TOLERATED_LAG = 0.1
 """Largest lag of the loop that still counts as healthy, as a share of the watchdog's time."""
+
+
+log = logging.getLogger(__name__)
 
 
 class Notifier:
@@ -18,6 +23,7 @@ class Notifier:
     def __init__(self, address: str | None) -> None:
         """Take the address of ``NOTIFY_SOCKET``: a path, or ``@`` and a name of the abstract namespace."""
         self._address = f"\0{address[1:]}" if address and address.startswith("@") else address
+        self._is_failing = False
 
     @classmethod
     def of(cls, environment: Mapping[str, str] = os.environ) -> "Notifier":
@@ -44,11 +50,15 @@ class Notifier:
         """Send a state; a manager that does not take it now is no reason to wait or to fail."""
         if not self._address:
             return
-        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC | socket.SOCK_NONBLOCK) as sender:
-            try:
+        try:
+            with socket.socket(socket.AF_UNIX, _KIND) as sender:
                 sender.sendto(state.encode(), self._address)
-            except OSError:  # the watchdog will tell, if it matters
-                return
+        except OSError as error:  # no descriptor left, for one: the watchdog will tell, if it matters
+            if not self._is_failing:
+                log.warning("the service manager could not be told %s: %s", state.partition("=")[0], error)
+            self._is_failing = True
+        else:
+            self._is_failing = False
 
 
 def watchdog_s(environment: Mapping[str, str] = os.environ) -> float | None:

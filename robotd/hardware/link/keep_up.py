@@ -28,7 +28,7 @@ class Talker(Protocol):
 
 
 async def keep_up(device: str, connect: Connect, tap: Tap, talker: Talker) -> NoReturn:
-    """Keep a line up until cancelled; nothing that a device or a line does ends it.
+    """Keep a line up until cancelled; nothing that a device, a line or the operating system does ends it.
 
     Args:
         device: what the tap calls the line.
@@ -45,7 +45,7 @@ async def keep_up(device: str, connect: Connect, tap: Tap, talker: Talker) -> No
                 await talker.talk(line)
             finally:
                 line.close()
-        except RobotdError as error:
+        except (RobotdError, OSError) as error:
             talker.line_lost(str(error))
         except asyncio.CancelledError:
             talker.line_lost("shut down")

@@ -73,7 +73,12 @@ class InThread:
     """A thread asks, and waits as long as it takes: for terminals."""
 
     def __init__(self, name: str, descriptor: int) -> None:
-        """Begin to wait for wishes; ``name`` is for people."""
+        """Begin to wait for wishes; ``name`` is for people.
+
+        Raises:
+            OSError: there is no descriptor left.
+            RuntimeError: there is no thread left.
+        """
         self._descriptor = descriptor
         self._loop = asyncio.get_running_loop()
         self._tells: dict[int, Callable[[], None]] = {}
@@ -83,7 +88,11 @@ class InThread:
         self._ending = threading.Lock()
         """The thread closes the bell, and not before it was rung for the last time."""
         self._bell = os.eventfd(0, os.EFD_CLOEXEC)
-        threading.Thread(target=self._watch, name=f"watch {name}", daemon=True).start()
+        try:
+            threading.Thread(target=self._watch, name=f"watch {name}", daemon=True).start()
+        except RuntimeError:
+            os.close(self._bell)
+            raise
 
     def when_readable(self, tell: Callable[[], None]) -> None:
         """See :class:`Readiness`."""

@@ -36,10 +36,19 @@ async def open_serial(path: str, line_format: LineFormat) -> DescriptorTransport
     """Open a serial port or the slave side of a pseudo-terminal: raw, no flow control, exclusive.
 
     Raises:
-        TransportError: it is not there, busy (the message names the holder if it can), or no serial port.
+        TransportError: it is not there, busy (the message names the holder if it can), or no serial port; or this
+            process has no descriptor or thread left.
     """
-    port = await asyncio.get_running_loop().run_in_executor(None, _open, path, line_format)
-    return DescriptorTransport(path, port.fileno(), InThread(path, port.fileno()), lambda: _release(port))
+    try:
+        port = await asyncio.get_running_loop().run_in_executor(None, _open, path, line_format)
+    except RuntimeError as error:
+        raise TransportError(f"{path}: {error}") from error
+    try:
+        readiness = InThread(path, port.fileno())
+    except (OSError, RuntimeError) as error:
+        _release(port)
+        raise TransportError(f"{path}: {error}") from error
+    return DescriptorTransport(path, port.fileno(), readiness, lambda: _release(port))
 
 
 def _open(path: str, line_format: LineFormat) -> serial.Serial:

@@ -49,6 +49,26 @@ async def test_a_loop_that_turns_is_left_alone_and_each_stall_is_told_once() -> 
 
 
 @pytest.mark.real_clock
+async def test_a_stop_that_fails_is_told_and_the_next_stall_is_seen_all_the_same(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    asked: list[int] = []
+    stalls: list[str] = []
+
+    def stop(before: int) -> None:
+        asked.append(before)
+        raise OSError("no way to the wire")
+
+    async with guarded(stop, lambda: stalls.append("stall")):
+        for count in (1, 2):
+            await asyncio.sleep(STALL_S / 2)
+            time.sleep(2 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
+            await asyncio.sleep(STALL_S / 2)
+            assert (asked.count(0), len(stalls)) == (count, count)
+    assert any("could not be stopped past the loop" in message for message in caplog.messages)
+
+
+@pytest.mark.real_clock
 async def test_a_closed_line_takes_no_stop_from_a_thread() -> None:
     board = open_pty()
     line = await open_serial(board.path, LineFormat(115_200))

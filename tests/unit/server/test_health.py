@@ -1,6 +1,7 @@
 """What systemd is told, and that only a healthy loop feeds its watchdog."""
 
 import asyncio
+import errno
 import os
 import secrets
 import socket
@@ -44,6 +45,37 @@ def test_a_manager_that_does_not_listen_holds_nobody_up(manager: tuple[socket.so
     notifier = Notifier(manager[1])
     for _ in range(5000):
         notifier.feed()
+
+
+@pytest.mark.parametrize("code", [errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM])
+@pytest.mark.parametrize("call", ["socket", "sendto"])
+def test_no_error_of_the_system_ends_who_notifies_and_it_is_said_once(
+    call: str,
+    code: int,
+    manager: tuple[socket.socket, str],
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    listener, address = manager
+    notifier = Notifier(address)
+
+    class Refused(socket.socket):
+        def __init__(self, *arguments: int) -> None:
+            if call == "socket":
+                raise OSError(code, os.strerror(code))
+            super().__init__(*arguments)
+
+        def sendto(self, *_: object) -> int:
+            raise OSError(code, os.strerror(code))
+
+    with monkeypatch.context() as refusing:
+        refusing.setattr(socket, "socket", Refused)
+        notifier.feed()
+        notifier.feed()
+    assert len(caplog.messages) == 1
+    assert os.strerror(code) in caplog.messages[0]
+    notifier.feed()
+    assert listener.recv(200) == b"WATCHDOG=1"
 
 
 @pytest.mark.parametrize(

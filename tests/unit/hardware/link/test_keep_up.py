@@ -1,6 +1,8 @@
 """A line is kept up whatever happens to it, and several duties end together."""
 
 import asyncio
+import errno
+import os
 from collections.abc import Callable
 from typing import NoReturn
 
@@ -19,7 +21,9 @@ from robotd.hardware.transport.transport import Transport
 class Talker:
     """Talks as it is told to."""
 
-    def __init__(self, says: Callable[[int], RobotdError | None], *, finds_device: Callable[[int], bool]) -> None:
+    def __init__(
+        self, says: Callable[[int], RobotdError | OSError | None], *, finds_device: Callable[[int], bool]
+    ) -> None:
         self.sessions = 0
         self.talks: list[float] = []
         self.losses: list[str] = []
@@ -96,14 +100,41 @@ async def test_a_port_that_is_not_there_is_tried_again_and_again() -> None:
 
 
 @pytest.mark.parametrize(
-    "error", [TransportError("x"), LinkTimeout("x"), RemoteProtocolError("x"), DeviceError("thing", "x")]
+    "error",
+    [
+        *(TransportError("x"), LinkTimeout("x"), RemoteProtocolError("x"), DeviceError("thing", "x")),
+        *(OSError(code, os.strerror(code)) for code in (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EIO)),
+    ],
 )
-async def test_nothing_that_a_line_or_a_device_does_ends_it_and_each_line_is_closed(error: RobotdError) -> None:
+async def test_nothing_that_a_line_or_a_device_does_ends_it_and_each_line_is_closed(
+    error: RobotdError | OSError,
+) -> None:
     port = Port()
     talker = Talker(lambda _: error, finds_device=lambda _: False)
     await kept_up(talker, port, 3.0)
     assert len(talker.talks) >= 3
     assert all(port.is_closed(index) for index in range(len(port.lines)))
+
+
+@pytest.mark.parametrize("code", [errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ENOSPC])
+async def test_no_error_of_the_system_while_it_connects_ends_it(code: int) -> None:
+    port, tries = Port(), 0
+
+    async def connect() -> Transport:
+        nonlocal tries
+        tries += 1
+        if tries < 3:
+            raise OSError(code, os.strerror(code))
+        return await port.connect()
+
+    talker = Talker(lambda _: None, finds_device=lambda _: True)
+    task = asyncio.create_task(keep_up("thing", connect, NoTap(), talker))
+    await asyncio.sleep(5.0)
+    task.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await task
+    assert (tries, talker.sessions) == (3, 1)
+    assert all(os.strerror(code) in loss for loss in talker.losses[:2])
 
 
 async def test_cancelled_while_talking_it_closes_the_line_and_says_so() -> None:

@@ -1,9 +1,11 @@
 """What only a real terminal can get wrong."""
 
 import asyncio
+import errno
 import fcntl
 import os
 import resource
+import threading
 from array import array
 from pathlib import Path
 
@@ -165,3 +167,30 @@ async def test_a_symlink_is_resolved_at_each_open(tmp_path: Path) -> None:
         assert await board.read() == b"?"
         host.close()
         board.close()
+
+
+@pytest.mark.parametrize("missing", ["descriptor", "thread"])
+async def test_a_port_is_given_back_where_there_is_no_descriptor_or_thread_to_watch_it(
+    missing: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It ended the daemon, with an error of the wrong kind."""
+    board = open_pty()
+
+    def no_descriptor(*_: int) -> int:
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    def no_thread(thread: threading.Thread) -> None:
+        if not thread.name.startswith("watch "):
+            return start(thread)
+        raise RuntimeError("can't start new thread")
+
+    start = threading.Thread.start
+    with monkeypatch.context() as refusing:
+        if missing == "descriptor":
+            refusing.setattr(os, "eventfd", no_descriptor)
+        else:
+            refusing.setattr(threading.Thread, "start", no_thread)
+        with pytest.raises(TransportError, match=r"Too many open files|can't start new thread"):
+            await open_serial(board.path, LineFormat(115200))
+    await exchange(board)
+    board.close()
