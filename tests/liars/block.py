@@ -31,11 +31,12 @@ def run_block(robot: str, state: str, seeds: range) -> list[Outcome]:
     outcomes: list[Outcome] = []
     while len(outcomes) < len(seeds):
         with tempfile.TemporaryDirectory(prefix="robotd-liars-") as directory:
-            outcomes += run_virtual(_run(Path(directory), robot, state, seeds[len(outcomes) :]))
+            outcomes += run_virtual(run_in(Path(directory), robot, state, seeds[len(outcomes) :]))
     return outcomes
 
 
-async def _run(directory: Path, robot: str, state: str, seeds: range) -> list[Outcome]:
+async def run_in(directory: Path, robot: str, state: str, seeds: range) -> list[Outcome]:
+    """Run trials on one bench, which keeps its recording in a directory, until one fails."""
     dialects = ROBOTS[robot]
     tongues = {
         device: TONGUES[device, dialect]
