@@ -49,7 +49,7 @@ def _stop(rig: Rig, daemon: Daemon) -> None:
 
 
 def _lease_ends(_: Rig, daemon: Daemon) -> None:
-    daemon.supervisor._lease_expired(daemon.supervisor._mission_id)
+    daemon.supervisor.lease_expired(daemon.supervisor._mission_id)
 
 
 def _head_lost(rig: Rig, _: Daemon) -> None:
