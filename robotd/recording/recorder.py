@@ -45,7 +45,7 @@ class Recorder(Journal):
             queue_bytes: how far the disk may fall behind, for each source of entries.
 
         Raises:
-            RecordingError: the file exists already, or cannot be made.
+            RecordingError: the file exists already, or cannot be made; or there is no thread left to write it.
         """
         self.path = path
         self.error: str | None = None
@@ -60,7 +60,12 @@ class Recorder(Journal):
         self._thread = threading.Thread(
             target=self._write_all, args=(file, header, earlier), name="recorder", daemon=True
         )
-        self._thread.start()
+        try:
+            self._thread.start()
+        except RuntimeError as error:
+            file.close()
+            path.unlink()
+            raise RecordingError(f"cannot record to {path}: {error}") from error
 
     def note(self, entry: Entry) -> None:
         """Queue an entry; after :meth:`close` or an error it is dropped.
@@ -101,9 +106,9 @@ class Recorder(Journal):
                     messages, closing = self._take()
                     writer.write(messages)
                 writer.finish()
-        except OSError as error:
+        except Exception as error:  # a full disk, or a mistake: the recording says so, nobody waits for a dead thread
             with self._changed:
-                self._fail(str(error))
+                self._fail(str(error) or repr(error))
                 self._queue.clear()
 
     def _take(self) -> tuple[list[_Message], bool]:
