@@ -29,8 +29,9 @@ REST_S = 1.6
 """From a stop to rest: the ramp, and what a base without acknowledgements needs until it has heard."""
 AFTERWARDS_S = 2.0
 """How long it is looked at once it stands, or has nothing to do."""
-FROZEN_S = 9.0
-"""A mission under way must have advanced, or ended, within this: turning the head may take 5 s, a stalled base 3 s."""
+FROZEN_S = 15.0
+"""A mission under way must have advanced, or ended, within this: a sweep tells of ten readings at a time, each of which
+may wait a second for its rangefinder; turning the head may take 5 s, a stalled base 3 s."""
 RESETS_S = 45.0
 """The same of a head that finds its stops anew, which its mission says."""
 TOLD_WITHIN_S = 4.0
