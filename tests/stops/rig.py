@@ -85,6 +85,8 @@ class Rig:
     @property
     def is_moving(self) -> bool:
         """Whether the base or the head moves, or a laser shines that can be switched off."""
+        now_us = self.robot.clocks["drive"].board_us(now_ns() // 1000)
+        self.robot.boards["drive"].advance(now_us)  # a base without a host may have nothing to wake for
         shines = self.robot._laser._on and "tfmini" not in self.config.rangefinder.dialect
         return not self.robot.at_rest or self.robot._head.arrives_us is not None or shines
 

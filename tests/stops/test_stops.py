@@ -5,7 +5,7 @@ from importlib.util import find_spec
 import pytest
 
 from robotd.sim.emulators.catalogue import Dialects, Firmware
-from tests.stops.causes import CAUSES, ENDINGS
+from tests.stops.causes import ENDINGS, HEAD_LOST
 from tests.stops.processes import STALL, run_real_trials
 from tests.stops.trial import run_trial
 
@@ -38,7 +38,7 @@ def check(dialects: Dialects, activity: str, cause: str, seed: int) -> None:
     assert outcome.ended_s < ENDED_S or cause not in ENDINGS
 
 
-@pytest.mark.parametrize("cause", CAUSES)
+@pytest.mark.parametrize("cause", ENDINGS)
 def test_a_base_that_hears_one_order_of_a_burst_comes_to_rest(cause: str) -> None:
     for number, activity in enumerate(("turning", "driving")):
         check(BASES["rflex"], activity, cause, number)
@@ -60,6 +60,12 @@ def test_every_head_comes_to_rest(dialect: str, cause: str) -> None:
 def test_a_base_that_was_left_driving_is_halted_though_the_next_daemon_fails_as_it_starts(cause: str) -> None:
     for seed in range(3):
         check(BASES["rflex"], "start-up", cause, seed)
+
+
+@pytest.mark.parametrize("cause", ["stop", "lease", HEAD_LOST])
+def test_a_base_that_hears_one_order_of_a_burst_obeys_every_ordinary_stop(cause: str) -> None:
+    for number, activity in enumerate(("turning", "driving")):
+        check(BASES["rflex"], activity, cause, number)
 
 
 @pytest.mark.real_clock

@@ -69,6 +69,20 @@ async def test_a_stop_that_fails_is_told_and_the_next_stall_is_seen_all_the_same
 
 
 @pytest.mark.real_clock
+async def test_the_stop_is_said_again_until_the_loop_turns_and_then_no_more() -> None:
+    said: list[int] = []
+    async with guarded(said.append, lambda: None):
+        await asyncio.sleep(0)
+        time.sleep(3 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
+        await asyncio.sleep(STALL_S / 4)
+        count = len(said)
+        assert count > 3
+        assert said == list(range(count))
+        await asyncio.sleep(STALL_S)
+        assert len(said) == count
+
+
+@pytest.mark.real_clock
 async def test_a_closed_line_takes_no_stop_from_a_thread() -> None:
     board = open_pty()
     line = await open_serial(board.path, LineFormat(115_200))
