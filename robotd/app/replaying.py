@@ -7,16 +7,19 @@ from pathlib import Path
 from robotd.app.compose import Daemon, compose
 from robotd.config import loads
 from robotd.core.clock import NS_PER_S
-from robotd.core.errors import RobotdError
+from robotd.core.errors import RecordingError, RobotdError
 from robotd.hardware.wire.requests import summarize_requests
+from robotd.mission.causes import check_cause
+from robotd.mission.noted import check_noted
 from robotd.recording.comparison import Difference, compare, results_digest
-from robotd.recording.entries import CauseEntry, CommandEntry, Entry, ResultEntry
+from robotd.recording.entries import BytesEntry, CauseEntry, CommandEntry, Entry, LineEntry, ResultEntry
 from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import Recording, read
 
 _NO_LIMIT = 2**62
+DEVICES = ("drive", "pantilt", "rangefinder")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,10 +42,11 @@ def replay_recording(path: Path) -> ReplayReport:
     """Give the daemon the same bytes and commands at the same times, and compare what comes of it.
 
     Raises:
-        RecordingError: the file is no recording, or nothing of it can be read.
+        RecordingError: the file is no recording, nothing of it can be read, or it holds what no daemon wrote.
         ConfigError: the recording's configuration is not one of this version.
     """
     recording = read(path)
+    check_recorded(recording)
     journal = PrerollJournal(recording.header, _NO_LIMIT)
     replayed = run_recorded(_play(recording, journal), start_ns=recording.header.started_ns)
     return ReplayReport(
@@ -53,6 +57,29 @@ def replay_recording(path: Path) -> ReplayReport:
         complete=recording.complete,
         duration_s=(recording.end_ns - recording.header.started_ns) / NS_PER_S,
     )
+
+
+def check_recorded(recording: Recording) -> None:
+    """Refuse a recording with an entry that cannot be repeated, whatever its checksums say.
+
+    Raises:
+        RecordingError: says which entry, and what was expected.
+    """
+    for number, entry in enumerate(recording.entries):
+        try:
+            if isinstance(entry, CommandEntry):
+                check_noted(entry.name, entry.arguments)
+            elif isinstance(entry, CauseEntry):
+                check_cause(entry.name, entry.arguments)
+            elif isinstance(entry, BytesEntry | LineEntry):
+                _check_device(entry.device)
+        except RecordingError as error:
+            raise RecordingError(f"entry {number} of the recording: {error}") from error
+
+
+def _check_device(device: str) -> None:
+    if device not in DEVICES:
+        raise RecordingError(f"expected one of the devices {', '.join(DEVICES)}, got {device[:40]!r}")
 
 
 async def _play(recording: Recording, journal: PrerollJournal) -> tuple[Entry, ...]:
@@ -69,7 +96,7 @@ async def _play(recording: Recording, journal: PrerollJournal) -> tuple[Entry, .
 
     playback = Playback(recording, carry_out, take_up)
     config = loads(recording.header.config_text, file="the recording's configuration")
-    connects = {device: playback.line(device).connect for device in ("drive", "pantilt", "rangefinder")}
+    connects = {device: playback.line(device).connect for device in DEVICES}
     daemon = compose(config, connects, playback.compute, journal, leases_end_by_causes=recording.notes_causes)
     async with asyncio.TaskGroup() as group:
         parts = [group.create_task(part, name=name) for name, part in daemon.parts().items()]

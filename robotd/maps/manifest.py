@@ -3,10 +3,13 @@
 import hashlib
 import json
 import re
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any, Self
 
+import msgspec
+
 from robotd.core.errors import MapError
+from robotd.grid.occupancy import MAX_SIDE_CELLS
 from robotd.grid.spec import GridSpec
 
 SCHEMA = 1
@@ -77,21 +80,33 @@ def decode_manifest(data: bytes) -> Manifest:
         raise MapError(f"manifest.json is damaged: {error}") from error
     if schema != SCHEMA:
         raise MapError(f"manifest.json has schema {schema}, this version reads schema {SCHEMA}")
-    if claimed != _sum({"schema": schema, **content}):
+    try:
+        is_whole = claimed == _sum({"schema": schema, **content})
+    except (ValueError, RecursionError) as error:
+        raise MapError(f"manifest.json is damaged: {error}") from error
+    if not is_whole:
         raise MapError("manifest.json was altered: its own checksum is wrong")
     return _manifest_of(content)
 
 
 def _manifest_of(content: dict[str, Any]) -> Manifest:
     try:
-        placement = content.pop("spec")
-        spec = GridSpec(**{**placement, "shape": tuple(placement["shape"])})
-        files = {name: FileSum(**one) for name, one in content.pop("files").items()}
-        return Manifest(spec=spec, files=files, **content)
-    except KeyError as error:
-        raise MapError(f"manifest.json has no {error.args[0]!r}") from error
-    except (ValueError, TypeError, AttributeError) as error:
-        raise MapError(f"manifest.json makes no sense: {error}") from error
+        manifest = msgspec.convert(content, Manifest)
+    except (ValueError, TypeError, OverflowError, RecursionError) as error:
+        raise MapError(f"manifest.json makes no sense: {str(error)[:200]}") from error
+    unknown = content.keys() - {field.name for field in fields(Manifest)}
+    if unknown:
+        raise MapError(f"manifest.json makes no sense: it has {str(sorted(unknown))[:80]}")
+    _check_sizes(manifest)
+    return manifest
+
+
+def _check_sizes(manifest: Manifest) -> None:
+    check_name(manifest.name)
+    if max(manifest.spec.shape) > MAX_SIDE_CELLS:
+        raise MapError(f"manifest.json makes no sense: more than {MAX_SIDE_CELLS} cells along a side")
+    if not all(0 <= one.size_bytes <= MAX_SIDE_CELLS**2 for one in manifest.files.values()):
+        raise MapError(f"manifest.json makes no sense: expected files of 0 to {MAX_SIDE_CELLS**2} bytes")
 
 
 def _sum(content: dict[str, Any]) -> str:

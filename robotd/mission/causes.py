@@ -14,6 +14,9 @@ from robotd.mission.supervisor import Supervisor
 from robotd.recording.journal import Journal
 
 STALL = "stall"
+LEASE = "lease"
+_ARGUMENTS: dict[str, tuple[str, tuple[type, ...]]] = {STALL: ("for_s", (float, int)), LEASE: ("mission_id", (int,))}
+_MAX = 1e9
 
 
 class Causes:
@@ -33,12 +36,22 @@ class Causes:
         """Take up a cause as the journal noted it; one of a later version is left out.
 
         Raises:
-            RecordingError: its arguments are not what it needs.
+            RecordingError: as :func:`check_cause`.
         """
-        match name, arguments:
-            case "stall", {"for_s": float() | int() as for_s}:
-                self.stalled(for_s)
-            case "lease", {"mission_id": int() as mission_id}:
-                self._supervisor.lease_expired(mission_id)
-            case (("stall" | "lease"), _):
-                raise RecordingError(f"cause {name!r}: its arguments do not fit: {str(arguments)[:100]}")
+        check_cause(name, arguments)
+        if name == STALL:
+            self.stalled(arguments["for_s"])
+        elif name == LEASE:
+            self._supervisor.lease_expired(arguments["mission_id"])
+
+
+def check_cause(name: str, arguments: dict[str, Any]) -> None:
+    """Refuse a cause that cannot be taken up.
+
+    Raises:
+        RecordingError: its arguments do not fit; says what was expected.
+    """
+    key, kinds = _ARGUMENTS.get(name, ("", ()))
+    value: Any = arguments.get(key)
+    if kinds and (type(value) not in kinds or not 0 <= value < _MAX):
+        raise RecordingError(f"cause {name!r}: expected a number {key!r}, got {str(arguments)[:80]}")

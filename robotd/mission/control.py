@@ -14,19 +14,18 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-import numpy as np
 
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import MapError, MissionError, RecordingError
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
 from robotd.maps.store import MapEntry, MapStore
 from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MapChanged, Status
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Occasion
+from robotd.mission.noted import NotedMap, NotedRenewal, NotedStart, NotedStop, grid_of, mission_of, noted_as
 from robotd.mission.requests import Mission
 from robotd.mission.supervisor import Supervisor
 from robotd.recording.encoding import encoded
@@ -189,24 +188,28 @@ class Control:
         return str(path)
 
     async def repeat(self, name: str, arguments: dict[str, Any]) -> None:
-        """Carry out a request as the journal noted it."""
+        """Carry out a request as the journal noted it.
+
+        Raises:
+            RecordingError: it is none, or its arguments do not fit; others as the request itself.
+        """
         match name:
             case "arm":
                 await self.arm()
             case "clear":
                 await self.clear()
             case "stop":
-                await self.stop(arguments["reason"])
+                await self.stop(noted_as(NotedStop, name, arguments).reason)
             case "renew":
-                self.renew(arguments["mission_id"])
+                self.renew(noted_as(NotedRenewal, name, arguments).mission_id)
             case "start":
-                kind = _MISSIONS[arguments["kind"]]
-                self.start(msgspec.convert(arguments["mission"], kind), arguments["lease_s"])
+                start = noted_as(NotedStart, name, arguments)
+                self.start(mission_of(start), start.lease_s)
             case "use_map":
-                grid = _unpacked(arguments["grid"])
+                grid = grid_of(noted_as(NotedMap, name, arguments))
                 self._use(CommandEntry(now_ns(), name, arguments), grid, grid.digest())
             case _:
-                raise MissionError(f"unknown request {name!r}")
+                raise RecordingError(f"unknown request {name!r}")
 
     def _place(self) -> MapInUse:
         place = self._supervisor.place
@@ -216,9 +219,6 @@ class Control:
 
     def _recording_changed(self) -> None:
         self._supervisor.publish(self._supervisor.status)
-
-
-_MISSIONS: dict[str, type[Mission]] = {kind.__name__: kind for kind in Mission.__args__}
 
 
 def _make_directory(directory: Path) -> None:
@@ -233,9 +233,3 @@ def _use_map(arguments: dict[str, Any], grid: OccupancyGrid) -> CommandEntry:
     cells = base64.b64encode(zlib.compress(grid.cells.data)).decode()
     packed = {"spec": msgspec.to_builtins(grid.spec), "cells": cells}
     return encoded(CommandEntry(0, "use_map", arguments | {"grid": packed}))
-
-
-def _unpacked(packed: dict[str, Any]) -> OccupancyGrid:
-    spec = msgspec.convert(packed["spec"], GridSpec)
-    cells = np.frombuffer(zlib.decompress(base64.b64decode(packed["cells"])), dtype=np.uint8)
-    return OccupancyGrid(spec, cells.reshape(spec.shape).copy())

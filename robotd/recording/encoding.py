@@ -9,6 +9,8 @@ import json
 from dataclasses import asdict, fields, replace
 from typing import Any, TypeVar
 
+import msgspec
+
 from robotd.core.errors import RecordingError
 from robotd.hardware.link.tap import Direction
 from robotd.recording.entries import (
@@ -22,6 +24,9 @@ from robotd.recording.entries import (
     ResultEntry,
 )
 
+K = TypeVar("K", bound=RecordingHeader | LineEntry | CommandEntry | ComputedEntry | CauseEntry | ResultEntry)
+_TIME_MAX_NS = 2**63 - 1
+"""What a clock of nanoseconds can show."""
 PROFILE = "robotd"
 HEADER_TOPIC = "header"
 _SERIAL = "serial"
@@ -49,9 +54,12 @@ def decode_header(data: bytes) -> RecordingHeader:
         RecordingError: the message is not one of ours.
     """
     try:
-        return RecordingHeader(**json.loads(data))
-    except (ValueError, TypeError) as error:
+        header = _strictly(RecordingHeader, json.loads(data))
+    except (ValueError, TypeError, OverflowError, RecursionError) as error:
         raise RecordingError(f"the header is not one of robotd's: {error}") from error
+    if not 0 <= header.started_ns <= _TIME_MAX_NS:
+        raise RecordingError(f"the header is not one of robotd's: it began at {header.started_ns} ns")
+    return header
 
 
 def encode(entry: Entry) -> tuple[str, bytes]:
@@ -94,22 +102,44 @@ def decode(topic: str, time_ns: int, data: bytes) -> Entry | None:
         RecordingError: the message does not fit its channel.
     """
     kind, _, rest = topic.partition("/")
+    if not 0 <= time_ns <= _TIME_MAX_NS:
+        raise RecordingError(f"a message on channel {topic[:80]} is of no time that a clock shows: {time_ns} ns")
     try:
         if kind == _SERIAL:
             device, _, direction = rest.rpartition("/")
             return BytesEntry(time_ns, device, Direction(direction), data)
         if kind == _LINE:
-            return LineEntry(time_ns, rest, **json.loads(data))
+            return _converted(LineEntry, {"device": rest}, time_ns, data)
         if kind in _JSON_ENTRIES:
-            return _JSON_ENTRIES[kind](time_ns=time_ns, **json.loads(data))
-    except (ValueError, TypeError) as error:
-        raise RecordingError(f"a message on channel {topic} is not one of robotd's: {error}") from error
+            return _converted(_JSON_ENTRIES[kind], {}, time_ns, data)
+    except (ValueError, TypeError, OverflowError, RecursionError) as error:
+        raise RecordingError(f"a message on channel {topic[:80]} is not one of robotd's: {error}") from error
     return None
 
 
 def is_raw(topic: str) -> bool:
     """Whether a channel carries bytes as they are, and not JSON."""
     return topic.startswith(f"{_SERIAL}/")
+
+
+def _converted(kind: type[K], given: dict[str, str], time_ns: int, data: bytes) -> K:
+    content = json.loads(data)
+    if not isinstance(content, dict):
+        raise TypeError(f"expected an object, got {type(content).__name__}")
+    return _strictly(kind, content | given | {"time_ns": time_ns})
+
+
+def _strictly(kind: type[K], content: object) -> K:
+    """Return a dataclass with fields of just these names and types.
+
+    Raises:
+        TypeError: there is a field too many.
+        ValueError: one is missing, or of another type.
+    """
+    names = {field.name for field in fields(kind)} - {"encoded"}
+    if isinstance(content, dict) and not content.keys() <= names:
+        raise TypeError(f"expected {', '.join(sorted(names))}, got {str(sorted(content.keys() - names))[:80]}")
+    return msgspec.convert(content, kind)
 
 
 def _dumps(value: dict[str, Any]) -> bytes:
