@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults liars fuzz safety stops lag firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults replay-many liars fuzz safety stops lag firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -44,6 +44,9 @@ exact: .venv/.dev  ## The exact algorithm measured, and the paper's figures of i
 
 faults: .venv/.dev  ## Everything that can go wrong on a serial line, in every state of the daemon: a table (two minutes)
 	@$(BIN)/python -m tests.faults.run $(if $(ONLY),--only $(ONLY))
+
+replay-many: .venv/.dev  ## Random sessions with faults, stalls and dying clients, each replayed: COUNT=500
+	@$(BIN)/python -m tests.replay_many.run --count $(or $(COUNT),500)
 
 firmware-test: .venv/.dev  ## The boards' C against Python under the sanitizers: vectors, random frames, random lives
 	@$(BIN)/python -m pytest -q tests/firmware

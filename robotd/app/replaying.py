@@ -3,6 +3,7 @@
 import asyncio
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from robotd.app.compose import Daemon, compose
 from robotd.config import loads
@@ -12,7 +13,7 @@ from robotd.hardware.wire.requests import summarize_requests
 from robotd.mission.causes import check_cause
 from robotd.mission.noted import check_noted
 from robotd.recording.comparison import Difference, compare, results_digest
-from robotd.recording.entries import BytesEntry, CauseEntry, CommandEntry, Entry, LineEntry, ResultEntry
+from robotd.recording.entries import LINE_BROKE, BytesEntry, CauseEntry, CommandEntry, Entry, LineEntry, ResultEntry
 from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback
 from robotd.recording.preroll import PrerollJournal
@@ -71,10 +72,19 @@ def check_recorded(recording: Recording) -> None:
                 check_noted(entry.name, entry.arguments)
             elif isinstance(entry, CauseEntry):
                 check_cause(entry.name, entry.arguments)
+                if entry.name == LINE_BROKE:
+                    _check_broken(entry.arguments)
             elif isinstance(entry, BytesEntry | LineEntry):
                 _check_device(entry.device)
         except RecordingError as error:
             raise RecordingError(f"entry {number} of the recording: {error}") from error
+
+
+def _check_broken(arguments: dict[str, Any]) -> None:
+    device, reason = arguments.get("device"), arguments.get("reason")
+    if not isinstance(device, str) or not isinstance(reason, str):
+        raise RecordingError(f"cause {LINE_BROKE!r}: expected a device and a reason, got {str(arguments)[:80]}")
+    _check_device(device)
 
 
 def _check_device(device: str) -> None:

@@ -80,6 +80,8 @@ class Supervisor:
         self._lease: Lease | None = None
         self._predictor = Predictor()
         self._halts = 0
+        self._stopped_by = ""
+        """Why the mission that is ending, or ended last, was stopped."""
         self._changes = LogLimit(burst=50)
         self._armed: tuple[Device, ...] = ()
         """What the last arming was for: everything, or everything but the base."""
@@ -274,6 +276,8 @@ class Supervisor:
         self.robot.stop_now()
         self._halts += 1
         if self._mission is not None and self._mission is not asyncio.current_task():
+            if not self._mission.done() and not self._mission.cancelling():
+                self._stopped_by = reason  # what comes while it ends does not explain why it ends
             self._mission.cancel()
         self._apply(occasion, reason)
 
@@ -324,7 +328,7 @@ class Supervisor:
         """Take the lease back; a mission may be cancelled before its first step, and that is an end too."""
         lease.end()
         if task.cancelled():
-            report.at(MissionPhase.STOPPED, message=self._reason)
+            report.at(MissionPhase.STOPPED, message=self._stopped_by)
 
     async def _watch(self, device: Device) -> None:
         with device.status_changes.subscribe() as changes:

@@ -4,7 +4,16 @@ from abc import ABC, abstractmethod
 from typing import Any
 
 from robotd.hardware.link.tap import Direction
-from robotd.recording.entries import BytesEntry, CauseEntry, CommandEntry, ComputedEntry, Entry, LineEntry, ResultEntry
+from robotd.recording.entries import (
+    LINE_BROKE,
+    BytesEntry,
+    CauseEntry,
+    CommandEntry,
+    ComputedEntry,
+    Entry,
+    LineEntry,
+    ResultEntry,
+)
 
 
 class Journal(ABC):
@@ -21,6 +30,10 @@ class Journal(ABC):
     def line_changed(self, device: str, time_ns: int, *, up: bool) -> None:
         """Note that the line of ``device`` was opened or lost."""
         self.note(LineEntry(time_ns, device, up))
+
+    def line_broke(self, device: str, time_ns: int, reason: str) -> None:
+        """Note how the line of ``device`` failed: what is told of it must be told again."""
+        self.cause(time_ns, LINE_BROKE, {"device": device, "reason": reason})
 
     def command(self, time_ns: int, name: str, arguments: dict[str, Any]) -> None:
         """Note what a client asked for; ``arguments`` must fit into JSON."""

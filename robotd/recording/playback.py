@@ -21,7 +21,7 @@ from typing import TypeVar
 
 from robotd.core.errors import TransportError
 from robotd.hardware.link.tap import Direction
-from robotd.recording.entries import BytesEntry, CauseEntry, CommandEntry, ComputedEntry, Entry, LineEntry
+from robotd.recording.entries import LINE_BROKE, BytesEntry, CauseEntry, CommandEntry, ComputedEntry, Entry, LineEntry
 from robotd.recording.moments import RecordedTimeLoop
 from robotd.recording.reader import Recording
 
@@ -94,6 +94,8 @@ class Playback:
                 self.line(entry.device).change(up=entry.up)
             case CommandEntry():
                 self._carry_out(entry)
+            case CauseEntry(name=name) if name == LINE_BROKE:
+                self.line(entry.arguments["device"]).break_down(entry.arguments["reason"])
             case CauseEntry():
                 self._take_up(entry)
             case ComputedEntry():
@@ -127,10 +129,15 @@ class ReplayLine:
         if self._current is not None and data:
             self._current.deliver(data)
 
+    def break_down(self, reason: str) -> None:
+        """Let the next read fail as it did."""
+        if self._current is not None:
+            self._current.lose(reason)
+
     def change(self, *, up: bool) -> None:
         """Open the line, or lose it."""
         if self._current is not None:
-            self._current.lose("the line was lost in the recording")
+            self._current.lose(f"{self._current.name}: the line was lost in the recording")
         self._current = ReplayTransport(f"replay of {self._device}") if up else None
         if self._current is not None and self._waiting is not None and not self._waiting.done():
             self._current.taken = True
@@ -178,7 +185,7 @@ class ReplayTransport:
     def close(self) -> None:
         """Give the line up."""
         self._chunks.clear()
-        self.lose("closed")
+        self.lose(f"{self._name}: closed")
 
     def deliver(self, data: bytes) -> None:
         """Let a chunk arrive."""
@@ -187,13 +194,13 @@ class ReplayTransport:
             self._changed.set()
 
     def lose(self, reason: str) -> None:
-        """Let the line go; what has arrived may still be read."""
+        """Let the line go, and say why; what has arrived may still be read."""
         self._lost = self._lost or reason
         self._changed.set()
 
     def _check(self) -> None:
         if self._lost is not None:
-            raise TransportError(f"{self._name}: {self._lost}")
+            raise TransportError(self._lost)
 
 
 class RecordedCompute:

@@ -20,6 +20,9 @@ class Tap(Protocol):
     def line_changed(self, device: str, time_ns: int, *, up: bool) -> None:
         """Note that the line of ``device`` was opened or lost."""
 
+    def line_broke(self, device: str, time_ns: int, reason: str) -> None:
+        """Note that a read from the line of ``device`` failed, and how; it is given up after that."""
+
 
 class NoTap:
     """Nobody looks."""
@@ -29,3 +32,6 @@ class NoTap:
 
     def line_changed(self, device: str, time_ns: int, *, up: bool) -> None:
         """Ignore the change."""
+
+    def line_broke(self, device: str, time_ns: int, reason: str) -> None:
+        """Ignore the failure."""

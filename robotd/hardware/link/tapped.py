@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from robotd.core.clock import now_ns
+from robotd.core.errors import TransportError
 from robotd.hardware.link.tap import Direction, Tap
 from robotd.hardware.transport.transport import Transport
 
@@ -32,20 +33,28 @@ class TappedLine:
 
     async def read(self) -> Chunk:
         """Return the next bytes; TransportError when the line is gone."""
-        data = await self._transport.read()
+        try:
+            data = await self._transport.read()
+        except TransportError as error:
+            self._tap.line_broke(self._device, now_ns(), str(error))
+            raise
         chunk = Chunk(now_ns(), data)
         self._tap.bytes_passed(self._device, Direction.FROM_BOARD, chunk.time_ns, data)
         return chunk
 
     def write(self, data: bytes) -> None:
         """Queue bytes; TransportError when the line is gone or its buffer is full."""
-        self._transport.write(data)
-        self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
+        try:
+            self._transport.write(data)
+        finally:  # what a broken line would not take was asked for all the same, and a replay asks for it
+            self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
 
     def write_urgent(self, data: bytes) -> None:
         """Queue bytes in place of everything not yet written; TransportError when the line is gone."""
-        self._transport.write_urgent(data)
-        self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
+        try:
+            self._transport.write_urgent(data)
+        finally:  # as above
+            self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
 
     def write_past_loop(self, data: bytes) -> None:
         """Write bytes at once, from any thread; never raises. The tap does not see them: it lives on the loop."""

@@ -39,6 +39,9 @@ class Tape:
         if direction is Direction.TO_BOARD:
             self.sent += data
 
+    def line_broke(self, device: str, time_ns: int, reason: str) -> None:
+        pass
+
     def line_changed(self, device: str, time_ns: int, *, up: bool) -> None:
         """Of no interest here."""
 

@@ -50,6 +50,9 @@ class Tape:
         self.bytes_by_direction[direction] += data
         self.times_ns.append(time_ns)
 
+    def line_broke(self, device: str, time_ns: int, reason: str) -> None:
+        pass
+
     def line_changed(self, device: str, time_ns: int, *, up: bool) -> None:
         self.ups.append(up)
         self.times_ns.append(time_ns)

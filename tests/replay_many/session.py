@@ -1,0 +1,127 @@
+"""One random session: a client's commands, cables that fail, clients that die, stalls; recorded, and replayed."""
+
+import asyncio
+import random
+import tempfile
+from collections.abc import Callable, Coroutine
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from robotd.app.replaying import ReplayReport, replay_recording
+from robotd.app.stall_guard import STALL_S
+from robotd.core.clock import run_virtual
+from robotd.core.errors import RobotdError
+from robotd.mission.modes import Mode
+from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.sim.emulators.catalogue import Dialects
+from robotd.sim.faults.catalogue import FAULTS
+from robotd.sim.robot import DEVICES
+from tests.faults.bench import Bench, bench
+
+_LEASE_S = 0.5
+_PAUSE_MAX_S = 2.0
+_FEW_MS = 0.003
+_FAULT_MAX_S = 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a session."""
+
+    seed: int
+    done: tuple[str, ...]
+    """What was done to the daemon, in order."""
+    differs: str | None
+    """The first difference of its replay; None if there is none."""
+    results: int
+
+
+def run_session(seed: int, actions: int) -> Outcome:
+    """Live through a session on the virtual clock, and replay it."""
+    with tempfile.TemporaryDirectory(prefix="robotd-replays-") as directory:
+        session = _Session(random.Random(f"session {seed}"))
+        run_virtual(session.run(Path(directory), actions))
+        (file,) = (Path(directory) / "recordings").glob("*.mcap")
+        report = replay_recording(file)
+    return Outcome(seed, tuple(session.done), _difference(report), report.results)
+
+
+def _difference(report: ReplayReport) -> str | None:
+    if report.differences:
+        return str(report.differences[0])
+    if not report.complete:
+        return "the recording is not complete"
+    return None if report.digest == report.recorded_digest else "the digests of the results differ"
+
+
+class _Session:
+    def __init__(self, rng: random.Random) -> None:
+        self._rng = rng
+        self.done: list[str] = []
+
+    async def run(self, directory: Path, actions: int) -> None:
+        async with bench(directory, Dialects()) as it:
+            for _ in range(actions):
+                await asyncio.sleep(
+                    self._rng.choice((self._rng.uniform(0, _FEW_MS), self._rng.uniform(0, _PAUSE_MAX_S)))
+                )
+                await self._act(it)
+            for cable in it.cables.values():
+                cable.mend()
+            await asyncio.sleep(0.2)
+            await it.daemon.control.stop_recording()  # before the lines are taken down
+
+    async def _act(self, it: Bench) -> None:
+        name, act = self._rng.choice(tuple(self._acts(it).items()))
+        self.done.append(name)
+        try:
+            await act()
+        except RobotdError as error:  # refused, as happens to clients
+            self.done.append(f"({error})")
+
+    def _acts(self, it: Bench) -> dict[str, Callable[[], Coroutine[Any, Any, None]]]:
+        return {
+            "arm": it.daemon.control.arm,
+            "arm again": lambda: self._bring_back(it),
+            "map": lambda: self._start(it, MapMission("new", it.robot.stops_m, it.robot.start, Legs.STRAIGHT)),
+            "localize": lambda: self._start(it, LocalizeMission()),
+            "drive": lambda: self._start(it, DriveMission(*it.robot.stops_m[0], Legs.STRAIGHT)),
+            "map and die": lambda: self._start_and_die(it),
+            "stop": lambda: it.daemon.control.stop("enough"),
+            "clear": it.daemon.control.clear,
+            "stall": lambda: self._stall(it),
+            "fault": lambda: self._fault(it),
+            "fault and stop": lambda: self._fault_and_stop(it),
+        }
+
+    async def _bring_back(self, it: Bench) -> None:
+        if it.mode is Mode.FAULT:
+            await it.daemon.control.clear()
+        await it.daemon.control.arm()
+
+    async def _start(self, it: Bench, mission: Mission) -> None:
+        it.start(mission)
+
+    async def _start_and_die(self, it: Bench) -> None:
+        it.daemon.control.start(MapMission("new", it.robot.stops_m, it.robot.start, Legs.STRAIGHT), _LEASE_S)
+
+    async def _stall(self, it: Bench) -> None:
+        it.daemon.robot.stop_past_loop()  # as the guard's thread does
+        it.daemon.causes.stalled(STALL_S)
+
+    async def _fault(self, it: Bench) -> None:
+        device, fault = self._rng.choice(DEVICES), self._rng.choice(tuple(FAULTS))
+        self.done.append(f"{fault} on {device}")
+        it.cables[device].set_fault(FAULTS[fault](self._rng))
+        await asyncio.sleep(self._rng.uniform(0, _FAULT_MAX_S))
+        it.cables[device].mend()
+
+    async def _fault_and_stop(self, it: Bench) -> None:
+        """Let a line be lost and a stop come within two milliseconds, in either order."""
+        cable = it.cables[self._rng.choice(DEVICES)]
+        cable.set_fault(FAULTS["unplug"](self._rng))
+        await asyncio.sleep(self._rng.uniform(0, 0.002))
+        await it.daemon.control.stop("enough")
+        await asyncio.sleep(self._rng.uniform(0, _FAULT_MAX_S))
+        cable.mend()
