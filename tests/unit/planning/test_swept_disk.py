@@ -23,7 +23,8 @@ def disk_points(radius_m: float) -> NDArray[np.float64]:
     """Return points of a disk round the origin, its rim among them, ``float64[n, 2]``."""
     angles = np.linspace(0.0, math.tau, 128, endpoint=False)
     rings = [
-        radius_m * share * np.stack((np.cos(angles), np.sin(angles)), axis=1) for share in (_SHRUNK, 0.8, 0.5, 0.2)
+        radius_m * share * np.stack((np.cos(angles), np.sin(angles)), axis=1)
+        for share in (_SHRUNK, *np.arange(0.1, 1.0, 0.1))
     ]
     return np.concatenate([np.zeros((1, 2)), *rings])
 
