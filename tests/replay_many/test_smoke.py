@@ -7,7 +7,7 @@ from tests.replay_many.session import run_session
 pytestmark = pytest.mark.slow
 
 
-@pytest.mark.parametrize("seed", [3, 14, 18])
+@pytest.mark.parametrize("seed", [3, 14, 18, 194, 1098])
 def test_a_random_session_replays(seed: int) -> None:
     outcome = run_session(seed, actions=12)
     assert outcome.differs is None, f"python -m tests.replay_many.run --count 1 --seed {seed} after {outcome.done}"

@@ -21,7 +21,7 @@ class Tap(Protocol):
         """Note that the line of ``device`` was opened or lost."""
 
     def line_broke(self, device: str, time_ns: int, reason: str) -> None:
-        """Note that a read from the line of ``device`` failed, and how; it is given up after that."""
+        """Note that a read from, or a write to, the line of ``device`` failed, and how; it is given up after that."""
 
 
 class NoTap:

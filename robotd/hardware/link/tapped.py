@@ -46,6 +46,9 @@ class TappedLine:
         """Queue bytes; TransportError when the line is gone or its buffer is full."""
         try:
             self._transport.write(data)
+        except TransportError as error:
+            self._tap.line_broke(self._device, now_ns(), str(error))
+            raise
         finally:  # what a broken line would not take was asked for all the same, and a replay asks for it
             self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
 
