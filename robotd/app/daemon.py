@@ -13,7 +13,8 @@ from pathlib import Path
 from robotd import __version__
 from robotd.app.compose import Daemon, compose, serial_connectors
 from robotd.app.ending import Ending
-from robotd.app.stall_guard import STALL_S, guarded
+from robotd.app.stall_guard import guarded
+from robotd.app.stalls import Stalls, keep_going
 from robotd.config import Config, default_path, effective_text, load
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import ConfigError, RobotdError
@@ -88,7 +89,8 @@ async def run(config: Config) -> int:
         daemon = compose(config, serial_connectors(config), compute, journal)
         ending = Ending(daemon.robot.stop_now)
         try:
-            async with guarded(daemon.robot.stop_past_loop, partial(daemon.causes.stalled, STALL_S)):
+            stalls = Stalls(daemon)
+            async with guarded(stalls.stop_past_loop, stalls.stalled):
                 await _serve(config, daemon, ending)
         except asyncio.CancelledError:
             if not ending.is_hastened:
@@ -107,7 +109,7 @@ async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
         if config.recording.from_start:
             await daemon.control.start_recording(None)
         parts = {name: group.create_task(part, name=name) for name, part in daemon.parts().items()}
-        tasks = [serving, *parts.values()]
+        tasks = [serving, *parts.values(), group.create_task(keep_going(daemon), name="keep going")]
         for task in tasks:
             task.add_done_callback(partial(_stop_if_failed, daemon))
         within_s = watchdog_s()

@@ -1,4 +1,4 @@
-"""A thread that stops the robot when the event loop does not turn.
+"""A thread that stops a base that is driven when the event loop does not turn, and the one who notices all stalls.
 
 All else that stops the robot runs on the loop: a loop that is stuck, in a computation that somebody forgot to hand to
 a thread or in a system call that does not return, can neither let a lease expire nor hear a client. The boards' deadman
@@ -15,10 +15,13 @@ from collections.abc import AsyncIterator, Callable
 from itertools import count
 from typing import NoReturn
 
+from robotd.core.attention import attention
 from robotd.hardware.devices.device import PAST_LOOP_S
 
 STALL_S = 0.2
 """So long without a turn of the loop is a stall."""
+LATE_S = 0.1
+"""So late a beat is noted, so that no partner is taken for silent whom we did not hear."""
 _BEAT_EVERY_S = STALL_S / 4
 _SWITCH_S = 0.0005
 """A loop that computes holds the interpreter's lock; the guard asks for it a dozen times on its way to three wires, and
@@ -26,25 +29,31 @@ each time the loop may keep it for so long. Python's own 5 ms would add up to mo
 
 log = logging.getLogger(__name__)
 
+Stalled = Callable[[float, bool, str], None]
+
 
 @contextlib.asynccontextmanager
-async def guarded(stop_past_loop: Callable[[int], None], stalled: Callable[[], None]) -> AsyncIterator[None]:
+async def guarded(stop_past_loop: Callable[[int], bool], stalled: Stalled) -> AsyncIterator[None]:
     """Guard the running loop for as long as the block lasts.
 
     Args:
-        stop_past_loop: puts the stop on every wire; called in the guard's thread, every :data:`PAST_LOOP_S` until the
-            loop turns again, and told how often it was called before in this stall.
-        stalled: called on the loop, as soon as it turns again, so that everybody learns of the stop.
+        stop_past_loop: puts the stop on every wire if it must, and says whether it did; called in the guard's thread,
+            and if it did, again every :data:`PAST_LOOP_S` until the loop turns, and told how often it was called before
+            in this stall.
+        stalled: called on the loop, as soon as it turns again: how long it stood still, whether the robot was stopped,
+            and where the loop was.
     """
-    guard = _Guard(stop_past_loop)
+    guard = _Guard(stop_past_loop, stalled)
     thread = threading.Thread(target=guard.watch, name="stall guard", daemon=True)
     switch_s = sys.getswitchinterval()
     sys.setswitchinterval(_SWITCH_S)
     thread.start()
-    beating = asyncio.create_task(guard.beat(stalled), name="stall guard")
+    attention().watch(guard.look)
+    beating = asyncio.create_task(guard.beat(), name="stall guard")
     try:
         yield
     finally:
+        attention().watch(None)
         beating.cancel()
         await asyncio.wait({beating})
         guard.end()
@@ -53,36 +62,50 @@ async def guarded(stop_past_loop: Callable[[int], None], stalled: Callable[[], N
 
 
 class _Guard:
-    def __init__(self, stop_past_loop: Callable[[int], None]) -> None:
+    def __init__(self, stop_past_loop: Callable[[int], bool], stalled: Stalled) -> None:
         self._stop_past_loop = stop_past_loop
+        self._stalled = stalled
+        self._due_s: float | None = None
+        """When the next beat is due; None before the first."""
+        self._has_stopped = threading.Event()
         self._loop_thread = threading.get_ident()
         self._stuck_in = ""
         self._beaten = threading.Event()
-        self._fired = threading.Event()
         self._is_ending = False
 
-    async def beat(self, stalled: Callable[[], None]) -> NoReturn:
+    async def beat(self) -> NoReturn:
         """Show that the loop turns."""
         while True:
             self._beaten.set()
-            if self._fired.is_set():
-                self._fired.clear()
-                log.error(
-                    "the event loop stood still for more than %g s: the robot was stopped; it was in\n%s",
-                    STALL_S,
-                    self._stuck_in,
-                )
-                stalled()
+            self.look()
+            self._due_s = asyncio.get_running_loop().time() + _BEAT_EVERY_S
             await asyncio.sleep(_BEAT_EVERY_S)
+
+    def look(self) -> None:
+        """Tell of a stall that has just ended, once; asked by the beat, and by whoever takes what came meanwhile."""
+        if self._due_s is None:
+            return
+        now_s = asyncio.get_running_loop().time()
+        late_s = now_s - self._due_s
+        has_stopped = self._has_stopped.is_set()
+        if late_s < LATE_S and not has_stopped:
+            return
+        self._has_stopped.clear()
+        self._due_s = now_s + _BEAT_EVERY_S
+        self._stalled(max(late_s, 0.0), has_stopped, self._stuck_in or "an unknown place: it was too short to look")
+        self._stuck_in = ""
 
     def watch(self) -> None:
         """Wait for one beat after the other; stop the robot when one is late."""
         while not self._is_ending:
             if not self._beaten.wait(STALL_S):
-                self._stop(0)
+                has_stopped = self._stop(0)
                 self._stuck_in = self._where()
-                self._fired.set()
-                self._go_on_stopping()
+                if has_stopped:
+                    self._has_stopped.set()
+                    self._go_on_stopping()
+                else:
+                    self._beaten.wait()
             self._beaten.clear()
 
     def _go_on_stopping(self) -> None:
@@ -92,12 +115,13 @@ class _Guard:
                 return
             self._stop(before)
 
-    def _stop(self, before: int) -> None:
-        """Stop; what goes wrong with it must not end the thread, which is all that is left."""
+    def _stop(self, before: int) -> bool:
+        """Stop, and say whether there was reason to; what goes wrong must not end the thread, all that is left."""
         try:
-            self._stop_past_loop(before)
+            return self._stop_past_loop(before)
         except Exception:
             log.exception("the robot could not be stopped past the loop")
+            return True
 
     def _where(self) -> str:
         """Return where the loop's thread is: who reads the log wants to know what held it up."""

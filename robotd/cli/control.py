@@ -36,6 +36,7 @@ def _print_status(status: Status) -> None:
     print_pairs(
         [
             ("mode", f"{status.mode} ({status.reason})"),
+            *([("held", status.held)] if status.held else []),
             ("battery", battery),
             ("bumpers pressed", pressed),
             ("map in use", status.map_name or "none"),

@@ -8,6 +8,7 @@ first of its record begins with a mark: nobody can forge a line of the log.
 import logging
 import os
 import sys
+from pathlib import Path
 
 from robotd.core.text import printable
 
@@ -26,6 +27,17 @@ class PrintableFormatter(logging.Formatter):
         if len(others) > MOST_LINES:
             shown.append(f"... and {len(others) - MOST_LINES} lines more")
         return f"\n{CONTINUED}".join((printable(first, LONGEST_LINE), *shown))
+
+
+def log_place() -> str:
+    """Return where people find the log of this program."""
+    if "JOURNAL_STREAM" in os.environ:
+        return "journalctl -u robotd"
+    try:
+        place = str(Path("/proc/self/fd/2").readlink())
+    except OSError:
+        place = ""
+    return place if place.startswith("/") and not place.startswith("/dev/") else "standard error of robotd"
 
 
 def configure(level: str) -> None:

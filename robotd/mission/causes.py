@@ -7,15 +7,21 @@ up there, with its own clocks silenced.
 
 from typing import Any
 
+import msgspec
+
 from robotd.core.clock import now_ns
 from robotd.core.errors import RecordingError
-from robotd.mission.modes import Occasion
+from robotd.mission.hold import Stall
 from robotd.mission.supervisor import Supervisor
 from robotd.recording.journal import Journal
 
 STALL = "stall"
 LEASE = "lease"
-_ARGUMENTS: dict[str, tuple[str, tuple[type, ...]]] = {STALL: ("for_s", (float, int)), LEASE: ("mission_id", (int,))}
+GO_ON = "go_on"
+_ARGUMENTS: dict[str, tuple[str, tuple[type, ...]]] = {
+    STALL: ("stood_still_s", (float, int)),
+    LEASE: ("mission_id", (int,)),
+}
 _MAX = 1e9
 
 
@@ -26,11 +32,17 @@ class Causes:
         self._supervisor = supervisor
         self._journal = journal
 
-    def stalled(self, for_s: float) -> None:
-        """Take up that the event loop stood still for longer than ``for_s`` [s]; the guard has stopped the robot."""
-        self._supervisor.robot.stop_now()
-        self._journal.cause(now_ns(), STALL, {"for_s": for_s})
-        self._supervisor.halt(Occasion.STOP, f"the event loop stood still for more than {for_s:g} s")
+    def stalled(self, stall: Stall) -> None:
+        """Take up that the event loop stood still; see :meth:`robotd.mission.holding.Holding.stalled`."""
+        if stall.was_stopped:
+            self._supervisor.robot.stop_now()
+        self._journal.cause(now_ns(), STALL, msgspec.to_builtins(stall))
+        self._supervisor.holding.stalled(stall)
+
+    def go_on(self) -> None:
+        """Take up that the loop has been well for long enough: a held mission goes on."""
+        self._journal.cause(now_ns(), GO_ON, {})
+        self._supervisor.holding.go_on()
 
     def repeat(self, name: str, arguments: dict[str, Any]) -> None:
         """Take up a cause as the journal noted it; one of a later version is left out.
@@ -40,7 +52,9 @@ class Causes:
         """
         check_cause(name, arguments)
         if name == STALL:
-            self.stalled(arguments["for_s"])
+            self.stalled(msgspec.convert(arguments, Stall))
+        elif name == GO_ON:
+            self.go_on()
         elif name == LEASE:
             self._supervisor.lease_expired(arguments["mission_id"])
 
@@ -55,3 +69,12 @@ def check_cause(name: str, arguments: dict[str, Any]) -> None:
     value: Any = arguments.get(key)
     if kinds and (type(value) not in kinds or not 0 <= value < _MAX):
         raise RecordingError(f"cause {name!r}: expected a number {key!r}, got {str(arguments)[:80]}")
+    if name == STALL:
+        _check_stall(arguments)
+
+
+def _check_stall(arguments: dict[str, Any]) -> None:
+    try:
+        msgspec.convert(arguments, Stall)
+    except msgspec.ValidationError as error:
+        raise RecordingError(f"cause {STALL!r}: {error}") from error

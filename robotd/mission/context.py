@@ -1,7 +1,7 @@
 """What a mission works with, handed to it by the supervisor."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from robotd.core.clock import now_ns
@@ -9,6 +9,7 @@ from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.core.text import printable
 from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepDone, SweepProgress
+from robotd.mission.hold import Hold
 from robotd.mission.robot import Robot
 from robotd.mission.settings import MissionSettings
 from robotd.mission.stop_and_sweep import Sweeper
@@ -50,12 +51,15 @@ class MissionContext:
     settings: MissionSettings
     compute: Compute
     publish: Publish
+    hold: Hold = field(default_factory=Hold)
 
     @property
     def sweeper(self) -> Sweeper:
         """Takes sweeps with this robot."""
         settings = self.settings
-        return Sweeper(self.robot, settings.head_mount, settings.rangefinder, settings.sweep, settings.driving)
+        return Sweeper(
+            self.robot, settings.head_mount, settings.rangefinder, settings.sweep, settings.driving, self.hold
+        )
 
     async def sweep(self, number: int, on_reading: Callable[[RangeReading], None] | None = None) -> Sweep:
         """Take a sweep and publish its progress and its end."""

@@ -16,12 +16,16 @@ from robotd.planning.path import Path, PlanningSettings, Unreachable, plan
 
 
 async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: float, legs: Legs) -> Odometry:
-    """Drive to a point in the map frame and return odometry there.
+    """Drive to a point in the map frame and return odometry there; after each hold, from where the robot is then.
 
     Raises:
         MissionError: nobody knows where the robot is on the map, or the point cannot be reached.
         DeviceError, LinkTimeout, TransportError: the base failed on the way.
     """
+    return await context.hold.through(lambda: _drive_to(context, place, x_m, y_m, legs))
+
+
+async def _drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: float, legs: Legs) -> Odometry:
     here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
     start = place.pose_of(here)
     if start is None or place.map_from_odom is None:
@@ -29,7 +33,8 @@ async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: fl
     waypoints_m = ((x_m, y_m),) if legs is Legs.STRAIGHT else await _planned(context, place, start, (x_m, y_m))
     odom_from_map = place.map_from_odom.inverse()
     for waypoint_m in waypoints_m:
-        here = await drive_leg(context.robot.drive, *odom_from_map.transform(*waypoint_m), context.settings.driving)
+        point_m = odom_from_map.transform(*waypoint_m)
+        here = await drive_leg(context.robot.drive, *point_m, context.settings.driving, context.hold)
     return here
 
 

@@ -30,6 +30,8 @@ class Status:
     map_name: str | None
     recording: str | None
     """File being recorded to."""
+    held: str | None = None
+    """Why the mission under way is held; None if it is not. It goes on by itself."""
 
 
 @dataclass(frozen=True, slots=True)

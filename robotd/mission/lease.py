@@ -1,25 +1,15 @@
 """Permission to move that runs out by itself."""
 
-import asyncio
 from collections.abc import Callable
 
+from robotd.core.silence import Silence
 
-class Lease:
-    """Calls ``expired`` unless it is renewed in time; a client that dies takes its robot's motion with it."""
 
-    def __init__(self, lasts_s: float, expired: Callable[[], None]) -> None:
-        self._lasts_s = lasts_s
-        self._expired = expired
-        self._timer = asyncio.get_running_loop().call_later(lasts_s, expired)
+class Lease(Silence):
+    """Calls ``expired`` unless it is renewed in time; a client that dies takes its robot's motion with it.
 
-    def renew(self) -> None:
-        """Start the time anew."""
-        self._timer.cancel()
-        self._timer = asyncio.get_running_loop().call_later(self._lasts_s, self._expired)
-
-    def end(self) -> None:
-        """Give it back."""
-        self._timer.cancel()
+    What a client said while our loop stood still is read first.
+    """
 
 
 class EndlessLease(Lease):

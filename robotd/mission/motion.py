@@ -6,7 +6,6 @@ or are cancelled: a stop is the supervisor's, and the last word. Because no time
 silence may last, the same bytes always lead to the same motion: replay depends on it.
 """
 
-import asyncio
 import math
 from collections.abc import AsyncIterator, Callable
 
@@ -15,16 +14,19 @@ from robotd.core.broadcast import Subscription
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import DeviceError, LinkTimeout
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
+from robotd.core.silence import within
 from robotd.hardware.devices.drive import Drive
+from robotd.mission.hold import Hold, Interrupted
 from robotd.mission.steering import DrivingSettings, distance_left_m, leg_twist, turn_rate_radps
 
 
-async def rotate_to(drive: Drive, heading_rad: float, settings: DrivingSettings) -> Odometry:
+async def rotate_to(drive: Drive, heading_rad: float, settings: DrivingSettings, hold: Hold | None = None) -> Odometry:
     """Turn on the spot to a heading in the ``odom`` frame, the short way round.
 
     Raises:
         LinkTimeout: odometry fell silent.
         DeviceError: the base does not turn.
+        Interrupted: the mission was held meanwhile.
     """
 
     def error_rad(now: Odometry) -> float:
@@ -33,6 +35,7 @@ async def rotate_to(drive: Drive, heading_rad: float, settings: DrivingSettings)
     return await _approach(
         drive,
         settings,
+        hold,
         what="turn",
         left=lambda now: abs(error_rad(now)),
         tolerance=settings.heading_tolerance_rad,
@@ -40,16 +43,20 @@ async def rotate_to(drive: Drive, heading_rad: float, settings: DrivingSettings)
     )
 
 
-async def translate_to(drive: Drive, x_m: float, y_m: float, settings: DrivingSettings) -> Odometry:
+async def translate_to(
+    drive: Drive, x_m: float, y_m: float, settings: DrivingSettings, hold: Hold | None = None
+) -> Odometry:
     """Drive straight to a point in the ``odom`` frame that lies ahead.
 
     Raises:
         LinkTimeout: odometry fell silent.
         DeviceError: the base does not get nearer.
+        Interrupted: the mission was held meanwhile.
     """
     return await _approach(
         drive,
         settings,
+        hold,
         what="drive",
         left=lambda now: max(0.0, distance_left_m(now.in_odom, x_m, y_m)),
         tolerance=settings.position_tolerance_m,
@@ -57,13 +64,15 @@ async def translate_to(drive: Drive, x_m: float, y_m: float, settings: DrivingSe
     )
 
 
-async def drive_leg(drive: Drive, x_m: float, y_m: float, settings: DrivingSettings) -> Odometry:
+async def drive_leg(
+    drive: Drive, x_m: float, y_m: float, settings: DrivingSettings, hold: Hold | None = None
+) -> Odometry:
     """Drive one leg: rotate towards its end in the ``odom`` frame, then translate to it."""
     here = await next_odometry(drive, settings.silence_s)
     if math.hypot(x_m - here.in_odom.x_m, y_m - here.in_odom.y_m) <= settings.position_tolerance_m:
         return here
-    await rotate_to(drive, math.atan2(y_m - here.in_odom.y_m, x_m - here.in_odom.x_m), settings)
-    return await translate_to(drive, x_m, y_m, settings)
+    await rotate_to(drive, math.atan2(y_m - here.in_odom.y_m, x_m - here.in_odom.x_m), settings, hold)
+    return await translate_to(drive, x_m, y_m, settings, hold)
 
 
 async def settle(drive: Drive, settle_s: float, settings: DrivingSettings) -> Odometry:
@@ -100,6 +109,7 @@ async def next_odometry(drive: Drive, silence_s: float) -> Odometry:
 async def _approach(
     drive: Drive,
     settings: DrivingSettings,
+    hold: Hold | None,
     *,
     what: str,
     left: Callable[[Odometry], float],
@@ -108,8 +118,11 @@ async def _approach(
 ) -> Odometry:
     """Send ``twist`` for each odometry message until ``left`` is within ``tolerance``; then stand."""
     nearest, nearest_ns = math.inf, 0
+    holds = hold.count if hold is not None else 0
     with drive.odometry.subscribe() as stream:
         async for now in _within(stream, settings.silence_s):
+            if hold is not None and hold.count != holds:
+                raise Interrupted
             remaining = left(now)
             if remaining <= tolerance:
                 drive.set_velocity(STANDSTILL, settings.setpoint_ttl_s)
@@ -125,7 +138,7 @@ async def _approach(
 async def _within(stream: Subscription[Odometry], silence_s: float) -> AsyncIterator[Odometry]:
     while True:
         try:
-            async with asyncio.timeout(silence_s):
+            async with within(silence_s):
                 now = await stream.get()
         except TimeoutError:
             raise LinkTimeout(f"drive: no odometry for {silence_s:g} s") from None

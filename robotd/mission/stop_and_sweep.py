@@ -15,6 +15,7 @@ from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
 from robotd.hardware.devices.pantilt import PanTiltLimits
+from robotd.mission.hold import Hold
 from robotd.mission.motion import rotate_to, settle
 from robotd.mission.robot import Robot
 from robotd.mission.steering import DrivingSettings
@@ -78,6 +79,7 @@ class Sweeper:
     calibration: RangefinderCalibration
     settings: SweepSettings
     driving: DrivingSettings
+    hold: Hold
 
     async def sweep(self, number: int, on_reading: Callable[[RangeReading], None]) -> Sweep:
         """Take sweep ``number`` here; ``on_reading`` sees each reading as it is made.
@@ -99,7 +101,7 @@ class Sweeper:
             await self.robot.rangefinder.switch_laser(on=True)
             turned_rad = wrap_rad(here.in_odom.heading_rad - start.in_odom.heading_rad)
             for bearing_rad in part.bearings_rad:
-                reading = await self._read(bearing_rad - turned_rad, start, here)
+                reading = await self._read_through_holds(bearing_rad - turned_rad, start, here)
                 readings.append(reading)
                 on_reading(reading)
                 await self._check_enough(readings)
@@ -129,8 +131,21 @@ class Sweeper:
     async def _turn_base(self, start: Odometry, part: SweepPart) -> Odometry:
         if part.base_turn_rad == 0.0:
             return start
-        await rotate_to(self.robot.drive, start.in_odom.heading_rad + part.base_turn_rad, self.driving)
+        return await self.hold.through(lambda: self._turn_to(start.in_odom.heading_rad + part.base_turn_rad))
+
+    async def _turn_to(self, heading_rad: float) -> Odometry:
+        await rotate_to(self.robot.drive, heading_rad, self.driving, self.hold)
         return await settle(self.robot.drive, self.settings.settle_s, self.driving)
+
+    async def _read_through_holds(self, pan_rad: float, start: Odometry, here: Odometry) -> RangeReading:
+        holds = self.hold.count
+
+        async def read() -> RangeReading:
+            if self.hold.count != holds:
+                await self.robot.rangefinder.switch_laser(on=True)  # the stop put it out
+            return await self._read(pan_rad, start, here)
+
+        return await self.hold.through(read)
 
     async def _read(self, pan_rad: float, start: Odometry, here: Odometry) -> RangeReading:
         aim = await self.robot.pantilt.aim(pan_rad, self.settings.tilt_rad, timeout_s=self.settings.aim_timeout_s)

@@ -14,6 +14,7 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import LinkTimeout, MissionError, RobotdError
 from robotd.core.log_limit import LogLimit
 from robotd.core.pose import Odometry
+from robotd.core.silence import within
 from robotd.core.text import printable
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
@@ -21,6 +22,7 @@ from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.battery import low_battery
 from robotd.mission.context import MissionContext, Publish, Reporter
 from robotd.mission.events import Event, MissionPhase, Status
+from robotd.mission.holding import Holding
 from robotd.mission.lease import Lease
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.missions import KINDS, carry_out
@@ -30,7 +32,6 @@ from robotd.mission.requests import Mission
 from robotd.mission.robot import Robot
 from robotd.recording.entries import ResultEntry
 
-_STATUS_PERIOD_S = 1.0
 _DEVICE_TIMEOUT_S = 5.0
 _LONGEST_REASON = 500
 
@@ -54,7 +55,6 @@ class Supervisor:
         """Prepare; nothing happens before :meth:`run`.
 
         Args:
-            robot: what to watch over.
             make_context: makes what missions work with, given where to publish.
             note: told every event, the map in use at that moment, and the journal's entry if it was made already,
                 before the world is.
@@ -72,6 +72,7 @@ class Supervisor:
         self._make_lease = make_lease
         self._context = make_context(self.publish)
         self._note = note
+        self.holding = Holding(self, self._context.hold, lambda: self._armed, self._arm_devices)
         self._mode = Mode.DISARMED
         self._reason = "started"
         self._mission: asyncio.Task[None] | None = None
@@ -94,8 +95,7 @@ class Supervisor:
     @property
     def status(self) -> Status:
         """The whole robot in one look."""
-        drive = self.robot.drive
-        readout = drive.readouts.latest if drive.status.link is LinkState.READY else None  # what was is not what is
+        readout = self.robot.drive.readouts.latest if self.robot.has_base else None  # what was is not what is
         return Status(
             time_ns=now_ns(),
             mode=self._mode,
@@ -107,6 +107,7 @@ class Supervisor:
             map_id=self.place.map_id if self.place else None,
             map_name=self.place.name if self.place else None,
             recording=self._recording(),
+            held=self.holding.hold.cause,
         )
 
     @property
@@ -147,7 +148,7 @@ class Supervisor:
         """
         devices = self.require_armable()
         try:
-            async with asyncio.timeout(_DEVICE_TIMEOUT_S):
+            async with within(_DEVICE_TIMEOUT_S):
                 await self._arm_devices(devices)
         except TimeoutError:
             self.halt(Occasion.STOP, "arming took too long")
@@ -233,11 +234,7 @@ class Supervisor:
         return mission_id
 
     def renew(self, mission_id: int) -> None:
-        """Keep a mission's lease alive.
-
-        Raises:
-            MissionError: that mission is not under way.
-        """
+        """Keep a mission's lease alive; MissionError if that mission is not under way."""
         if not self._busy or mission_id != self._mission_id or self._lease is None:
             raise MissionError(f"mission {mission_id} is not under way")
         self._lease.renew()
@@ -275,6 +272,7 @@ class Supervisor:
         """Stop first, then everything else."""
         self.robot.stop_now()
         self._halts += 1
+        self.holding.end()
         if self._mission is not None and self._mission is not asyncio.current_task():
             if not self._mission.done() and not self._mission.cancelling():
                 self._stopped_by = reason  # what comes while it ends does not explain why it ends
@@ -299,12 +297,17 @@ class Supervisor:
         self._mode, self._reason = mode, reason
         self.publish(self.status)
 
+    def _fail(self, reason: str, occasion: Occasion = Occasion.STOP) -> str:
+        reason = self.holding.blamed(reason)
+        self.halt(occasion, reason)
+        return reason
+
     def lease_expired(self, mission_id: int) -> None:
         """Stop the mission whose client fell silent; nothing happens if it has ended."""
         if self._busy and mission_id == self._mission_id:
             self.robot.stop_now()
             self._note_cause("lease", {"mission_id": mission_id})
-            self.halt(Occasion.STOP, f"the lease of mission {mission_id} expired: its client fell silent")
+            self._fail(f"the lease of mission {mission_id} expired: its client fell silent")
 
     async def _run_mission(self, mission: Mission, report: Reporter) -> None:
         try:
@@ -314,8 +317,7 @@ class Supervisor:
             self._apply(Occasion.FINISH, str(error))
             report.at(MissionPhase.FAILED, message=str(error))
         except RobotdError as error:
-            self.halt(Occasion.STOP, str(error))
-            report.at(MissionPhase.FAILED, message=str(error))
+            report.at(MissionPhase.FAILED, message=self._fail(str(error)))
         except Exception as error:
             self.halt(Occasion.STOP, f"internal error: {error!r}")
             log.exception("mission %d", report.mission_id)
@@ -339,16 +341,18 @@ class Supervisor:
     def _device_changed(self, status: DeviceStatus) -> None:
         if status.name == self.robot.drive.name and (status.link is LinkState.ABSENT or IMPLAUSIBLE in status.faults):
             self._doubt()
-        if status.faults and self._mode is not Mode.FAULT:
+        if self.holding.explains(status) and not self._is_left_out(status):
+            self.publish(self.status)
+        elif status.faults and self._mode is not Mode.FAULT:
             why = f": {status.detail}" if IMPLAUSIBLE in status.faults else ""
-            self.halt(Occasion.FAULT, f"{status.name}: {', '.join(status.faults)}{why}")
+            self._fail(f"{status.name}: {', '.join(status.faults)}{why}", Occasion.FAULT)
         elif self._mode in {Mode.DISARMED, Mode.FAULT}:
             self.publish(self.status)
         elif status.link is not LinkState.READY and not self._is_left_out(status):
-            self.halt(Occasion.DEVICE_LOST, f"{status.name} is gone: {status.detail}")
+            self._fail(f"{status.name} is gone: {status.detail}", Occasion.DEVICE_LOST)
         elif status.link is LinkState.READY and not status.armed:
-            is_back = self._is_left_out(status)
-            self.halt(Occasion.STOP, f"{status.name} is {'there again: arm anew' if is_back else 'no longer armed'}")
+            why = "there again: arm anew" if self._is_left_out(status) else "no longer armed"
+            self.halt(Occasion.STOP, f"{status.name} is {why}")
         else:
             self.publish(self.status)
 
@@ -385,7 +389,7 @@ class Supervisor:
 
     async def _repeat_status(self) -> None:
         while True:
-            await asyncio.sleep(_STATUS_PERIOD_S)
+            await asyncio.sleep(1.0)
             self.publish(self.status)
 
 

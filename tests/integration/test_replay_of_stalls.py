@@ -7,8 +7,9 @@ import pytest
 
 from robotd.app.replaying import replay_recording
 from robotd.app.stall_guard import STALL_S
-from robotd.core.clock import run_virtual
+from robotd.core.clock import now_ns, run_virtual
 from robotd.core.errors import RobotdError
+from robotd.mission.hold import Stall
 from robotd.mission.modes import Mode
 from robotd.recording.entries import CauseEntry
 from robotd.recording.reader import read
@@ -26,7 +27,7 @@ async def stall_in(state: str, directory: Path) -> None:
         for pause_s in (0.013, 0.4):
             await asyncio.sleep(pause_s)
             it.daemon.robot.stop_past_loop()  # as the guard's thread does
-            it.daemon.causes.stalled(STALL_S)
+            it.daemon.causes.stalled(Stall(now_ns(), STALL_S, True, "the log"))
         await asyncio.sleep(1.0)
         await _bring_back(it)
         await asyncio.sleep(0.2)

@@ -10,8 +10,9 @@ from typing import Any
 
 from robotd.app.replaying import ReplayReport, replay_recording
 from robotd.app.stall_guard import STALL_S
-from robotd.core.clock import run_virtual
+from robotd.core.clock import now_ns, run_virtual
 from robotd.core.errors import RobotdError
+from robotd.mission.hold import Stall
 from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
 from robotd.sim.emulators.catalogue import Dialects
@@ -107,8 +108,10 @@ class _Session:
         it.daemon.control.start(MapMission("new", it.robot.stops_m, it.robot.start, Legs.STRAIGHT), _LEASE_S)
 
     async def _stall(self, it: Bench) -> None:
-        it.daemon.robot.stop_past_loop()  # as the guard's thread does
-        it.daemon.causes.stalled(STALL_S)
+        was_driven = it.daemon.robot.drive.is_driven
+        if was_driven:
+            it.daemon.robot.stop_past_loop()  # as the guard's thread does
+        it.daemon.causes.stalled(Stall(now_ns(), STALL_S, was_driven, "the log"))
 
     async def _fault(self, it: Bench) -> None:
         device, fault = self._rng.choice(DEVICES), self._rng.choice(tuple(FAULTS))

@@ -14,7 +14,7 @@ from firmware_proto.common import Fault
 from robotd.app.stall_guard import STALL_S
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.mission.events import MissionPhase, MissionProgress
-from robotd.mission.requests import Legs, MapMission
+from robotd.mission.requests import DriveMission, Legs, MapMission
 from robotd.server.async_client import AsyncClient
 from robotd.server.topics import Topic
 from tests.safety.rig import STALLING_DAEMON, Rig, armed, ms_since, until
@@ -22,6 +22,8 @@ from tests.safety.rig import STALLING_DAEMON, Rig, armed, ms_since, until
 LEASE_S = 0.1
 CLIENT_LEASE_S = 0.5
 _MOVING_MPS = 0.15
+_AWAY_M = 0.8
+_UNDER_WAY_S = 0.3
 _TTL_S = 0.4
 """Of a set-point, as ``driving.setpoint_ttl_s`` has it by default."""
 
@@ -76,11 +78,18 @@ def _hold_on(runtime_dir: Path, running: Event) -> None:
 
 
 async def loop_stall(rig: Rig, trials: int) -> AsyncIterator[float]:
-    """The event loop computes for 0.4 s: from the moment when the guard must notice, 0.2 s after it began."""
+    """The loop computes for 0.4 s while the base is driven: from 0.2 s after that began, when the guard must act."""
     async with rig.daemon(STALLING_DAEMON) as daemon, AsyncClient(rig.runtime_dir) as client:
         assert daemon.stdout is not None
-        for _ in range(trials):
+        start = rig.robot.start
+        await armed(client)
+        await client.make_map("safety", (), start)
+        for trial in range(trials):
+            await client.stop("the next trial")  # the one before is held, and would go on
             await armed(client)
+            y_m = start.y_m + (_AWAY_M if trial % 2 == 0 else 0.0)
+            await client.start(DriveMission(start.x_m, y_m, Legs.STRAIGHT), CLIENT_LEASE_S)
+            await asyncio.sleep(_UNDER_WAY_S)
             rig.expect_stops()
             os.kill(daemon.pid, signal.SIGRTMIN)
             stalled_ns = int(await daemon.stdout.readline())

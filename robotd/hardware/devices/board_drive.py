@@ -10,7 +10,7 @@ from firmware_proto.schema import Message
 from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Broadcast
 from robotd.core.errors import DeviceError
-from robotd.core.pose import Odometry, Twist2
+from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.hardware.devices.board_device import BoardDevice
 from robotd.hardware.devices.credible import check_battery, check_twist
 from robotd.hardware.devices.drive import DriveReadout
@@ -35,6 +35,7 @@ class BoardDrive(BoardDevice):
         self._odometer = JudgedOdometer(self.name, settings.calibration)
         self._odometry: Broadcast[Odometry] = Broadcast()
         self._readouts: Broadcast[DriveReadout] = Broadcast()
+        self._wanted = STANDSTILL
 
     @property
     def odometry(self) -> Broadcast[Odometry]:
@@ -46,9 +47,26 @@ class BoardDrive(BoardDevice):
         """Battery and bumpers, periodic and on change."""
         return self._readouts
 
+    @property
+    def is_driven(self) -> bool:
+        """Whether a set-point other than standstill was given, and no stop since."""
+        return not self._wanted.is_zero
+
+    def stop_now(self) -> None:
+        """Put the preformatted stop on the wire; see :meth:`BoardDevice.stop_now`."""
+        self._wanted = STANDSTILL
+        super().stop_now()
+
+    def link_lost(self, reason: str) -> None:
+        """Note that there is no base, and why."""
+        self._wanted = STANDSTILL
+        super().link_lost(reason)
+
     def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
         """Send a set-point that the base may follow for ``ttl_s``; TransportError if it is absent."""
-        self._talk().post(
+        session = self._talk()
+        self._wanted = twist
+        session.post(
             SetVelocity(
                 speed_mmps=round(twist.speed_mps * _MILLI),
                 turn_mradps=round(twist.turn_radps * _MILLI),

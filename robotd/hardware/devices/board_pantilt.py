@@ -10,6 +10,7 @@ from firmware_proto.schema import Message
 from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Broadcast, Subscription
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
+from robotd.core.silence import within
 from robotd.hardware.devices.board_device import BoardDevice
 from robotd.hardware.devices.credible import check_limits, check_readback
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
@@ -72,7 +73,7 @@ class BoardPanTilt(BoardDevice):
             session = self._talk()
             with self._reports.subscribe() as reports:
                 try:
-                    async with asyncio.timeout(timeout_s):
+                    async with within(timeout_s):
                         done = await self._done(session, await session.command(aim), reports)
                 except TimeoutError:
                     self.stop_now()

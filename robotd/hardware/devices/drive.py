@@ -29,6 +29,10 @@ class Drive(Device, Protocol):
     def readouts(self) -> Broadcast[DriveReadout]:
         """Battery and bumpers, periodic and on change."""
 
+    @property
+    def is_driven(self) -> bool:
+        """Whether a set-point other than standstill was given, and no stop since; may be asked from any thread."""
+
     def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
         """Send a set-point that the base may follow for ``ttl_s``; the newest wins, none is resent.
 

@@ -11,6 +11,7 @@ from typing import ClassVar, NoReturn
 
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
+from robotd.core.silence import within
 from robotd.hardware.devices.bought_device import BoughtDevice
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
 from robotd.hardware.devices.settings import PanTiltSettings
@@ -72,7 +73,7 @@ class DynamixelPanTilt(BoughtDevice[Message]):
                 self._tilt: _counts(tilt_of_head_rad),
             }
             try:
-                async with asyncio.timeout(timeout_s):
+                async with within(timeout_s):
                     for servo, goal in goals.items():
                         await self._write(dialogue, servo, dynamixel.GOAL_POSITION, goal, 4)
                     return await self._arrived(dialogue, goals)

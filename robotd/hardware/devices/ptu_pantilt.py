@@ -13,6 +13,7 @@ from typing import NoReturn
 
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
+from robotd.core.silence import within
 from robotd.hardware.devices.bought_device import BoughtDevice, is_a
 from robotd.hardware.devices.credible import check_limits
 from robotd.hardware.devices.pantilt import LOST_STEPS, AimReadback, PanTiltLimits
@@ -79,7 +80,7 @@ class PtuPanTilt(BoughtDevice[Message]):
             pan = round(self._pan_of_head(pan_rad) * axes.pan_steps_per_rad)
             tilt = round((tilt_rad - self._mount.tilt_zero_rad) * axes.tilt_steps_per_rad)
             try:
-                async with asyncio.timeout(timeout_s):
+                async with within(timeout_s):
                     await self._order(dialogue, command("PP", pan))
                     await self._order(dialogue, command("TP", tilt))
                     time_ns = await self._arrived(dialogue, pan, tilt)

@@ -105,6 +105,11 @@ class RflexDrive(BoughtDevice[Message]):
         """Battery, periodic."""
         return self._readouts
 
+    @property
+    def is_driven(self) -> bool:
+        """Whether a set-point other than standstill was given, and no stop since."""
+        return not self._wanted.is_zero
+
     def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
         """Let the base follow a set-point for ``ttl_s``; TransportError if it is absent, DeviceError if not armed."""
         self._talk_armed()

@@ -72,6 +72,11 @@ class RwiDrive(BoughtDevice[Message]):
         """Battery and bumpers, periodic and on change."""
         return self._readouts
 
+    @property
+    def is_driven(self) -> bool:
+        """Whether a set-point other than standstill was given, and no stop since."""
+        return any(self._directions.values())
+
     def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
         """Send a set-point that the base may follow for ``ttl_s``; TransportError if it is absent.
 

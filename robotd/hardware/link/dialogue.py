@@ -19,6 +19,7 @@ from typing import Generic, NoReturn, Protocol, Self, TypeVar
 
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RobotdError, TransportError
+from robotd.core.silence import within
 from robotd.hardware.link.tapped import TappedLine
 
 M = TypeVar("M")
@@ -162,7 +163,7 @@ class Dialogue(Generic[M]):
                 given_up_ns = now_ns() + round(timeout_s * NS_PER_S)
                 try:
                     self._line.write(data)
-                    async with asyncio.timeout(timeout_s):
+                    async with within(timeout_s):
                         return await request.answer
                 except TimeoutError:
                     self._unsettled_ns = given_up_ns
@@ -205,12 +206,13 @@ class Dialogue(Generic[M]):
             TransportError: the line is lost.
             LinkTimeout: no message came for ``silence_s``: noise is no sign of life.
         """
-        if silence_s is None:
-            await asyncio.wait({self._reader})
         while not self._reader.done():
+            if silence_s is None:
+                await asyncio.wait({self._reader})
+                break
             self._message_came.clear()
             try:
-                async with asyncio.timeout(silence_s):
+                async with within(silence_s):
                     came = asyncio.create_task(self._message_came.wait())
                     try:
                         await asyncio.wait({came, self._reader}, return_when=asyncio.FIRST_COMPLETED)

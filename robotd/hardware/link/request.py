@@ -5,6 +5,7 @@ import asyncio
 from firmware_proto.common import Ack, ConfigureReply, Nack, Result
 from firmware_proto.schema import REPLY, Message
 from robotd.core.errors import DeviceError, RobotdError
+from robotd.core.silence import within
 from robotd.hardware.wire.board import Received
 
 
@@ -19,8 +20,11 @@ class Request:
 
     async def wait(self, timeout_s: float) -> Received | None:
         """Return the reply, or None if there is none yet after ``timeout_s``; raise what it failed with."""
-        done, _ = await asyncio.wait({self._reply}, timeout=timeout_s)
-        return self._reply.result() if done else None
+        try:
+            async with within(timeout_s):
+                return await asyncio.shield(self._reply)  # the next try waits for the same reply
+        except TimeoutError:
+            return None
 
     def is_answered_by(self, received: Received) -> bool:
         """Say whether this is the first reply to it."""

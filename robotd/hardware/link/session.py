@@ -18,6 +18,7 @@ from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START
 from firmware_proto.schema import Message
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError, RobotdError, TransportError
+from robotd.core.silence import within
 from robotd.hardware.link.clock_sync import AHEAD_MAX_NS, ClockSync
 from robotd.hardware.link.request import Request, answered_type, result_of
 from robotd.hardware.link.round_trip import RoundTrip
@@ -201,12 +202,12 @@ class Session:
 
     async def _read(self) -> NoReturn:
         try:
-            async with asyncio.timeout(None) as silence:
+            async with within(self._silence_s, begins=False) as silence:
                 while True:
                     chunk = await self._line.read()
                     for received in self._wire.feed(chunk.data):
                         if self._take(received, chunk.time_ns):
-                            silence.reschedule(asyncio.get_running_loop().time() + self._silence_s)
+                            silence.renew()
         except TimeoutError:
             raise self._lose(LinkTimeout(f"{self.device}: silent for {self._silence_s:g} s")) from None
         except RobotdError as error:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from robotd.core.attention import attention
 from robotd.core.clock import now_ns
 from robotd.core.errors import TransportError
 from robotd.hardware.link.tap import Direction, Tap
@@ -38,6 +39,7 @@ class TappedLine:
         except TransportError as error:
             self._tap.line_broke(self._device, now_ns(), str(error))
             raise
+        attention().look()
         chunk = Chunk(now_ns(), data)
         self._tap.bytes_passed(self._device, Direction.FROM_BOARD, chunk.time_ns, data)
         return chunk

@@ -7,6 +7,7 @@ import time
 import pytest
 
 from robotd.app.stall_guard import STALL_S, guarded
+from robotd.core.attention import attention
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.pty import open_pty
 from robotd.hardware.transport.serial_port import open_serial
@@ -18,13 +19,14 @@ async def test_a_stuck_loop_gets_the_stop_onto_the_wire_while_it_is_stuck() -> N
     line = await open_serial(board.path, LineFormat(115_200))
     stopped = threading.Event()
 
-    def stop(before: int) -> None:
+    def stop(before: int) -> bool:
         if before:
-            return
+            return True
         line.write_past_loop(b"stop")
         stopped.set()
+        return True
 
-    async with guarded(stop, told.set):
+    async with guarded(stop, lambda *_: told.set()):
         await asyncio.sleep(0)  # the first beat
         began_s = time.monotonic()
         assert stopped.wait(10.0), "the guard did nothing"  # blocks the loop, which is the point
@@ -38,14 +40,34 @@ async def test_a_stuck_loop_gets_the_stop_onto_the_wire_while_it_is_stuck() -> N
 @pytest.mark.real_clock
 async def test_a_loop_that_turns_is_left_alone_and_each_stall_is_told_once() -> None:
     stops: list[str] = []
-    stalls: list[str] = []
-    async with guarded(lambda before: stops.append("stop") if before == 0 else None, lambda: stalls.append("stall")):
-        await asyncio.sleep(2 * STALL_S)
-        assert (stops, stalls) == ([], [])
+    stalls: list[tuple[float, bool, str]] = []
+
+    def stop(before: int) -> bool:
+        if before == 0:
+            stops.append("stop")
+        return len(stops) == 1  # the second time there is nothing to stop
+
+    async with guarded(stop, lambda *stall: stalls.append(stall)):
+        await asyncio.sleep(0)
         for count in (1, 2):
-            time.sleep(2 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
-            await asyncio.sleep(STALL_S / 2)
+            time.sleep(3 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
+            await asyncio.sleep(STALL_S / 8)
             assert (len(stops), len(stalls)) == (count, count)
+    assert all(stood_still_s > STALL_S and "time.sleep" in where for stood_still_s, _, where in stalls)
+    assert [was_stopped for _, was_stopped, _ in stalls] == [True, False]
+    assert attention().missed_s == 0.0  # for whoever is told to add up
+
+
+@pytest.mark.real_clock
+async def test_whoever_reads_first_after_a_stall_finds_it_noted() -> None:
+    stalls: list[float] = []
+    async with guarded(lambda _: False, lambda stood_still_s, *_: stalls.append(stood_still_s)):
+        await asyncio.sleep(0)
+        time.sleep(STALL_S)  # noqa: ASYNC251  # a loop that is stuck
+        attention().look()
+        assert len(stalls) == 1
+        attention().look()
+        assert len(stalls) == 1
 
 
 @pytest.mark.real_clock
@@ -55,11 +77,11 @@ async def test_a_stop_that_fails_is_told_and_the_next_stall_is_seen_all_the_same
     asked: list[int] = []
     stalls: list[str] = []
 
-    def stop(before: int) -> None:
+    def stop(before: int) -> bool:
         asked.append(before)
         raise OSError("no way to the wire")
 
-    async with guarded(stop, lambda: stalls.append("stall")):
+    async with guarded(stop, lambda *_: stalls.append("stall")):
         for count in (1, 2):
             await asyncio.sleep(STALL_S / 2)
             time.sleep(2 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
@@ -71,7 +93,12 @@ async def test_a_stop_that_fails_is_told_and_the_next_stall_is_seen_all_the_same
 @pytest.mark.real_clock
 async def test_the_stop_is_said_again_until_the_loop_turns_and_then_no_more() -> None:
     said: list[int] = []
-    async with guarded(said.append, lambda: None):
+
+    def stop(before: int) -> bool:
+        said.append(before)
+        return True
+
+    async with guarded(stop, lambda *_: None):
         await asyncio.sleep(0)
         time.sleep(3 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
         await asyncio.sleep(STALL_S / 4)

@@ -80,6 +80,10 @@ class ScriptedDrive(Scripted):
         self.readouts: Broadcast[DriveReadout] = Broadcast()
         self.told: list[Twist2] = []
 
+    @property
+    def is_driven(self) -> bool:
+        return False
+
     def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
         if self.status.link is not LinkState.READY:
             raise TransportError("drive is absent")

@@ -1,0 +1,47 @@
+"""What the daemon does when its loop stood still: stop what is driven, tell the mission, let it go on."""
+
+import asyncio
+import logging
+from typing import NoReturn
+
+from robotd.app.compose import Daemon
+from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.log import log_place
+from robotd.mission.hold import WELL_S, Stall
+
+_LOOK_EVERY_S = 0.1
+
+log = logging.getLogger(__name__)
+
+
+class Stalls:
+    """Between the guard, which knows of stalls, and the mission, which knows what to do about them."""
+
+    def __init__(self, daemon: Daemon) -> None:
+        self._daemon = daemon
+        self._log = log_place()
+
+    def stop_past_loop(self, before: int) -> bool:
+        """Put the stop on every wire if the base is driven, from any thread; return whether it was.
+
+        What merely sweeps or computes goes on: nothing of it can hurt anybody.
+        """
+        is_driven = self._daemon.robot.drive.is_driven
+        if is_driven:
+            self._daemon.robot.stop_past_loop(before)
+        return is_driven
+
+    def stalled(self, stood_still_s: float, was_stopped: bool, stuck_in: str) -> None:
+        """Tell the mission, and the log."""
+        done = "the base was stopped" if was_stopped else "nothing was stopped, for the base was not driven"
+        log.error("the event loop stood still for %.2f s: %s; it was in\n%s", stood_still_s, done, stuck_in)
+        self._daemon.causes.stalled(Stall(now_ns(), stood_still_s, was_stopped, self._log))
+
+
+async def keep_going(daemon: Daemon) -> NoReturn:
+    """Let a held mission go on as soon as the loop has been well for a while; a replay has it from its recording."""
+    while True:
+        await asyncio.sleep(_LOOK_EVERY_S)
+        hold = daemon.supervisor.holding.hold
+        if hold.cause is not None and not hold.is_ending and now_ns() - hold.unwell_ns >= WELL_S * NS_PER_S:
+            daemon.causes.go_on()

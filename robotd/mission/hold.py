@@ -1,0 +1,97 @@
+"""A mission is held: this machine was too busy, the base was stopped, and the mission goes on by itself.
+
+The one way back to motion that needs no ``arm``, hence narrow: it begins only in a mission under way, and only because
+our own loop stood still; every stop, fault, lost device and expired lease ends it, and then only ``arm`` leads on; and
+it begins no more than :data:`HOLDS_A_MINUTE` times within a minute.
+"""
+
+import asyncio
+from collections import deque
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+from robotd.core.clock import NS_PER_S
+from robotd.core.errors import RobotdError
+
+T = TypeVar("T")
+
+HOLDS_A_MINUTE = 6
+WELL_S = 1.0
+"""A held mission goes on once the loop has turned for so long without a stall."""
+_MINUTE_NS = 60 * NS_PER_S
+_LATELY_NS = 2 * NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class Stall:
+    """The loop stood still."""
+
+    time_ns: int
+    """When it turned again."""
+    stood_still_s: float
+    was_stopped: bool
+    """Whether a stop was put on the wires meanwhile, because the base was driven."""
+    log: str
+    """Where people find more."""
+
+    def __str__(self) -> str:
+        """Say it in a line."""
+        return f"this machine was too busy: the loop stood still {self.stood_still_s:.1f} s; log: {self.log}"
+
+    def is_recent(self, time_ns: int) -> bool:
+        """Whether what happens at this time may have come of it."""
+        return time_ns - self.time_ns <= _LATELY_NS
+
+
+class Interrupted(Exception):  # no error: the step is taken again
+    """A hold broke into a step of the mission."""
+
+
+class Hold:
+    """Whether the mission is held, why, and since when all is well."""
+
+    def __init__(self) -> None:
+        self.cause: str | None = None
+        self.is_ending = False
+        """Whether devices are being armed again."""
+        self.count = 0
+        """How often it began since start."""
+        self.unwell_ns = 0
+        """When the last stall ended."""
+        self._over = asyncio.Event()
+        self._over.set()
+        self._begun_ns: deque[int] = deque(maxlen=HOLDS_A_MINUTE)
+
+    def begin(self, cause: str, time_ns: int) -> bool:
+        """Hold the mission; False if that happened too often within a minute, and it must end."""
+        if self.cause is None and len(self._begun_ns) == HOLDS_A_MINUTE and time_ns - self._begun_ns[0] < _MINUTE_NS:
+            return False
+        if self.cause is None:
+            self._begun_ns.append(time_ns)
+            self.count += 1
+        self.cause = cause
+        self.unwell_ns = time_ns
+        self._over.clear()
+        return True
+
+    def end(self) -> None:
+        """Let the mission go on, or end."""
+        self.cause = None
+        self.is_ending = False
+        self._over.set()
+
+    async def over(self) -> None:
+        """Wait until nothing is held."""
+        await self._over.wait()
+
+    async def through(self, step: Callable[[], Awaitable[T]]) -> T:
+        """Return what came of a step, taken again from its beginning after each hold that broke into it."""
+        while True:
+            await self.over()
+            count = self.count
+            try:
+                return await step()
+            except (Interrupted, RobotdError):
+                if self.count == count:
+                    raise  # devices that were stopped for a hold say so; else it is a failure
