@@ -55,6 +55,7 @@ class Supervisor:
         """Prepare; nothing happens before :meth:`run`.
 
         Args:
+            robot: what to watch over.
             make_context: makes what missions work with, given where to publish.
             note: told every event, the map in use at that moment, and the journal's entry if it was made already,
                 before the world is.

@@ -21,8 +21,8 @@ from robotd.mission.requests import Mission
 from robotd.server.client import Client
 from robotd.server.mission_run import MissionEvent, final_estimate
 
-LEASE_S = 5.0
-"""Generous: a demonstration shares two cores with its simulated hardware."""
+LEASE_S = 10.0
+"""Generous: a demonstration shares two cores with its simulated hardware, and with whatever else runs."""
 _WIDTH = 120
 
 

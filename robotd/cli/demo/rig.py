@@ -16,8 +16,9 @@ from robotd.hardware.devices.device import LinkState
 from robotd.server.client import Client
 
 DEVICES = ("drive", "pantilt", "rangefinder")
-_START_S = 30.0
-_END_S = 10.0
+_START_S = 180.0
+"""Starting is quick, unless the machine is busy with something else."""
+_END_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
