@@ -67,7 +67,19 @@ def rig(directory: Path, config: Config, emulator: list[str]) -> Iterator[Rig]:
         process = stack.enter_context(_running(daemon, output.fileno()))
         client = stack.enter_context(Client(config.server.runtime_dir))
         _wait(lambda: _all_ready(client), "the daemon and its devices", process, log)
-        yield Rig(client, truth)
+        try:
+            yield Rig(client, truth)
+        except RobotdError as error:
+            raise RobotdError(f"{error}; {_kept(client, directory)}; log: {log}; then start it again") from error
+
+
+def _kept(client: Client, directory: Path) -> str:
+    """Save what there is of a map, and say where it is: a demonstration that fails loses nothing."""
+    try:
+        entry = client.map_save("unfinished")
+    except RobotdError as error:
+        return f"no map was saved ({error})"
+    return f"the map so far: {directory / 'maps' / entry.name / str(entry.version)}"
 
 
 def _program(module: str) -> list[str]:
