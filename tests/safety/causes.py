@@ -87,7 +87,7 @@ async def loop_stall(rig: Rig, trials: int) -> AsyncIterator[float]:
         for trial in range(trials):
             await client.stop("the next trial")  # the one before is held, and would go on
             await armed(client)
-            y_m = start.y_m + (_AWAY_M if trial % 2 == 0 else 0.0)
+            y_m = start.y_m + (_AWAY_M if trial % 2 == 0 else -_AWAY_M)  # never where it may already be
             await client.start(DriveMission(start.x_m, y_m, Legs.STRAIGHT), CLIENT_LEASE_S)
             await asyncio.sleep(_UNDER_WAY_S)
             rig.expect_stops()
