@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real test bench bench-peers paper conservative exact faults replay-many liars fuzz safety stops lag firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help demo demo-real demo-busy test bench bench-peers paper conservative exact faults replay-many liars fuzz safety stops lag firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -22,6 +22,10 @@ demo: .venv/.demo  ## Map a room, localize in it, serve the pose: simulated robo
 demo-real: .venv/.demo  ## The same in a recorded building: make demo-real LOG=path/to/a/carmen.log.gz
 	@test -n "$(LOG)" || { echo "usage: make demo-real LOG=path/to/a/carmen.log.gz" >&2; exit 2; }
 	@$(BIN)/robotctl demo building "$(LOG)" --out demo
+
+demo-busy: .venv/.dev  ## Whether make demo finishes beside busy programs: N="2 4 8" RUNS=10 NICE=0 HARSH=1 LOG=... (an hour)
+	@$(BIN)/python -m tests.busy.run --world $(WORLD) $(if $(N),--busy $(N)) $(if $(RUNS),--runs $(RUNS)) \
+		$(if $(NICE),--nice $(NICE)) $(if $(HARSH),--harsh) $(if $(LOG),--log "$(LOG)")
 
 test: .venv/.dev  ## Run all tests
 	@echo "robotd: running all tests (about three minutes on two cores)"
