@@ -1,7 +1,7 @@
 """Directories that appear on disk whole or not at all, whenever the power goes.
 
 Everything is written beside its place, synced file by file, synced as a directory, renamed into place, and
-the rename is synced. All calls that change the disk are here, through :mod:`os`.
+the rename is synced. All calls that change maps are here, through :mod:`os`.
 """
 
 import os

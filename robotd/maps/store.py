@@ -21,6 +21,7 @@ from robotd.grid.map_yaml import map_yaml
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.grid.spec import GridSpec
 from robotd.maps.atomic import Buffer, make_directory, publish_directory, remove_leftover, withdraw_directory
+from robotd.maps.lock import sole_writer
 from robotd.maps.manifest import FileSum, Manifest, check_name, decode_manifest
 
 MANIFEST, CELLS, IMAGE, YAML = "manifest.json", "cells.bin", "map.pgm", "map.yaml"
@@ -50,7 +51,7 @@ class MapEntry:
 
 
 class MapStore:
-    """The maps under one directory. Blocks on the disk: call it on a thread. One writer at a time."""
+    """The maps under one directory. Blocks on the disk: call it on a thread. Writers of any process take turns."""
 
     def __init__(self, root: Path, settings: GridSettings | None = None, *, keep: int = 10) -> None:
         """Look at ``root``, which need not exist yet.
@@ -69,23 +70,15 @@ class MapStore:
         """Store a map as a new version, synced to the disk, and drop versions too many.
 
         Raises:
-            MapError: the name is no name, or the disk refused; what was there before is untouched.
+            MapError: the name is no name, another writer would not end, or the disk refused; what was there before
+                is untouched.
             TypeError: ``metadata`` holds something that JSON cannot.
         """
         check_name(name)
         with _disk_errors(f"cannot save map {name}"):
-            make_directory(self._root / name)
-            self._remove_leftovers()
-            version = max(self._versions(name), default=0) + 1
-            files, manifest = _files_of(name, version, grid, metadata, created_unix_ns)
-            path = self._root / name / str(version)
-            try:
-                publish_directory(self._leftover(name, version), path, files)
-            except OSError:
-                self._remove_leftovers()
-                raise
-            self._prune(name)
-        return _entry_of(manifest, path)
+            make_directory(self._root)
+            with sole_writer(self._root):
+                return self._save(name, grid, metadata, created_unix_ns)
 
     def load(self, name: str, version: int | None = None) -> tuple[OccupancyGrid, MapEntry]:
         """Return a map, checked byte by byte; the newest version if none is given.
@@ -103,6 +96,20 @@ class MapStore:
         """Return every version of every map by its manifest, oldest first; the files are not checked."""
         with _disk_errors("cannot list the maps"):
             return tuple(self._listed(name, version) for name in self._names() for version in self._versions(name))
+
+    def _save(self, name: str, grid: OccupancyGrid, metadata: dict[str, Any], created_unix_ns: int) -> MapEntry:
+        make_directory(self._root / name)
+        self._remove_leftovers()
+        version = max(self._versions(name), default=0) + 1
+        files, manifest = _files_of(name, version, grid, metadata, created_unix_ns)
+        path = self._root / name / str(version)
+        try:
+            publish_directory(self._leftover(name, version), path, files)
+        except OSError:
+            self._remove_leftovers()
+            raise
+        self._prune(name)
+        return _entry_of(manifest, path)
 
     def _load_version(self, name: str, version: int | None) -> tuple[OccupancyGrid, MapEntry]:
         versions = self._versions(name)

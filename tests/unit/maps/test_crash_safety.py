@@ -138,7 +138,7 @@ def assert_old_or_new(root: Path, *, must_be_new: bool) -> None:
         store.load("lab", listed.version)
     later = store.save("lab", grid_of(9), {}, 9)
     assert later.version == entry.version + 1
-    assert not list(root.glob(".*")), "nothing is left behind"
+    assert not list(root.glob(".tmp-*")), "nothing is left behind"
 
 
 @dataclass

@@ -63,7 +63,7 @@ def test_versions_count_up_and_old_ones_go(tmp_path: Path) -> None:
     assert [entry.version for entry in store.list()] == [3, 4, 5]
     assert store.load("lab")[1].version == 5
     assert store.load("lab", 3)[1].metadata == {"stops": 3}
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["lab"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".lock", "lab"]
 
 
 def test_the_version_in_use_is_kept_however_old(tmp_path: Path) -> None:
