@@ -16,13 +16,18 @@ SCHEMA = 1
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
+def is_name(name: str) -> bool:
+    """Return whether a map may have this name."""
+    return _NAME.fullmatch(name) is not None
+
+
 def check_name(name: str) -> None:
     """Refuse a name that is not also a harmless directory name.
 
     Raises:
         MapError: it is empty, too long, or holds more than letters, digits, dots, dashes and underscores.
     """
-    if not _NAME.fullmatch(name):
+    if not is_name(name):
         raise MapError(
             f"{name!r} cannot name a map: take 1 to 64 letters, digits, '.', '-', '_', the first a letter or a digit"
         )

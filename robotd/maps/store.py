@@ -7,7 +7,6 @@ never falls back by itself: a robot that trusts the wrong map is worse off than 
 
 import contextlib
 import logging
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,10 +22,9 @@ from robotd.grid.spec import GridSpec
 from robotd.maps.atomic import Buffer, make_directory, publish_directory, remove_leftover, withdraw_directory
 from robotd.maps.lock import sole_writer
 from robotd.maps.manifest import FileSum, Manifest, check_name, decode_manifest
+from robotd.maps.places import check_new_name, directories, leftovers, next_version, temporary_place, versions
 
 MANIFEST, CELLS, IMAGE, YAML = "manifest.json", "cells.bin", "map.pgm", "map.yaml"
-_LEFTOVER = ".tmp-"
-_VERSION = re.compile(r"[1-9][0-9]{0,8}")
 _MANIFEST_MAX_BYTES = 1 << 20
 
 _log = logging.getLogger(__name__)
@@ -93,14 +91,30 @@ class MapStore:
         return loaded
 
     def list(self) -> tuple[MapEntry, ...]:
-        """Return every version of every map by its manifest, oldest first; the files are not checked."""
+        """Return every version of every map by its manifest, oldest first; the files are not checked.
+
+        A map whose directory cannot be read is there as version 0, damaged; what is no map is left out.
+
+        Raises:
+            MapError: the store itself cannot be read.
+        """
         with _disk_errors("cannot list the maps"):
-            return tuple(self._listed(name, version) for name in self._names() for version in self._versions(name))
+            return tuple(entry for name in directories(self._root) for entry in self._listed_map(name))
+
+    def _listed_map(self, name: str) -> Iterator[MapEntry]:
+        try:
+            numbers = self._versions(name)
+        except OSError as error:
+            yield _damaged(name, 0, self._root / name, f"the directory cannot be read: {error.strerror}")
+            return
+        for version in numbers:
+            yield self._listed(name, version)
 
     def _save(self, name: str, grid: OccupancyGrid, metadata: dict[str, Any], created_unix_ns: int) -> MapEntry:
+        check_new_name(name, self._names())
         make_directory(self._root / name)
         self._remove_leftovers()
-        version = max(self._versions(name), default=0) + 1
+        version = next_version(self._root / name)
         files, manifest = _files_of(name, version, grid, metadata, created_unix_ns)
         path = self._root / name / str(version)
         try:
@@ -108,6 +122,8 @@ class MapStore:
         except OSError:
             self._remove_leftovers()
             raise
+        if version not in self._versions(name):
+            raise MapError(f"map {name} was written, and {path} is not there: this file system keeps other names")
         self._prune(name)
         return _entry_of(manifest, path)
 
@@ -125,18 +141,16 @@ class MapStore:
 
     def _load(self, name: str, version: int) -> tuple[OccupancyGrid, MapEntry]:
         path = self._root / name / str(version)
-        manifest = _read_manifest(path)
-        if (manifest.name, manifest.version) != (name, version):
-            raise MapError(f"{MANIFEST} belongs to map {manifest.name} version {manifest.version}")
+        manifest = _read_manifest(path, name, version)
         files = {file: _read_checked(path / file, manifest.files.get(file)) for file in (CELLS, IMAGE, YAML)}
         return _grid_of(manifest, files[CELLS], self._settings), _entry_of(manifest, path)
 
     def _listed(self, name: str, version: int) -> MapEntry:
         path = self._root / name / str(version)
         try:
-            return _entry_of(_read_manifest(path), path)
+            return _entry_of(_read_manifest(path, name, version), path)
         except MapError as error:
-            return MapEntry(name, version, "", 0, {}, path, None, damage=str(error))
+            return _damaged(name, version, path, str(error))
 
     def _intact(self, name: str, damaged: int) -> str:
         for version in reversed([version for version in self._versions(name) if version != damaged]):
@@ -146,20 +160,22 @@ class MapStore:
         return "no other version is intact"
 
     def _names(self) -> tuple[str, ...]:
-        found = (path.name for path in self._root.iterdir()) if self._root.is_dir() else ()
-        return tuple(sorted(name for name in found if self._versions(name)))
+        return tuple(name for name in directories(self._root) if self._has_versions(name))
+
+    def _has_versions(self, name: str) -> bool:
+        try:
+            return bool(self._versions(name))
+        except OSError:
+            return True  # for all we know
 
     def _versions(self, name: str) -> tuple[int, ...]:
-        place = self._root / name
-        if name.startswith(".") or not place.is_dir():
-            return ()
-        return tuple(sorted(int(path.name) for path in place.iterdir() if _VERSION.fullmatch(path.name)))
+        return versions(self._root / name)
 
     def _leftover(self, name: str, version: int) -> Path:
-        return self._root / f"{_LEFTOVER}{name}-{version}"
+        return temporary_place(self._root, name, version)
 
     def _remove_leftovers(self) -> None:
-        for path in self._root.glob(f"{_LEFTOVER}*"):
+        for path in leftovers(self._root):
             remove_leftover(path)
 
     def _prune(self, name: str) -> None:
@@ -189,7 +205,23 @@ def _files_of(
     }
     sums = {file: FileSum.of(data) for file, data in files.items()}
     manifest = Manifest(name, version, created_unix_ns, grid.digest(), grid.spec, sums, metadata)
-    return {**files, MANIFEST: manifest.encode()}, manifest
+    described = manifest.encode()
+    _check_readable(name, described)
+    return {**files, MANIFEST: described}, manifest
+
+
+def _check_readable(name: str, described: bytes) -> None:
+    """Refuse a manifest that no load could read: what was reported saved must be found."""
+    if len(described) > _MANIFEST_MAX_BYTES:
+        raise MapError(f"cannot save map {name}: its metadata take more than {_MANIFEST_MAX_BYTES} bytes")
+    try:
+        decode_manifest(described)
+    except MapError as error:
+        raise MapError(f"cannot save map {name}: it could not be read again: {error}") from error
+
+
+def _damaged(name: str, version: int, path: Path, why: str) -> MapEntry:
+    return MapEntry(name, version, "", 0, {}, path, None, damage=why)
 
 
 def _entry_of(manifest: Manifest, path: Path) -> MapEntry:
@@ -204,8 +236,11 @@ def _entry_of(manifest: Manifest, path: Path) -> MapEntry:
     )
 
 
-def _read_manifest(path: Path) -> Manifest:
-    return decode_manifest(_read(path / MANIFEST, _MANIFEST_MAX_BYTES))
+def _read_manifest(path: Path, name: str, version: int) -> Manifest:
+    manifest = decode_manifest(_read(path / MANIFEST, _MANIFEST_MAX_BYTES))
+    if (manifest.name, manifest.version) != (name, version):
+        raise MapError(f"{MANIFEST} belongs to map {manifest.name} version {manifest.version}")
+    return manifest
 
 
 def _read_checked(path: Path, expected: FileSum | None) -> bytes:
@@ -221,6 +256,8 @@ def _read_checked(path: Path, expected: FileSum | None) -> bytes:
 
 def _read(path: Path, max_bytes: int) -> bytes:
     try:
+        if path.exists() and not path.is_file():
+            raise MapError(f"{path.name} is no file")  # and opening a pipe would wait for ever
         with path.open("rb") as file:
             data = file.read(max_bytes + 1)
     except FileNotFoundError as error:
