@@ -21,6 +21,23 @@ def state_dir() -> str:
     return _first("STATE_DIRECTORY") or "/var/lib/robotd"
 
 
+def variable(name: str) -> str | None:
+    """Return what a variable of the environment holds; None if there is none."""
+    return os.environ.get(name)
+
+
+def home_of(user: str) -> str:
+    """Return the home of ``~``, the user that we run as, or of ``~name``.
+
+    Raises:
+        ValueError: there is none.
+    """
+    try:
+        return str(Path(user).expanduser())
+    except RuntimeError:
+        raise ValueError(f"{user} is the home of nobody: write the path out") from None
+
+
 def _first(variable: str) -> str:
     """Return the first of the directories in a variable; systemd.exec(5) allows several, with colons between."""
     return os.environ.get(variable, "").partition(":")[0]

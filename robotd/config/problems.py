@@ -53,11 +53,18 @@ class Problems:
     file: str
     lines: dict[KeyPath, int]
     found: list[ConfigError] = field(default_factory=list)
+    broken: set[KeyPath] = field(default_factory=set)
+    """Keys that have a problem: their values are not what the text says, and no more is said of them."""
 
     def add(self, path: KeyPath, message: str) -> None:
         """Note a problem with a key; ``stops_m[2]`` stands where ``stops_m`` stands."""
+        self.broken.add(path)
         line = line_of(self.lines, tuple(part.partition("[")[0] for part in path))
         self.found.append(ConfigError(message, file=self.file, line=line, key=".".join(path)))
+
+    def are_about(self, path: KeyPath) -> bool:
+        """Return whether a problem with this key, or with what it lies in, is known."""
+        return any(path[:length] in self.broken for length in range(1, len(path) + 1))
 
     def sorted(self) -> tuple[ConfigError, ...]:
         """Return the problems by line; those that have none come last."""

@@ -1,8 +1,8 @@
 """From TOML values to frozen dataclasses, whatever they are; every problem is found, not only the first.
 
 A dataclass is a table, its fields are the keys. Field types are bool, int, float, str, an enum, ``T | None``,
-``tuple[T, ...]``, ``tuple[A, B]`` and further dataclasses. A ``ValueError`` of ``__post_init__`` that begins
-with, or mentions, the name of a field is laid at that key's door.
+``tuple[T, ...]``, ``tuple[A, B]`` and further dataclasses; numbers may have bounds (:mod:`robotd.core.bounds`). A
+``ValueError`` of ``__post_init__`` that begins with, or mentions, the name of a field is laid at that key's door.
 """
 
 import contextlib
@@ -12,10 +12,11 @@ import math
 import re
 import types
 import typing
-from typing import Any, Generic, TypeVar, cast
+from typing import Annotated, Any, Generic, TypeVar, cast
 
 from robotd.config.lines import KeyPath
 from robotd.config.problems import Problems, did_you_mean, unknown_name
+from robotd.core.bounds import Within, bounds_in
 
 T = TypeVar("T")
 Table = dict[str, Any]
@@ -39,7 +40,7 @@ class _Shape(Generic[T]):
     @classmethod
     def of(cls, kind: type[T], base: T | None) -> "_Shape[T]":
         fields = dataclasses.fields(cast("Any", kind))
-        hints = typing.get_type_hints(kind)
+        hints = typing.get_type_hints(kind, include_extras=True)
         types_of = {item.name: hints[item.name] for item in fields}
         if base is not None:
             return cls(kind, types_of, {name: getattr(base, name) for name in types_of})
@@ -51,16 +52,18 @@ class _Shape(Generic[T]):
 def read_table(kind: type[T], table: Table, path: KeyPath, problems: Problems, base: T | None = None) -> T:
     """Return the dataclass ``kind`` filled from a table, and from ``base``, or its defaults, for what is not there.
 
+    All that is wrong with the table is added to ``problems``. What has a problem is as if it were not there: so that
+    what surrounds the table can be judged all the same.
+
     Raises:
-        Bad: it cannot be made; why, and all else that is wrong with the table, was added to ``problems``.
+        Bad: it cannot be made even so.
     """
-    before = len(problems.found)
     shape = _Shape.of(kind, base)
     values = _read_known(shape, table, path, problems)
     for name in (name for name in table if name not in shape.types):
         problems.add((*path, name), unknown_name("key" if path else "section", name, shape.types))
-    made = _construct(shape, values, table.keys() - values.keys(), path, problems)
-    if made is None or len(problems.found) > before:
+    made = _construct(shape, values, path, problems)
+    if made is None:
         raise Bad
     return made
 
@@ -80,11 +83,11 @@ def _read_known(shape: _Shape[T], table: Table, path: KeyPath, problems: Problem
     return values
 
 
-def _construct(shape: _Shape[T], values: Table, broken: set[str], path: KeyPath, problems: Problems) -> T | None:
-    """Return the object, or None after reporting every impossible value.
+def _construct(shape: _Shape[T], values: Table, path: KeyPath, problems: Problems) -> T | None:
+    """Return the object, or None if it cannot be made; every impossible value is reported.
 
     A value refused is put back to its default and the rest is tried again: so one mistake does not hide
-    the next. A complaint that speaks of a value already known to be ``broken`` is not repeated.
+    the next. A complaint that speaks of a value already known to be broken is not repeated.
     """
     while shape.types.keys() <= (shape.defaults | values).keys():
         try:
@@ -92,26 +95,36 @@ def _construct(shape: _Shape[T], values: Table, broken: set[str], path: KeyPath,
         except ValueError as error:
             message = str(error)
         names = [name for name in _NAMES.findall(message) if name.split(".")[0] in shape.types]
-        roots = [name.split(".")[0] for name in names]
-        if broken.intersection(roots):
+        if not any(problems.are_about((*path, *name.split("."))) for name in names):
+            names = [_blame(message, names, path, problems), *names]
+        if not any(_put_back(shape, values, name.split(".")) for name in names):
             return None
-        _blame(message, names, path, problems)
-        culprit = next((root for root in roots if root in values), None)
-        if culprit is None:
-            return None
-        del values[culprit]
-        broken.add(culprit)
     return None
 
 
-def _blame(message: str, names: list[str], path: KeyPath, problems: Problems) -> None:
-    """Report a refusal at the first key it mentions that the text sets."""
+def _put_back(shape: _Shape[T], values: Table, key: list[str]) -> bool:
+    """Give a key its default; return whether it had another value."""
+    section, default = values.get(key[0]), shape.defaults.get(key[0])
+    if key[0] not in values:
+        return False
+    if len(key) == 1 or default is None or getattr(section, key[1], None) == getattr(default, key[1], None):
+        return len(key) == 1 and values.pop(key[0]) is not None
+    try:
+        values[key[0]] = dataclasses.replace(cast("Any", section), **{key[1]: getattr(default, key[1])})
+    except ValueError:  # the default does not go with the rest of the section
+        del values[key[0]]
+    return True
+
+
+def _blame(message: str, names: list[str], path: KeyPath, problems: Problems) -> str:
+    """Report a refusal at the first key it mentions that the text sets, and return that key."""
     paths = [(*path, *name.split(".")) for name in names]
     set_here = [candidate for candidate in paths if candidate in problems.lines]
     key = (set_here or paths or [path])[0]
     if names and message.startswith(f"{names[0]} ") and key == paths[0]:
         message = message.removeprefix(f"{names[0]} ")
     problems.add(key, message)
+    return ".".join(key[len(path) :])
 
 
 def read_value(kind: Any, value: object, path: KeyPath, problems: Problems, default: Any = None) -> Any:
@@ -120,6 +133,9 @@ def read_value(kind: Any, value: object, path: KeyPath, problems: Problems, defa
     Raises:
         Bad: it is not one; why was added to ``problems``.
     """
+    if typing.get_origin(kind) is Annotated:
+        read = read_value(typing.get_args(kind)[0], value, path, problems, default)
+        return _read_within(bounds_in(kind), read, path, problems, default)
     if dataclasses.is_dataclass(kind):
         if not isinstance(value, dict):
             raise _bad(path, problems, f"expected a table, got {_describe(value)}")
@@ -132,6 +148,13 @@ def read_value(kind: Any, value: object, path: KeyPath, problems: Problems, defa
     if issubclass(kind, enum.Enum):
         return _read_enum(kind, value, path, problems)
     return _read_plain(kind, value, path, problems)
+
+
+def _read_within(bounds: Within | None, value: Any, path: KeyPath, problems: Problems, default: Any) -> Any:
+    complaint = None if bounds is None else bounds.complaint(value, default)
+    if complaint is not None:
+        raise _bad(path, problems, complaint)
+    return value
 
 
 def _read_tuple(kinds: tuple[Any, ...], value: object, path: KeyPath, problems: Problems) -> tuple[Any, ...]:

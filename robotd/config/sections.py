@@ -1,8 +1,10 @@
 """Settings of the daemon as a whole; those of a room stand beside its models."""
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
 from robotd.config.environment import state_dir
+from robotd.core.bounds import Within, refuse_outside
 
 
 @dataclass(frozen=True, slots=True)
@@ -11,15 +13,14 @@ class MapsSettings:
 
     dir: str = field(default_factory=lambda: f"{state_dir()}/maps")
     """Directory of the stored maps."""
-    keep: int = 10
+    keep: Annotated[int, Within(1, 100_000)] = 10
     """Versions kept of each map; saving one more drops the oldest."""
 
     def __post_init__(self) -> None:
         """Refuse a store that keeps nothing."""
         if not self.dir:
             raise ValueError("dir must not be empty")
-        if self.keep < 1:
-            raise ValueError(f"keep must be at least 1, got {self.keep}")
+        refuse_outside(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +31,7 @@ class RecordingSettings:
     """Directory of the recordings for which no file is named."""
     from_start: bool = False
     """Record from the start of the daemon, always."""
-    preroll_bytes: int = 16 * 1024 * 1024
+    preroll_bytes: Annotated[int, Within(0, 2**32, "bytes")] = 16 * 1024 * 1024
     """What is remembered since the start, so that a recording begun later still begins there.
 
     So much of each source: the lines' bytes, requests, maps taken into use, results. None uses up what is another's.
@@ -43,5 +44,4 @@ class RecordingSettings:
         """Refuse a pre-roll of less than nothing."""
         if not self.dir:
             raise ValueError("dir must not be empty")
-        if self.preroll_bytes < 0:
-            raise ValueError(f"preroll_bytes must not be negative, got {self.preroll_bytes}")
+        refuse_outside(self)

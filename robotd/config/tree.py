@@ -46,6 +46,7 @@ class Config:
         _check_ports_differ(self.devices)
         _check_head(self.pantilt, self.rangefinder)
         _check_motion(self.drive, self.driving)
+        _check_cells(self.grid, self.planning)
 
     @property
     def judgement(self) -> Judgement:
@@ -73,7 +74,7 @@ def _check_ports_differ(devices: dict[str, PortSettings]) -> None:
     for device, settings in devices.items():
         owner = owners.setdefault(settings.port, device)
         if owner != device:
-            raise ValueError(f"{device}.port must not be the port of another device, got that of {owner}")
+            raise ValueError(f"{device}.port must not be the port of another device, got {owner}.port")
 
 
 def _check_head(pantilt: PanTiltSettings, rangefinder: RangefinderSettings) -> None:
@@ -90,8 +91,26 @@ def _check_motion(drive: DriveSettings, driving: DrivingSettings) -> None:
             f"driving.setpoint_ttl_s must be within drive.ttl_max_ms, got {driving.setpoint_ttl_s} s"
             f" and {drive.ttl_max_ms} ms"
         )
+    if driving.setpoint_ttl_s * 1000.0 <= drive.telemetry_ms:  # set-points follow the telemetry
+        raise ValueError(
+            f"driving.setpoint_ttl_s must be longer than drive.telemetry_ms, got {driving.setpoint_ttl_s} s"
+            f" and {drive.telemetry_ms} ms"
+        )
     if driving.silence_s * 1000.0 <= drive.telemetry_ms:
         raise ValueError(
             f"driving.silence_s must be longer than drive.telemetry_ms, got {driving.silence_s} s"
             f" and {drive.telemetry_ms} ms"
+        )
+    if driving.setpoint_ttl_s > driving.silence_s:  # the base must not drive on for longer than it may be silent
+        raise ValueError(
+            f"driving.setpoint_ttl_s must be no longer than driving.silence_s, got {driving.setpoint_ttl_s} s"
+            f" and {driving.silence_s} s"
+        )
+
+
+def _check_cells(grid: GridSettings, planning: PlanningSettings) -> None:
+    if grid.resolution_m > 2.0 * planning.robot_radius_m:
+        raise ValueError(
+            f"grid.resolution_m must be no more than twice planning.robot_radius_m, or no robot fits between"
+            f" obstacles, got {grid.resolution_m} m and {planning.robot_radius_m} m"
         )

@@ -4,16 +4,21 @@ import enum
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.bounds import Within, refuse_outside
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid import kernels
 from robotd.grid.readings import numbers_of
 from robotd.grid.spec import GridSpec
 from robotd.grid.tables import NO_INFORMATION, lower_table, raise_table
+
+MAX_SIDE_CELLS = 8192
+"""More cells than this along one side is a mistake, not a map."""
 
 
 class UpdatePolicy(enum.StrEnum):
@@ -38,15 +43,15 @@ class OverRange(enum.StrEnum):
 class GridSettings:
     """Size of a new map and how readings change it; the defaults are LILY's, but for the two policies."""
 
-    resolution_m: float = 0.05
+    resolution_m: Annotated[float, Within(0.005, 2.0, "m")] = 0.05
     """Side of one cell."""
-    rows: int = 256
+    rows: Annotated[int, Within(1, MAX_SIDE_CELLS, "cells")] = 256
     """Cells along map y."""
-    cols: int = 256
+    cols: Annotated[int, Within(1, MAX_SIDE_CELLS, "cells")] = 256
     """Cells along map x."""
-    raise_alpha: float = 0.3
+    raise_alpha: Annotated[float, Within(0.0, 0.99, "of 1")] = 0.3
     """Share of the doubt that a hit leaves."""
-    lower_alpha: float = 0.15
+    lower_alpha: Annotated[float, Within(0.0, 0.99, "of 1")] = 0.15
     """Share of the probability of an obstacle that a miss leaves."""
     policy: UpdatePolicy = UpdatePolicy.PER_SWEEP
     """How the readings of one sweep are put together. On two real buildings the paper's policy freed 8 and 17 % of the
@@ -56,13 +61,7 @@ class GridSettings:
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
-        if not self.resolution_m > 0.0:
-            raise ValueError(f"resolution_m must be positive, got {self.resolution_m}")
-        if not (1 <= self.rows <= MAX_SIDE_CELLS and 1 <= self.cols <= MAX_SIDE_CELLS):
-            raise ValueError(f"rows and cols must lie between 1 and {MAX_SIDE_CELLS}, got {self.rows} x {self.cols}")
-        for name, alpha in (("raise_alpha", self.raise_alpha), ("lower_alpha", self.lower_alpha)):
-            if not 0.0 <= alpha < 1.0:
-                raise ValueError(f"{name} must be at least 0 and less than 1, got {alpha}")
+        refuse_outside(self)
 
     def spec_covering(self, points_m: Sequence[tuple[float, float]], margin_m: float) -> GridSpec:
         """Return the placement of a grid with map-frame points round its middle.
@@ -79,10 +78,6 @@ class GridSettings:
             raise ValueError(f"a map of {rows} x {cols} cells is too large; at most {MAX_SIDE_CELLS} along a side")
         origin_m = (low_m + high_m) / 2 - np.array([cols, rows]) * self.resolution_m / 2
         return GridSpec(self.resolution_m, float(origin_m[0]), float(origin_m[1]), (rows, cols))
-
-
-MAX_SIDE_CELLS = 8192
-"""More cells than this along one side is a mistake, not a map."""
 
 
 class OccupancyGrid:

@@ -1,9 +1,12 @@
 """How readings err, and maps: sizes and frequencies, the same for every building."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
+
+from robotd.core.bounds import Within, refuse_outside
 
 _NEVER = 600.0
 """Less than exp(-this) is no number that can be divided by."""
@@ -13,37 +16,29 @@ _NEVER = 600.0
 class ErrorModel:
     """How large and how frequent errors are. None was fitted to a building: sensors' and map-makers' usual figures."""
 
-    range_sigma_m: float = 0.015
+    range_sigma_m: Annotated[float, Within(1e-4, 1.0, "m")] = 0.015
     """Standard deviation of a range; SICK scanners on standing robots showed 0.9 and 1.1 cm."""
-    map_sigma_m: float = 0.03
+    map_sigma_m: Annotated[float, Within(0.0, 1.0, "m")] = 0.03
     """How far walls lie from where the map has them, one standard deviation, along a beam and across it."""
-    map_sigma_rad: float = 0.004
+    map_sigma_rad: Annotated[float, Within(0.0, 0.5, "rad")] = 0.004
     """How far the map-maker's headings were off: walls far away lie aside."""
-    map_sharpness_sigma: float = 0.11
+    map_sharpness_sigma: Annotated[float, Within(0.0, 10.0)] = 0.11
     """How much likelier a place may seem only because the map happens to show it more sharply: standard deviation of
     the logarithm, for each independent reading; so it was between simulated rooms that are alike."""
-    removed_share: float = 0.1
+    removed_share: Annotated[float, Within(1e-6, 0.99, "of 1")] = 0.1
     """Chance that an obstacle of which the map is sure stands there no more, or lets a beam pass."""
-    unmapped_per_m: float = 0.02
+    unmapped_per_m: Annotated[float, Within(1e-6, 10.0, "1/m")] = 0.02
     """Rate of things that are not on the map along a beam through vacant cells: people, chairs."""
-    unknown_per_m: float = 0.3
+    unknown_per_m: Annotated[float, Within(1e-6, 10.0, "1/m")] = 0.3
     """Rate of obstacles along a beam where nobody has looked."""
-    outlier_share: float = 0.05
+    outlier_share: Annotated[float, Within(1e-6, 0.99, "of 1")] = 0.05
     """Share of the readings that mean nothing on this map: people, edges, reflections; 1 to 5 % in buildings."""
-    outlier_span_m: float = 8.0
+    outlier_span_m: Annotated[float, Within(0.1, 1000.0, "m")] = 8.0
     """Such readings lie anywhere up to so far."""
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
-        for name in ("range_sigma_m", "outlier_span_m", "unmapped_per_m", "unknown_per_m"):
-            if not getattr(self, name) > 0.0:
-                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
-        for name in ("map_sigma_m", "map_sigma_rad", "map_sharpness_sigma"):
-            if not getattr(self, name) >= 0.0:
-                raise ValueError(f"{name} must not be negative, got {getattr(self, name)}")
-        for name in ("removed_share", "outlier_share"):
-            if not 0.0 < getattr(self, name) < 1.0:
-                raise ValueError(f"{name} must lie between 0 and 1, got {getattr(self, name)}")
+        refuse_outside(self)
 
     def meaningless(self, is_hit: NDArray[np.bool_]) -> NDArray[np.float64]:
         """Return how likely readings are to mean nothing: for hits the density [1/m], for misses the chance."""

@@ -16,11 +16,13 @@ import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.angles import wrap_rad
+from robotd.core.bounds import Within, refuse_outside
 from robotd.core.pose import Pose2
 from robotd.grid import kernels
 from robotd.grid.kernels.fitting import ENDS, Fits
@@ -43,21 +45,16 @@ class RefinementSettings:
 
     walls: Walls = Walls.CENTRES
     """Where in its cells a wall lies: ``centres`` for a map made of readings, ``faces`` for a drawn one."""
-    outlier_m: float = 0.2
+    outlier_m: Annotated[float, Within(0.001, 5.0, "m")] = 0.2
     """A reading whose head is farther than this from every wall has no say."""
-    map_error_m: float = 0.02
+    map_error_m: Annotated[float, Within(0.0, 1.0, "m")] = 0.02
     """How far the walls of the map may be off, all together: the standard deviation of x and y is no less."""
-    map_error_rad: float = 0.005
+    map_error_rad: Annotated[float, Within(0.0, 0.5, "rad")] = 0.005
     """The same for the heading."""
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
-        if not self.outlier_m > 0.0:
-            raise ValueError(f"outlier_m must be positive, got {self.outlier_m}")
-        if not self.map_error_m >= 0.0:
-            raise ValueError(f"map_error_m must not be negative, got {self.map_error_m}")
-        if not self.map_error_rad >= 0.0:
-            raise ValueError(f"map_error_rad must not be negative, got {self.map_error_rad}")
+        refuse_outside(self)
 
 
 @dataclass(frozen=True, slots=True)

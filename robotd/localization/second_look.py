@@ -19,10 +19,12 @@ differences that are as small as such luck.
 
 import math
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.bounds import Within, refuse_outside
 from robotd.localization.climbing import Hill, climb
 from robotd.localization.error_model import ErrorModel
 from robotd.localization.estimate import PoseState
@@ -53,41 +55,31 @@ far less."""
 class SecondLookSettings:
     """What counts as one place, and how sure is sure."""
 
-    patch_m: float = 0.2
+    patch_m: Annotated[float, Within(0.001, 5.0, "m")] = 0.2
     """Readings that end nearer to each other than this say, by so much, the same."""
-    readings_max: int = 120
+    readings_max: Annotated[int, Within(1, 10_000)] = 120
     """Of more readings than this so many are looked at, those that end farthest apart."""
-    glance_readings_max: int = 40
+    glance_readings_max: Annotated[int, Within(1, 10_000)] = 40
     """The same for the first glance, at all places of the shortlist."""
-    starts_max: int = 200
+    starts_max: Annotated[int, Within(1, 100_000)] = 200
     """Places at which the first glance is taken, those first that explain most readings."""
-    places_max: int = 16
+    places_max: Annotated[int, Within(1, 10_000)] = 16
     """Places that are looked at closely, those first that looked best at a glance."""
-    same_within_m: float = 0.3
+    same_within_m: Annotated[float, Within(0.001, 5.0, "m")] = 0.3
     """Poses nearer than this, and with headings nearer than ``same_within_rad``, are one place."""
-    same_within_rad: float = 0.0873
+    same_within_rad: Annotated[float, Within(0.001, math.pi, "rad")] = 0.0873
     """See ``same_within_m``."""
-    off_map_share: float = 0.1
+    off_map_share: Annotated[float, Within(1e-6, 0.49, "of 1")] = 0.1
     """Belief, before any reading, that the robot is not on the map."""
-    doubt_max: float = 0.05
+    doubt_max: Annotated[float, Within(1e-6, 0.49, "of 1")] = 0.05
     """All that is not the best place may have this share of the belief if the robot is to be called localized."""
-    contrast_min: float = 1.28
+    contrast_min: Annotated[float, Within(0.0, 100.0)] = 1.28
     """And so many standard errors must what the readings say for the best place, rather than any other, be above 0: by
     chance the wrong one of two places that are alike in truth reaches that once in ten times."""
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
-        for name in ("patch_m", "same_within_m", "same_within_rad"):
-            if not getattr(self, name) > 0.0:
-                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
-        for name in ("readings_max", "glance_readings_max", "starts_max", "places_max"):
-            if getattr(self, name) < 1:
-                raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")
-        if not self.contrast_min >= 0.0:
-            raise ValueError(f"contrast_min must not be negative, got {self.contrast_min}")
-        for name in ("off_map_share", "doubt_max"):
-            if not 0.0 < getattr(self, name) < 0.5:
-                raise ValueError(f"{name} must lie between 0 and 0.5, got {getattr(self, name)}")
+        refuse_outside(self)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

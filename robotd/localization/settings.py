@@ -2,7 +2,9 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
+from robotd.core.bounds import Within, refuse_outside
 from robotd.localization.obstacles import UnknownCells
 from robotd.localization.rank import even_headings
 
@@ -15,23 +17,23 @@ class LocalizationSettings:
     true pose explained 75 to 90 % of the readings, the best pose in a building where the robot was not 17 to 69 %.
     """
 
-    range_error_m: float = 0.075
+    range_error_m: Annotated[float, Within(0.0, 1.0, "m")] = 0.075
     """The paper's eps: how far an obstacle on the map may lie from the head of a reading."""
-    heading_error_rad: float = 0.0175
+    heading_error_rad: Annotated[float, Within(0.0, math.pi, "rad")] = 0.0175
     """How far the heading that odometry gives may be off: headings up to so far away are tried too."""
-    heading_step_rad: float = 0.00873
+    heading_step_rad: Annotated[float, Within(1e-4, math.pi, "rad")] = 0.00873
     """Step between the headings that are tried; half a degree, as the beams of many scanners lie."""
-    localized_share: float = 0.5
+    localized_share: Annotated[float, Within(0.01, 1.0, "of 1")] = 0.5
     """Share of the readings that the best pose must explain; below it the robot is lost."""
-    rival_share: float = 0.15
+    rival_share: Annotated[float, Within(0.0, 0.99, "of 1")] = 0.15
     """A pose is still an answer if it explains fewer readings than the best by no more than this share of all."""
-    readings_min: int = 12
+    readings_min: Annotated[int, Within(1, 10_000)] = 12
     """With fewer readings than this nothing is said."""
-    regions_max: int = 32
+    regions_max: Annotated[int, Within(1, 10_000)] = 32
     """Most regions that an estimate lists, best first; of the others it says how many there are."""
     unknown: UnknownCells = UnknownCells.BLOCKS_ONLY
     """What a cell is taken for that nobody has seen: ``occupied`` as in the paper, ``blocks_only`` or ``free``."""
-    blocked_by: int = 2
+    blocked_by: Annotated[int, Within(1, 2)] = 2
     """How many obstacle cells a beam must meet before its end to be blocked: 1 as in the paper, or 2, so that a beam
     that grazes along a wall is not."""
 
@@ -39,30 +41,14 @@ class LocalizationSettings:
     """Whether no place is excluded but by proof: the true one is then always among the answers, as long as ranges err
     by no more than ``range_error_m``, the heading by no more than half a step from one that is tried, and cells that
     were seen are right. Slower, and more often ambiguous."""
-    outlier_share: float = 0.1
+    outlier_share: Annotated[float, Within(0.0, 0.99, "of 1")] = 0.1
     """In the conservative mode, so many of the readings may err by more."""
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
-        for name, least in (
-            ("range_error_m", 0.0),
-            ("heading_error_rad", 0.0),
-            ("readings_min", 1),
-            ("regions_max", 1),
-        ):
-            if not getattr(self, name) >= least:
-                raise ValueError(f"{name} must be at least {least}, got {getattr(self, name)}")
-        for name in ("rival_share", "outlier_share"):
-            if not 0.0 <= getattr(self, name) < 1.0:
-                raise ValueError(f"{name} must lie in [0, 1), got {getattr(self, name)}")
-        if not self.heading_step_rad > 0.0:
-            raise ValueError(f"heading_step_rad must be positive, got {self.heading_step_rad}")
-        if not 0.0 < self.localized_share <= 1.0:
-            raise ValueError(f"localized_share must lie in (0, 1], got {self.localized_share}")
+        refuse_outside(self)
         if self.conservative and self.heading_step_rad > math.pi / 4:
             raise ValueError(f"heading_step_rad must be at most pi / 4 where conservative, got {self.heading_step_rad}")
-        if self.blocked_by not in {1, 2}:
-            raise ValueError(f"blocked_by must be 1 or 2, got {self.blocked_by}")
 
     def headings_near(self, heading_rad: float) -> tuple[float, ...]:
         """Return the headings to try when odometry says ``heading_rad``, in ascending order.

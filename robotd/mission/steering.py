@@ -2,8 +2,10 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 from robotd.core.angles import wrap_rad
+from robotd.core.bounds import Within, refuse_outside
 from robotd.core.pose import Pose2, Twist2
 
 _STEER_WITHIN_M = 0.10  # nearer than this the bearing to the goal says nothing about the heading
@@ -13,33 +15,30 @@ _STEER_WITHIN_M = 0.10  # nearer than this the bearing to the goal says nothing 
 class DrivingSettings:
     """How the base drives its legs."""
 
-    speed_mps: float = 0.4
+    speed_mps: Annotated[float, Within(0.01, 5.0, "m/s")] = 0.4
     """Cruising speed."""
-    turn_radps: float = 1.0
+    turn_radps: Annotated[float, Within(0.01, 10.0, "rad/s")] = 1.0
     """Turning speed."""
-    deceleration_mps2: float = 0.3
+    deceleration_mps2: Annotated[float, Within(0.01, 10.0, "m/s^2")] = 0.3
     """How hard it plans to brake; well below what the base can."""
-    turn_deceleration_radps2: float = 1.0
+    turn_deceleration_radps2: Annotated[float, Within(0.01, 50.0, "rad/s^2")] = 1.0
     """The same for turning."""
-    gain_hz: float = 5.0
+    gain_hz: Annotated[float, Within(0.1, 50.0, "Hz")] = 5.0
     """Speed per remaining distance at the very end of a leg."""
-    position_tolerance_m: float = 0.02
+    position_tolerance_m: Annotated[float, Within(0.001, 0.5, "m")] = 0.02
     """A leg ends this near to its end."""
-    heading_tolerance_rad: float = 0.01
+    heading_tolerance_rad: Annotated[float, Within(0.001, 0.5, "rad")] = 0.01
     """A turn ends this near to its heading."""
-    setpoint_ttl_s: float = 0.4
+    setpoint_ttl_s: Annotated[float, Within(0.01, 5.0, "s")] = 0.4
     """How long the base may follow one set-point without hearing another."""
-    silence_s: float = 0.5
+    silence_s: Annotated[float, Within(0.01, 10.0, "s")] = 0.5
     """Odometry silent for so long means stop."""
-    stall_s: float = 3.0
+    stall_s: Annotated[float, Within(0.1, 60.0, "s")] = 3.0
     """No nearer to the goal, or to standstill, for so long means that something is wrong."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be driven."""
-        for name in self.__slots__:
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
-                raise ValueError(f"{name} must be positive, got {value}")
+        refuse_outside(self)
 
 
 def turn_rate_radps(error_rad: float, settings: DrivingSettings) -> float:

@@ -7,8 +7,10 @@ and the base turns between them; all readings end up in the frame of where the r
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
 
 from robotd.core.angles import wrap_rad
+from robotd.core.bounds import Within, refuse_outside
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
@@ -38,36 +40,26 @@ _LIMIT_MARGIN_RAD = 0.03  # the base turns only roughly as far as it should, and
 class SweepSettings:
     """How a sweep is taken."""
 
-    readings: int = 300
+    readings: Annotated[int, Within(1, 10_000)] = 300
     """Readings evenly round the robot."""
-    tilt_rad: float = 0.0
+    tilt_rad: Annotated[float, Within(-1.4, 1.4, "rad")] = 0.0
     """Tilt of the beam, up from level; LILY slanted hers to the floor 2 m ahead. The cut-off (``range_max_m``) must lie
     before the floor, or the floor is taken for walls."""
-    settle_s: float = 0.2
+    settle_s: Annotated[float, Within(0.01, 60.0, "s")] = 0.2
     """Odometry must report standstill for so long before the first reading."""
-    aim_timeout_s: float = 5.0
+    aim_timeout_s: Annotated[float, Within(0.01, 120.0, "s")] = 5.0
     """Longest time one turn of the head may take."""
-    shot_timeout_s: float = 1.0
+    shot_timeout_s: Annotated[float, Within(0.01, 60.0, "s")] = 1.0
     """Longest time one measurement may take."""
-    readings_min_share: float = 0.5
+    readings_min_share: Annotated[float, Within(0.0, 1.0, "of 1")] = 0.5
     """Share of the readings that the rangefinder must answer: when more fail (too weak, too bright, silent), the sweep
     is given up."""
-    resets: int = 2
+    resets: Annotated[int, Within(0, 10)] = 2
     """How often a head that lost steps is reset, and the sweep taken again, before the mission is given up."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be swept."""
-        if not 1 <= self.readings <= 10_000:
-            raise ValueError(f"readings must be 1 to 10000, got {self.readings}")
-        for name in ("settle_s", "aim_timeout_s", "shot_timeout_s"):
-            if not getattr(self, name) > 0.0:
-                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
-        if not 0.0 <= self.readings_min_share <= 1.0:
-            raise ValueError(f"readings_min_share must be 0 to 1, got {self.readings_min_share}")
-        if not 0 <= self.resets <= 10:
-            raise ValueError(f"resets must be 0 to 10, got {self.resets}")
-        if not -1.4 <= self.tilt_rad <= 1.4:
-            raise ValueError(f"tilt_rad must be within +-1.4, got {self.tilt_rad}")
+        refuse_outside(self)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,10 +8,12 @@ disk meets no cell that is taken for an obstacle, whatever clearance is set.
 import enum
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.bounds import Within, refuse_outside
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.spec import GridSpec
@@ -31,21 +33,16 @@ Point = tuple[float, float]
 class PlanningSettings:
     """The robot as the planner sees it."""
 
-    robot_radius_m: float = 0.3
+    robot_radius_m: Annotated[float, Within(0.02, 3.0, "m")] = 0.3
     """Radius of the disk that the robot fills."""
-    clearance_m: float = 0.1
+    clearance_m: Annotated[float, Within(0.0, 2.0, "m")] = 0.1
     """What to keep free round it for errors of the drive and of the map; the rounding to cells is seen to besides."""
-    gap_cells: int = 2
+    gap_cells: Annotated[int, Within(0, 20, "cells")] = 2
     """Unknown gaps up to so wide, between cells seen free, are taken for free."""
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
-        if not self.robot_radius_m > 0.0:
-            raise ValueError(f"robot_radius_m must be positive, got {self.robot_radius_m}")
-        if not self.clearance_m >= 0.0:
-            raise ValueError(f"clearance_m must not be negative, got {self.clearance_m}")
-        if not 0 <= self.gap_cells <= 20:
-            raise ValueError(f"gap_cells must lie between 0 and 20, got {self.gap_cells}")
+        refuse_outside(self)
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,10 +6,12 @@ import secrets
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import zmq
 import zmq.asyncio
 
+from robotd.core.bounds import Within, refuse_outside
 from robotd.core.broadcast import Subscription
 from robotd.core.errors import TransportError
 from robotd.mission.events import Event
@@ -39,34 +41,26 @@ class ServerSettings:
 
     runtime_dir: str = DEFAULT_RUNTIME_DIR
     """Directory of the sockets and of the lock that keeps a second daemon out."""
-    lease_s: float = 0.5
+    lease_s: Annotated[float, Within(0.1, 10.0, "s")] = 0.5
     """How long a mission may go without ``renew`` from its client, unless the client asks for another lease [s]."""
-    routine_hz: float = 20.0
+    routine_hz: Annotated[float, Within(0.1, 1000.0, "Hz")] = 20.0
     """Odometry, predicted poses and sweep progress are published at most this often [Hz]."""
-    max_request_bytes: int = 65536
+    max_request_bytes: Annotated[int, Within(1024, 2**24, "bytes")] = 65536
     """Largest request that is read; larger ones are refused."""
-    max_pending_requests: int = 32
+    max_pending_requests: Annotated[int, Within(1, _MOST)] = 32
     """Requests carried out at a time; more are refused as ``busy``. Stops are counted apart."""
-    remembered_replies: int = 256
+    remembered_replies: Annotated[int, Within(1, _MOST)] = 256
     """Replies kept so that a repeated request is not carried out twice."""
-    state_queue: int = 256
+    state_queue: Annotated[int, Within(1, _MOST)] = 256
     """Messages that wait for a slow reader before it misses some."""
-    map_queue: int = 8
+    map_queue: Annotated[int, Within(1, _MOST)] = 8
     """Map messages that wait for a slow reader before it misses some."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot work."""
         if not self.runtime_dir:
             raise ValueError("runtime_dir must not be empty")
-        if not 0.1 <= self.lease_s <= 10.0:
-            raise ValueError(f"lease_s must lie between 0.1 and 10, got {self.lease_s}")
-        if not 0.1 <= self.routine_hz <= 1000.0:
-            raise ValueError(f"routine_hz must lie between 0.1 and 1000, got {self.routine_hz}")
-        if not 1024 <= self.max_request_bytes <= 2**24:
-            raise ValueError(f"max_request_bytes must lie between 1024 and {2**24}, got {self.max_request_bytes}")
-        for name in ("max_pending_requests", "remembered_replies", "state_queue", "map_queue"):
-            if not 1 <= getattr(self, name) <= _MOST:
-                raise ValueError(f"{name} must lie between 1 and {_MOST}, got {getattr(self, name)}")
+        refuse_outside(self)
 
 
 class Server:

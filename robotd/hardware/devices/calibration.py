@@ -2,73 +2,72 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 from robotd.core.angles import wrap_rad
+from robotd.core.bounds import Within, refuse_outside
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Shot
+
+CountsPerM = Annotated[float, Within(100.0, 1e8, "counts/m", either_sign=True)]
+CountsPerRad = Annotated[float, Within(10.0, 1e8, "counts/rad", either_sign=True)]
+Offset = Annotated[float, Within(-3.0, 3.0, "m")]
+Zero = Annotated[float, Within(-math.pi, math.pi, "rad")]
+Bias = Annotated[float, Within(-1.0, 1.0, "m")]
+Nearest = Annotated[float, Within(0.001, 20.0, "m")]
+Farthest = Annotated[float, Within(0.05, 200.0, "m")]
 
 
 @dataclass(frozen=True, slots=True)
 class DriveCalibration:
     """Scales of the two encoders; a negative one turns the sense of its encoder round."""
 
-    counts_per_m: float
+    counts_per_m: CountsPerM
     """Translation encoder counts per metre along the heading."""
-    counts_per_rad: float
+    counts_per_rad: CountsPerRad
     """Rotation encoder counts per radian counter-clockwise."""
 
     def __post_init__(self) -> None:
         """Refuse scales that say nothing."""
-        for name in ("counts_per_m", "counts_per_rad"):
-            value = getattr(self, name)
-            if not math.isfinite(value) or value == 0.0:
-                raise ValueError(f"{name} must be finite and not zero, got {value}")
+        refuse_outside(self)
 
 
 @dataclass(frozen=True, slots=True)
 class HeadMount:
     """Where the head sits on the robot, and what it calls straight ahead and level."""
 
-    x_m: float = 0.0
+    x_m: Offset = 0.0
     """Pan axis in the robot frame, ahead of the centre."""
-    y_m: float = 0.0
+    y_m: Offset = 0.0
     """Pan axis in the robot frame, to the left of the centre."""
-    pan_zero_rad: float = 0.0
+    pan_zero_rad: Zero = 0.0
     """Added to the pan that the head reads back, to get the angle from the robot's heading."""
-    tilt_zero_rad: float = 0.0
+    tilt_zero_rad: Zero = 0.0
     """Added to the tilt that the head reads back, to get the angle up from level."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be a mount."""
-        for name in ("x_m", "y_m"):
-            if not abs(getattr(self, name)) <= 10.0:
-                raise ValueError(f"{name} must be within 10 m of the centre, got {getattr(self, name)}")
-        for name in ("pan_zero_rad", "tilt_zero_rad"):
-            if not abs(getattr(self, name)) <= math.pi:
-                raise ValueError(f"{name} must be within half a turn, got {getattr(self, name)}")
+        refuse_outside(self)
 
 
 @dataclass(frozen=True, slots=True)
 class RangefinderCalibration:
     """What the instrument can be believed."""
 
-    range_bias_m: float = 0.0
+    range_bias_m: Bias = 0.0
     """Added to every range along the beam."""
-    range_min_m: float = 0.3
+    range_min_m: Nearest = 0.3
     """Shortest range along the beam that the instrument measures rightly; LILY's is 0.3 m."""
-    range_max_m: float = 6.0
+    range_max_m: Farthest = 6.0
     """Cut-off: what is horizontally farther than this counts as not met; LILY's is 6 m."""
 
     def __post_init__(self) -> None:
         """Refuse ranges that leave nothing to measure."""
-        if not math.isfinite(self.range_bias_m):
-            raise ValueError(f"range_bias_m must be finite, got {self.range_bias_m}")
-        if not self.range_min_m > 0.0:
-            raise ValueError(f"range_min_m must be positive, got {self.range_min_m}")
-        if not self.range_min_m < self.range_max_m < math.inf:
-            raise ValueError(f"range_max_m must be finite and above range_min_m, got {self.range_max_m}")
+        refuse_outside(self)
+        if not self.range_min_m < self.range_max_m:
+            raise ValueError(f"range_max_m must be above range_min_m, got {self.range_max_m} and {self.range_min_m}")
 
 
 def reading_in_robot(

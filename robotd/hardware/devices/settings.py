@@ -2,12 +2,24 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
-from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, RangefinderCalibration
+from robotd.core.bounds import Within, refuse_outside
+from robotd.hardware.devices.calibration import (
+    Bias,
+    CountsPerM,
+    CountsPerRad,
+    DriveCalibration,
+    Farthest,
+    HeadMount,
+    Nearest,
+    Offset,
+    RangefinderCalibration,
+    Zero,
+)
 from robotd.hardware.transport.line_format import LineFormat
 
 _U16_MAX = 0xFFFF
-_BATTERY_MAX_V = 1000.0
 _SERVO_ID_MAX = 252
 
 
@@ -21,9 +33,9 @@ class PortSettings:
     """What the device speaks; ``board`` is the protocol of our own boards."""
     line: str = ""
     """Speed and frame of a serial line, as in ``19200 7E1``; empty for what the dialect is usually set to."""
-    telemetry_ms: int = 40
+    telemetry_ms: Annotated[int, Within(5, 250, "ms")] = 40
     """Period of the telemetry [ms]; set-points follow it."""
-    ttl_max_ms: int = 500
+    ttl_max_ms: Annotated[int, Within(10, _U16_MAX, "ms")] = 500
     """Longest time for which the board may go on with a motion without hearing from us [ms]."""
 
     def __post_init__(self) -> None:
@@ -32,10 +44,7 @@ class PortSettings:
             raise ValueError("port must not be empty")
         if self.line:
             LineFormat.parse(self.line)
-        if not 5 <= self.telemetry_ms <= 250:
-            raise ValueError(f"telemetry_ms must be 5 to 250, got {self.telemetry_ms}")
-        if not 1 <= self.ttl_max_ms <= _U16_MAX:
-            raise ValueError(f"ttl_max_ms must be 1 to {_U16_MAX}, got {self.ttl_max_ms}")
+        refuse_outside(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,19 +53,16 @@ class DriveSettings(PortSettings):
 
     port: str = "/dev/robotd/drive"
     """A device path, best one under ``/dev/serial/by-id``, or ``tcp://host:port``."""
-    counts_per_m: float = 27_300.0
+    counts_per_m: CountsPerM = 27_300.0
     """Translation encoder counts per metre; negative if it counts backwards."""
-    counts_per_rad: float = 4_096.0
+    counts_per_rad: CountsPerRad = 4_096.0
     """Rotation encoder counts per radian counter-clockwise; negative if it counts clockwise."""
-    battery_min_v: float = 0.0
+    battery_min_v: Annotated[float, Within(0.0, 100.0, "V")] = 0.0
     """Below this voltage, as measured in motion, the robot stops and a fault is latched; 0 for never."""
 
     def __post_init__(self) -> None:
         """Refuse what the port or the calibration refuses."""
         PortSettings.__post_init__(self)
-        if not 0.0 <= self.battery_min_v <= _BATTERY_MAX_V:
-            raise ValueError(f"battery_min_v must be 0 to {_BATTERY_MAX_V:g}, got {self.battery_min_v}")
-        _ = self.calibration
 
     @property
     def calibration(self) -> DriveCalibration:
@@ -70,38 +76,32 @@ class PanTiltSettings(PortSettings):
 
     port: str = "/dev/robotd/pantilt"
     """A device path, best one under ``/dev/serial/by-id``, or ``tcp://host:port``."""
-    ttl_max_ms: int = 30_000
+    ttl_max_ms: Annotated[int, Within(10, _U16_MAX, "ms")] = 30_000
     """Longest time that one turn of the head may take [ms]."""
-    pan_id: int = 1
+    pan_id: Annotated[int, Within(0, _SERVO_ID_MAX)] = 1
     """Bus id of the pan servo, where the head is made of two."""
-    tilt_id: int = 2
+    tilt_id: Annotated[int, Within(0, _SERVO_ID_MAX)] = 2
     """Bus id of the tilt servo, where the head is made of two."""
-    pan_min_rad: float = -math.pi
+    pan_min_rad: Annotated[float, Within(-math.pi, math.pi, "rad")] = -math.pi
     """Where a head without a motor is not asked to look: to the right of this, seen from the robot's heading."""
-    pan_max_rad: float = math.pi
+    pan_max_rad: Annotated[float, Within(-math.pi, math.pi, "rad")] = math.pi
     """Where a head without a motor is not asked to look: to the left of this, seen from the robot's heading."""
-    x_m: float = 0.0
+    x_m: Offset = 0.0
     """Pan axis in the robot frame, ahead of the centre."""
-    y_m: float = 0.0
+    y_m: Offset = 0.0
     """Pan axis in the robot frame, to the left of the centre."""
-    pan_zero_rad: float = 0.0
+    pan_zero_rad: Zero = 0.0
     """Added to the pan that the head reads back, to get the angle from the robot's heading."""
-    tilt_zero_rad: float = 0.0
+    tilt_zero_rad: Zero = 0.0
     """Added to the tilt that the head reads back, to get the angle up from level."""
 
     def __post_init__(self) -> None:
         """Refuse what the port, the bus or the mount refuses."""
         PortSettings.__post_init__(self)
-        for name in ("pan_id", "tilt_id"):
-            if not 0 <= getattr(self, name) <= _SERVO_ID_MAX:
-                raise ValueError(f"{name} must be 0 to {_SERVO_ID_MAX}, got {getattr(self, name)}")
         if self.pan_id == self.tilt_id:
             raise ValueError(f"tilt_id must differ from pan_id, got {self.tilt_id} twice")
-        if not -math.pi <= self.pan_min_rad < self.pan_max_rad <= math.pi:
-            raise ValueError(
-                f"pan_min_rad, pan_max_rad must be in order within +-pi, got {self.pan_min_rad}, {self.pan_max_rad}"
-            )
-        _ = self.mount
+        if not self.pan_min_rad < self.pan_max_rad:
+            raise ValueError(f"pan_min_rad must be less than pan_max_rad, got {self.pan_min_rad}, {self.pan_max_rad}")
 
     @property
     def mount(self) -> HeadMount:
@@ -115,20 +115,18 @@ class RangefinderSettings(PortSettings):
 
     port: str = "/dev/robotd/rangefinder"
     """A device path, best one under ``/dev/serial/by-id``, or ``tcp://host:port``."""
-    device_id: int = 0
+    device_id: Annotated[int, Within(0, 9)] = 0
     """Which device on the line, where several can share one: the switch on a Dimetix, 0 to 9."""
-    range_bias_m: float = 0.0
+    range_bias_m: Bias = 0.0
     """Added to every range along the beam."""
-    range_min_m: float = 0.3
+    range_min_m: Nearest = 0.3
     """Shortest range along the beam that the instrument measures rightly; LILY's is 0.3 m."""
-    range_max_m: float = 6.0
+    range_max_m: Farthest = 6.0
     """Cut-off: what is horizontally farther than this counts as not met; LILY's is 6 m."""
 
     def __post_init__(self) -> None:
         """Refuse what the port or the calibration refuses."""
         PortSettings.__post_init__(self)
-        if not 0 <= self.device_id <= 9:
-            raise ValueError(f"device_id must be 0 to 9, got {self.device_id}")
         _ = self.calibration
 
     @property

@@ -55,7 +55,7 @@ def test_the_effective_text_loads_to_the_same(readings: int, tilt_rad: float, po
             "r.toml:2: drive.telemetry_s: wrong unit: expected telemetry_ms, in milliseconds",
         ),
         ("[driving]\nspeed = 0.4", "r.toml:2: driving.speed: no unit: expected speed_mps, in metres per second"),
-        ("[driving]\nspeed_mps = 0", "r.toml:2: driving.speed_mps: must be positive, got 0.0"),
+        ("[driving]\nspeed_mps = 0", "r.toml:2: driving.speed_mps: must be 0.01 to 5 m/s, got 0"),
         ("[drive]\nport = ''", "r.toml:2: drive.port: must not be empty"),
         ("[drive]\nport = 'COM3'", 'r.toml:2: drive.port: must be a device path or tcp://host:port, got "COM3"'),
         (
@@ -67,7 +67,7 @@ def test_the_effective_text_loads_to_the_same(readings: int, tilt_rad: float, po
         ),
         (
             "[pantilt]\npan_min_rad = 1.0\npan_max_rad = 0.5",
-            "r.toml:2: pantilt.pan_min_rad: pan_min_rad, pan_max_rad must be in order within +-pi, got 1.0, 0.5",
+            "r.toml:2: pantilt.pan_min_rad: must be less than pan_max_rad, got 1.0, 0.5",
         ),
         (
             "[pantilt]\ndialect = 'klingon'",
@@ -75,7 +75,7 @@ def test_the_effective_text_loads_to_the_same(readings: int, tilt_rad: float, po
         ),
         (
             "[drive]\nport = '/dev/a'\n[pantilt]\nport = '/dev/a'",
-            "r.toml:4: pantilt.port: must not be the port of another device, got that of drive",
+            "r.toml:4: pantilt.port: must not be the port of another device, got drive.port",
         ),
         (
             "[driving]\nsetpoint_ttl_s = 2",
@@ -93,14 +93,14 @@ def test_the_effective_text_loads_to_the_same(readings: int, tilt_rad: float, po
             "[grid]\npolicy = 'per_beam'",
             'r.toml:2: grid.policy: expected one of per_reading, per_sweep; got "per_beam"; did you mean per_reading?',
         ),
-        ("[maps]\nkeep = 0", "r.toml:2: maps.keep: must be at least 1, got 0"),
-        ("[recording]\npreroll_bytes = -1", "r.toml:2: recording.preroll_bytes: must not be negative, got -1"),
+        ("[maps]\nkeep = 0", "r.toml:2: maps.keep: must be 1 to 100000, got 0"),
+        ("[recording]\npreroll_bytes = -1", "r.toml:2: recording.preroll_bytes: must be 0 to 4294967296 bytes, got -1"),
         (
             "[server]\nmap_queue = 99999999999",
-            "r.toml:2: server.map_queue: must lie between 1 and 1000000, got 99999999999",
+            "r.toml:2: server.map_queue: must be 1 to 1000000, got 99999999999",
         ),
         ('[maps]\ndir = "a\\u0000b"', "r.toml:2: maps.dir: must not contain a zero byte"),
-        ("[server]\nlease_s = 60", "r.toml:2: server.lease_s: must lie between 0.1 and 10, got 60.0"),
+        ("[server]\nlease_s = 60", "r.toml:2: server.lease_s: must be 0.1 to 10 s, got 60"),
     ],
 )
 def test_a_mistake_is_named_where_it_stands(text: str, complaint: str) -> None:
@@ -110,6 +110,50 @@ def test_a_mistake_is_named_where_it_stands(text: str, complaint: str) -> None:
 def test_mistakes_between_sections_are_all_found() -> None:
     text = "[driving]\nsetpoint_ttl_s = 2\n[pantilt]\nport = 'COM3'\n[grid]\nrows = 0"
     assert [line.split(": ")[1] for line in complaints(text)] == ["driving.setpoint_ttl_s", "pantilt.port", "grid.rows"]
+
+
+HIDDEN_BY_AN_UNKNOWN_KEY = """
+[drive]
+dailect = "board"
+port = "COM3"
+counts_per_m = 3.7e-5
+[pantilt]
+klingon = 1
+dialect = "klingon"
+port = "/dev/robotd/rangefinder"
+[driving]
+speed = 0.4
+turn_radps = 57
+setpoint_ttl_s = 2
+silence_s = 0.01
+[laser]
+[grid]
+resolution_m = 1.0
+rows = "many"
+"""
+
+
+def test_an_unknown_key_hides_nothing_of_its_section_nor_of_others() -> None:
+    assert [line.split(": ")[0:2] for line in complaints(HIDDEN_BY_AN_UNKNOWN_KEY)] == [
+        ["r.toml:3", "drive.dailect"],
+        ["r.toml:4", "drive.port"],
+        ["r.toml:5", "drive.counts_per_m"],
+        ["r.toml:7", "pantilt.klingon"],
+        ["r.toml:8", "pantilt.dialect"],
+        ["r.toml:9", "pantilt.port"],
+        ["r.toml:11", "driving.speed"],
+        ["r.toml:12", "driving.turn_radps"],
+        ["r.toml:13", "driving.setpoint_ttl_s"],
+        ["r.toml:14", "driving.silence_s"],
+        ["r.toml:15", "laser"],
+        ["r.toml:17", "grid.resolution_m"],
+        ["r.toml:18", "grid.rows"],
+    ]
+
+
+def test_what_follows_from_a_mistake_is_not_a_second_one() -> None:
+    text = "[rangefinder]\ndialect = 1\n[pantilt]\ndialect = 'fixed'\n[drive]\ntelemetry_ms = 1000\n"
+    assert [line.split(": ")[1] for line in complaints(text)] == ["rangefinder.dialect", "drive.telemetry_ms"]
 
 
 def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:

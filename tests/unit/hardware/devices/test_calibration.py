@@ -89,13 +89,16 @@ def test_the_same_obstacle_is_found_from_a_turned_base(
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: DriveCalibration(0.0, 1.0), "counts_per_m must be finite and not zero, got 0.0"),
-        (lambda: DriveCalibration(1.0, math.nan), "counts_per_rad must be finite"),
-        (lambda: HeadMount(x_m=11.0), "x_m must be within 10 m"),
-        (lambda: HeadMount(tilt_zero_rad=math.inf), "tilt_zero_rad must be within half a turn"),
-        (lambda: RangefinderCalibration(range_min_m=-1), "range_min_m must be positive, got -1"),
-        (lambda: RangefinderCalibration(range_max_m=0.2), "range_max_m must be finite and above range_min_m, got 0.2"),
-        (lambda: RangefinderCalibration(range_bias_m=math.nan), "range_bias_m must be finite"),
+        (lambda: DriveCalibration(0.0, 1.0), "counts_per_m must be 100 to 1e\\+08 counts/m, of either sign, got 0"),
+        (
+            lambda: DriveCalibration(1000.0, math.nan),
+            "counts_per_rad must be 10 to 1e",
+        ),
+        (lambda: HeadMount(x_m=11.0), "x_m must be -3 to 3 m, got 11"),
+        (lambda: HeadMount(tilt_zero_rad=math.inf), "tilt_zero_rad must be -3.14159 to 3.14159 rad, got inf"),
+        (lambda: RangefinderCalibration(range_min_m=-1), "range_min_m must be 0.001 to 20 m, got -1"),
+        (lambda: RangefinderCalibration(range_max_m=0.2), "range_max_m must be above range_min_m, got 0.2"),
+        (lambda: RangefinderCalibration(range_bias_m=math.nan), "range_bias_m must be -1 to 1 m, got nan"),
     ],
 )
 def test_impossible_values_are_refused_by_name(make: Any, message: str) -> None:

@@ -18,7 +18,7 @@ WIRING = Wiring(nowhere, NoTap(), random.Random(0))
 
 
 def test_flat_settings_give_the_calibrations() -> None:
-    assert DriveSettings(counts_per_m=1.0, counts_per_rad=2.0).calibration == DriveCalibration(1.0, 2.0)
+    assert DriveSettings(counts_per_m=1000.0, counts_per_rad=2000.0).calibration == DriveCalibration(1000.0, 2000.0)
     assert PanTiltSettings(x_m=0.1, y_m=0.2, pan_zero_rad=0.3, tilt_zero_rad=0.4).mount == HeadMount(0.1, 0.2, 0.3, 0.4)
     assert RangefinderSettings().calibration == RangefinderCalibration(0.0, 0.3, 6.0)
 
@@ -28,11 +28,11 @@ def test_flat_settings_give_the_calibrations() -> None:
     [
         (DriveSettings, {"port": ""}, "port must not be empty"),
         (DriveSettings, {"line": "9600"}, "expected a speed and a frame as in '115200 8N1' or '19200 7E1', got '9600'"),
-        (DriveSettings, {"telemetry_ms": 1000}, "telemetry_ms must be 5 to 250, got 1000"),
-        (DriveSettings, {"ttl_max_ms": 70_000}, "ttl_max_ms must be 1 to 65535, got 70000"),
-        (DriveSettings, {"counts_per_m": 0.0}, "counts_per_m must be finite and not zero"),
-        (PanTiltSettings, {"y_m": 20.0}, "y_m must be within 10 m"),
-        (RangefinderSettings, {"range_min_m": 7.0}, "range_max_m must be finite and above range_min_m"),
+        (DriveSettings, {"telemetry_ms": 1000}, "telemetry_ms must be 5 to 250 ms, got 1"),
+        (DriveSettings, {"ttl_max_ms": 70_000}, "ttl_max_ms must be 10 to 65535 ms, got 70000"),
+        (DriveSettings, {"counts_per_m": 0.0}, "counts_per_m must be 100 to "),
+        (PanTiltSettings, {"y_m": 20.0}, "y_m must be -3 to 3 m, got 20"),
+        (RangefinderSettings, {"range_min_m": 7.0}, "range_max_m must be above range_min_m"),
     ],
 )
 def test_impossible_settings_are_refused_by_name(kind: Any, values: dict[str, Any], message: str) -> None:
