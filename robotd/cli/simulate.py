@@ -73,7 +73,9 @@ def _serve(
             write(arguments.write_config, ports)
         _announce(ports, arguments.write_config, as_json=arguments.json)
 
-    run = partial(run_faulty_on_ptys, plan=plan, seed=arguments.seed, say=err().print) if plan else run_on_ptys
+    run = partial(run_on_ptys, say=err().print)
+    if plan:
+        run = partial(run_faulty_on_ptys, plan=plan, seed=arguments.seed, say=err().print)
     with contextlib.suppress(KeyboardInterrupt):
         asyncio.run(run(robot, announce=announce, directory=links, truth_path=truth_path))
 

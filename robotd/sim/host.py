@@ -6,10 +6,10 @@ from collections.abc import Callable, Coroutine
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from firmware_proto.common import BoardState, Fault
-from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import TransportError
 from robotd.hardware.transport.transport import Transport
 from robotd.sim.board_clock import BoardClock
+from robotd.sim.pace import HostTime, Time
 
 T = TypeVar("T")
 
@@ -55,6 +55,7 @@ async def serve(
     lines: "asyncio.Queue[Transport]",
     *,
     on_step: Callable[[], None] = lambda: None,
+    time: Time | None = None,
 ) -> None:
     """Run a board until cancelled, on one line after the other as they come; in between it is unplugged.
 
@@ -66,8 +67,9 @@ async def serve(
         clock: the board's own clock.
         lines: where new lines come from; a line is closed here once its other end is gone.
         on_step: called after the board did something.
+        time: what it lives by; the host's unless another is given.
     """
-    life = _Life(board, clock, on_step)
+    life = _Life(board, clock, on_step, time or HostTime())
     while True:
         life.line = None
         line = await life.meanwhile(lines.get())
@@ -83,10 +85,11 @@ async def serve(
 class _Life:
     """A board, its clock and its present line."""
 
-    def __init__(self, board: HostedBoard, clock: BoardClock, on_step: Callable[[], None]) -> None:
+    def __init__(self, board: HostedBoard, clock: BoardClock, on_step: Callable[[], None], time: Time) -> None:
         self._board = board
         self._clock = clock
         self._on_step = on_step
+        self._time = time
         self.line: Transport | None = None
 
     async def meanwhile(self, wanted: Coroutine[Any, Any, T]) -> T:
@@ -112,7 +115,7 @@ class _Life:
         due_us = self._board.next_event_us
         if due_us is None:
             return None
-        return max(0, self._clock.true_us(due_us) * _NS_PER_US - now_ns()) / NS_PER_S
+        return self._time.wait_s(self._clock.true_us(due_us) * _NS_PER_US)
 
     def _speak(self) -> None:
         said = self._board.take_output()
@@ -122,4 +125,4 @@ class _Life:
         self._on_step()
 
     def _now_us(self) -> int:
-        return self._clock.board_us(now_ns() // _NS_PER_US)
+        return self._clock.board_us(self._time.now_ns() // _NS_PER_US)

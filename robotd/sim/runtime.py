@@ -10,6 +10,7 @@ from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.pty import open_pty
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.sim.host import serve
+from robotd.sim.pace import HostTime, SlowedTime, Time
 from robotd.sim.robot import EmulatedRobot
 from robotd.sim.truth import truth_log
 
@@ -22,6 +23,7 @@ async def run_on_ptys(
     announce: Callable[[dict[str, str]], None],
     directory: Path | None = None,
     truth_path: Path | None = None,
+    say: Callable[[str], None] = lambda _: None,
 ) -> None:
     """Serve the boards on three pseudo-terminals until cancelled.
 
@@ -30,6 +32,7 @@ async def run_on_ptys(
         announce: told the path to open for each device, once all are ready.
         directory: if given, links named after the devices are kept there, so that the paths are always the same.
         truth_path: if given, a JSON line ``{t_ns, x_m, y_m, heading_rad}`` is added whenever the robot comes to rest.
+        say: told once that simulated time is slowed, when this process got no processor for a while.
 
     Raises:
         TransportError: the links cannot be made.
@@ -42,8 +45,7 @@ async def run_on_ptys(
         lines: Lines = {device: asyncio.Queue() for device in robot.boards}
         for device, end in ptys.items():
             lines[device].put_nowait(end)
-        note = stack.enter_context(truth_log(robot, truth_path)).note if truth_path else _nothing
-        async with _served(robot, lines, note) as tasks:
+        async with _served(robot, lines, SlowedTime(say), truth_path) as tasks:
             announce(paths)
             await asyncio.gather(*tasks)
 
@@ -56,10 +58,8 @@ async def connectors(robot: EmulatedRobot, *, truth_path: Path | None = None) ->
     time passes for them, from here to the end of the block.
     """
     lines: Lines = {device: asyncio.Queue() for device in robot.boards}
-    with contextlib.ExitStack() as stack:
-        note = stack.enter_context(truth_log(robot, truth_path)).note if truth_path else _nothing
-        async with _served(robot, lines, note):
-            yield {device: _memory_connect(device, lines[device]) for device in robot.boards}
+    async with _served(robot, lines, HostTime(), truth_path):
+        yield {device: _memory_connect(device, lines[device]) for device in robot.boards}
 
 
 def _memory_connect(device: str, lines: "asyncio.Queue[Transport]") -> Connect:
@@ -73,18 +73,23 @@ def _memory_connect(device: str, lines: "asyncio.Queue[Transport]") -> Connect:
 
 @contextlib.asynccontextmanager
 async def _served(
-    robot: EmulatedRobot, lines: Lines, note: Callable[[], None]
+    robot: EmulatedRobot, lines: Lines, time: Time, truth_path: Path | None
 ) -> AsyncIterator[tuple["asyncio.Task[None]", ...]]:
-    tasks = tuple(
-        asyncio.create_task(serve(board, robot.clocks[device], lines[device], on_step=note), name=f"board {device}")
-        for device, board in robot.boards.items()
-    )
-    try:
-        yield tasks
-    finally:
-        for task in tasks:
-            task.cancel()
-        outcomes = await asyncio.gather(*tasks, return_exceptions=True)
+    with truth_log(robot, time, truth_path) if truth_path else contextlib.nullcontext() as log:
+        note = log.note if log else _nothing
+        tasks = tuple(
+            asyncio.create_task(
+                serve(board, robot.clocks[device], lines[device], on_step=note, time=time), name=f"board {device}"
+            )
+            for device, board in robot.boards.items()
+        )
+        tasks = (*tasks, asyncio.create_task(time.beat(), name="simulated time"))
+        try:
+            yield tasks
+        finally:
+            for task in tasks:
+                task.cancel()
+            outcomes = await asyncio.gather(*tasks, return_exceptions=True)
     for outcome in outcomes:
         if isinstance(outcome, Exception):
             raise outcome

@@ -23,6 +23,8 @@ from robotd.server.mission_run import MissionEvent, final_estimate
 
 LEASE_S = 10.0
 """Generous: a demonstration shares two cores with its simulated hardware, and with whatever else runs."""
+SILENCE_S = 2.0
+"""Of odometry: simulated boards get no processor now and then, and nothing real moves meanwhile."""
 _WIDTH = 120
 
 

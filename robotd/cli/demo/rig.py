@@ -15,6 +15,8 @@ from robotd.core.errors import RequestTimeout, RobotdError
 from robotd.hardware.devices.device import LinkState
 from robotd.server.client import Client
 
+UNFINISHED = "unfinished"
+"""Name of the map of a demonstration that failed; the next one keeps it."""
 DEVICES = ("drive", "pantilt", "rangefinder")
 _START_S = 180.0
 """Starting is quick, unless the machine is busy with something else."""
@@ -76,7 +78,7 @@ def rig(directory: Path, config: Config, emulator: list[str]) -> Iterator[Rig]:
 def _kept(client: Client, directory: Path) -> str:
     """Save what there is of a map, and say where it is: a demonstration that fails loses nothing."""
     try:
-        entry = client.map_save("unfinished")
+        entry = client.map_save(UNFINISHED)
     except RobotdError as error:
         return f"no map was saved ({error})"
     return f"the map so far: {directory / 'maps' / entry.name / str(entry.version)}"

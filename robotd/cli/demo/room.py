@@ -2,13 +2,15 @@
 
 import argparse
 import shutil
+from contextlib import suppress
+from itertools import count
 from pathlib import Path
 
 import numpy as np
 from rich.console import Console
 
-from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials, stage
-from robotd.cli.demo.rig import Rig, rig, wired
+from robotd.cli.demo.mission import SILENCE_S, Trial, follow, print_readings, print_trials, stage
+from robotd.cli.demo.rig import UNFINISHED, Rig, rig, wired
 from robotd.cli.demo.truth import true_pose
 from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
 from robotd.cli.plots import require_plots
@@ -70,8 +72,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def fresh(directory: Path) -> Path:
-    """Return an empty directory; what an earlier demonstration left there goes."""
+    """Return an empty directory; what an earlier demonstration left there goes, but for the map of one that failed."""
     directory = directory.resolve()
+    _keep_unfinished(directory)
     for name in ("devices", "run", "maps", "recordings"):
         shutil.rmtree(directory / name, ignore_errors=True)
     for file in (*directory.glob("*.png"), *directory.glob("*.mcap"), directory / "truth.jsonl"):
@@ -80,9 +83,21 @@ def fresh(directory: Path) -> Path:
     return directory
 
 
+def _keep_unfinished(directory: Path) -> None:
+    if not (directory / "maps" / UNFINISHED).exists():
+        return
+    kept = next(kept for number in count(1) if not (kept := directory / f"failed-{number}").exists())
+    kept.mkdir()
+    for name in ("maps", "robotd.log"):
+        with suppress(FileNotFoundError):
+            (directory / name).rename(kept / name)
+
+
 def brisk() -> DrivingSettings:
     """Return how to drive when somebody is watching."""
-    return DrivingSettings(speed_mps=0.6, turn_radps=1.5, deceleration_mps2=0.4, turn_deceleration_radps2=2.0)
+    return DrivingSettings(
+        speed_mps=0.6, turn_radps=1.5, deceleration_mps2=0.4, turn_deceleration_radps2=2.0, silence_s=SILENCE_S
+    )
 
 
 def _localize_at(parts: Rig, console: Console, probe_m: tuple[float, float]) -> Trial:
