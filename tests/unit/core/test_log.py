@@ -2,7 +2,6 @@
 
 import io
 import logging
-from collections.abc import Iterator
 
 import pytest
 
@@ -10,16 +9,13 @@ from robotd.core.log import LONGEST_LINE, MOST_LINES, PrintableFormatter
 
 
 @pytest.fixture
-def written() -> Iterator[tuple[logging.Logger, io.StringIO]]:
-    logger, text = logging.getLogger("robotd.test of the log"), io.StringIO()
+def written() -> tuple[logging.Logger, io.StringIO]:
+    # A logger of its own: the runner would capture the others' lines, and cannot pass on half a letter.
+    logger, text = logging.Logger("robotd.test of the log", logging.INFO), io.StringIO()
     handler = logging.StreamHandler(text)
     handler.setFormatter(PrintableFormatter("%(levelname)s %(name)s: %(message)s"))
     logger.addHandler(handler)
-    logger.setLevel(logging.INFO)
-    logger.propagate = False  # the runner's own capture cannot carry half a letter from one process to another
-    yield logger, text
-    logger.propagate = True
-    logger.removeHandler(handler)
+    return logger, text
 
 
 @pytest.mark.parametrize(
