@@ -6,9 +6,9 @@ from typing import Self
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn
 
 from robotd.cli.terminal import err
-from robotd.cli.wording import counts_in_words, estimate_in_short, mission_in_words
+from robotd.cli.wording import counts_in_words, estimate_in_short, held_in_words, mission_in_words
 from robotd.localization.estimate import PoseEstimate
-from robotd.mission.events import MissionPhase, MissionProgress, SweepProgress
+from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.server.topics import Published
 
 
@@ -41,6 +41,8 @@ class MissionBars:
                 self._step(event)
             case SweepProgress():
                 self._reading(event)
+            case Status():
+                self._progress.console.print(held_in_words(event))
             case PoseEstimate():
                 self._pose = estimate_in_short(event)
                 if self._mission is not None:

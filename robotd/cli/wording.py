@@ -28,6 +28,11 @@ def in_words(event: Published) -> str:
     return words(event)
 
 
+def held_in_words(status: Status) -> str:
+    """Return that a mission is held, and why, or that it goes on."""
+    return f"held: {status.held}" if status.held else "the mission goes on"
+
+
 def pose_in_words(pose: Pose2) -> str:
     """Return a pose in metres and degrees.
 

@@ -237,7 +237,8 @@ class Supervisor:
     def renew(self, mission_id: int) -> None:
         """Keep a mission's lease alive; MissionError if that mission is not under way."""
         if not self._busy or mission_id != self._mission_id or self._lease is None:
-            raise MissionError(f"mission {mission_id} is not under way")
+            why = f" any more: {self._reason}" if mission_id == self._mission_id else ""
+            raise MissionError(f"mission {mission_id} is not under way{why}")
         self._lease.renew()
 
     def use(self, place: MapInUse) -> None:

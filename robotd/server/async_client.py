@@ -20,7 +20,7 @@ import zmq
 import zmq.asyncio
 
 from robotd.core.clock import NS_PER_S, now_ns
-from robotd.core.errors import RequestTimeout, RobotdError
+from robotd.core.errors import RequestTimeout, RobotdError, ServerError
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.localization.area import Area
 from robotd.localization.estimate import PoseEstimate
@@ -262,7 +262,12 @@ class AsyncClient:
     async def _keep_lease(self, run: MissionRun) -> None:
         while not run.is_ending:
             await asyncio.sleep(run.wait_s(_now_s()))
-            run.renewed(await self.renew(run.mission_id), _now_s())
+            if not run.is_due(_now_s()):
+                continue
+            try:
+                run.renewed(await self.renew(run.mission_id), _now_s())
+            except ServerError as error:
+                raise run.refused(error) from error
 
     @contextlib.asynccontextmanager
     async def _follow(self, topics: tuple[Topic, ...]) -> AsyncIterator[AsyncSubscription]:

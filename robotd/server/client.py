@@ -18,7 +18,7 @@ from typing import Self, TypeVar
 
 import zmq
 
-from robotd.core.errors import RequestTimeout, RobotdError
+from robotd.core.errors import RequestTimeout, RobotdError, ServerError
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.localization.area import Area
 from robotd.localization.estimate import PoseEstimate
@@ -239,7 +239,10 @@ class Client:
     def _follow_run(self, run: MissionRun, events: Subscription) -> Iterator[MissionEvent]:
         while not run.is_over:
             if run.is_due(_now_s()):
-                run.renewed(self.renew(run.mission_id), _now_s())
+                try:
+                    run.renewed(self.renew(run.mission_id), _now_s())
+                except ServerError as error:
+                    raise run.refused(error) from error
             event = events.next(run.wait_s(_now_s()))
             concerned = run.overdue(_now_s()) if event is None else run.accept(event)
             if concerned is not None:

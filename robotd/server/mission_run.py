@@ -4,17 +4,17 @@ Nothing is left to a single message: the end is published, and every renewal is 
 progress as well, so a reader that missed the one hears the other.
 """
 
-from robotd.core.errors import MissionError
+from robotd.core.errors import MissionError, ServerError
 from robotd.localization.estimate import PoseEstimate, PoseState
-from robotd.mission.events import MissionPhase, MissionProgress, SweepDone, SweepProgress
+from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
 from robotd.server.api import MissionStarted, Renewed
 from robotd.server.feed import Gap
 from robotd.server.topics import Published, Topic
 
 MISSION_TOPICS = (Topic.MISSION, Topic.SWEEP, Topic.POSE)
 """What a mission's client listens to."""
-MissionEvent = MissionProgress | SweepProgress | SweepDone | PoseEstimate
-"""What a mission's client is told."""
+MissionEvent = MissionProgress | SweepProgress | SweepDone | PoseEstimate | Status
+"""What a mission's client is told; a status when the mission is held, and when it goes on."""
 
 _RENEWALS_PER_LEASE = 4
 _GRACE_S = 0.2
@@ -27,7 +27,10 @@ class MissionRun:
     def __init__(self, started: MissionStarted, now_s: float) -> None:
         self.mission_id = started.mission_id
         self.is_over = False
+        self._lease_s = started.lease_s
         self._period_s = started.lease_s / _RENEWALS_PER_LEASE
+        self._late_s = 0.0
+        self._held: str | None = None
         self._next_s = now_s + self._period_s
         self._has_begun = False
         self._end: MissionProgress | None = None
@@ -43,7 +46,14 @@ class MissionRun:
 
     def is_due(self, now_s: float) -> bool:
         """Return whether to renew the lease now."""
-        return not self.is_ending and now_s >= self._next_s
+        if self.is_ending or now_s < self._next_s:
+            return False
+        self._late_s = max(self._late_s, now_s - self._next_s)
+        return True
+
+    def refused(self, error: ServerError) -> ServerError:
+        """Return why a renewal was refused, and what we have to do with it."""
+        return ServerError(error.code, self._blamed(error.message))
 
     def renewed(self, answer: Renewed, now_s: float) -> None:
         """Take the answer to a renewal."""
@@ -60,6 +70,8 @@ class MissionRun:
                 return None
             self._has_begun = True
             self._conclude(event)
+        if isinstance(event, Status) and not self._is_news(event):
+            return None
         return event if self._has_begun and isinstance(event, MissionEvent) else None
 
     def overdue(self, now_s: float) -> MissionProgress | None:
@@ -76,7 +88,24 @@ class MissionRun:
             MissionError: it was stopped, or it failed; says why.
         """
         if self._end is not None and self._end.phase is not MissionPhase.DONE:
-            raise MissionError(f"{self._end.kind} {self._end.phase}: {self._end.message}")
+            raise MissionError(f"{self._end.kind} {self._end.phase}: {self._blamed(self._end.message)}")
+
+    def _is_news(self, status: Status) -> bool:
+        """Return whether the mission has begun to be held since, or has gone on."""
+        if status.mission_id != self.mission_id or not self._has_begun or status.held == self._held:
+            return False
+        self._held = status.held
+        return True
+
+    def _blamed(self, message: str) -> str:
+        """Return a reason with what we have to do with it: we renewed so late that no lease outlasts it."""
+        if self._period_s + self._late_s < self._lease_s:
+            return message
+        return (
+            f"{message}; this program renewed its lease of {self._lease_s:g} s late by {self._late_s:.1f} s: it got no"
+            " processor, or did not ask for the next event; the daemon's log has more; continue with: robotctl arm"
+            " (after a fault robotctl clear first), then the mission again"
+        )
 
     def _conclude(self, progress: MissionProgress) -> None:
         if progress.is_last:

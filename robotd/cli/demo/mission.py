@@ -11,12 +11,13 @@ from rich.table import Table
 
 from robotd.cli.progress import MissionBars
 from robotd.cli.terminal import plain_console
+from robotd.cli.wording import held_in_words
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
 from robotd.core.reading import ReadingStatus, Sweep
 from robotd.localization.estimate import PoseEstimate, PoseState
-from robotd.mission.events import MissionPhase, MissionProgress, SweepDone
+from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepDone
 from robotd.mission.requests import Mission
 from robotd.server.client import Client
 from robotd.server.mission_run import MissionEvent, final_estimate
@@ -65,6 +66,8 @@ class _Narrator:
             self._console.print(f"  stop {event.stop + 1} of {event.stops}: sweeping")
         elif isinstance(event, MissionProgress) and event.message:
             self._console.print(f"  {event.message}")
+        elif isinstance(event, Status):
+            self._console.print(f"  {held_in_words(event)}")
 
 
 @dataclass(frozen=True, slots=True)

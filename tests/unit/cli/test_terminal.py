@@ -14,7 +14,8 @@ from rich.text import Text
 from robotd.cli.half_blocks import plain
 from robotd.cli.progress import MissionBars
 from robotd.cli.terminal import command_line, complain, plain_console, print_pairs, print_table
-from robotd.mission.events import MissionPhase, MissionProgress
+from robotd.mission.events import MissionPhase, MissionProgress, Status
+from robotd.mission.modes import Mode
 
 EVIL = "x\x1b[2J\x1b]0;title\x9b31m\u202e\u200b[red]y"
 SHOWN = "x\\x1b[2J\\x1b]0;title\\x9b31m\\u202e\\u200b[red]y"
@@ -47,6 +48,15 @@ def test_progress_shows_foreign_words_as_letters(capsys: pytest.CaptureFixture[s
     with MissionBars() as bars:
         bars.show(MissionProgress(1, 1, "map", MissionPhase.FAILED, 0, 1, EVIL))
     assert "\x1b]0;" not in capsys.readouterr().err
+
+
+def test_progress_shows_that_the_mission_is_held_and_why(capsys: pytest.CaptureFixture[str]) -> None:
+    with MissionBars() as bars:
+        for held in ("the loop stood still", None):
+            bars.show(Status(1, Mode.MAPPING, "", (), None, (), 1, None, None, None, held))
+    told = capsys.readouterr().err
+    assert "held: the loop stood still" in told
+    assert "the mission goes on" in told
 
 
 @pytest.mark.parametrize("name", ["a b.mcap", "it's", "$HOME", "a;rm -rf b", "a\tb", "Büro"])

@@ -507,7 +507,7 @@ async def test_one_mission_at_a_time_under_a_lease_that_only_it_renews() -> None
         assert r.mode is Mode.MAPPING
         await asyncio.sleep(0.2)
         assert r.mode.value == "disarmed"
-        with pytest.raises(MissionError, match="not under way"):
+        with pytest.raises(MissionError, match=rf"not under way any more: the lease of mission {mission_id} expired"):
             r.supervisor.renew(mission_id)
 
 

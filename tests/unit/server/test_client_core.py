@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from robotd.core.errors import MissionError, RemoteProtocolError, RequestTimeout, ServerError
 from robotd.localization.estimate import PoseEstimate, PoseState
-from robotd.mission.events import MissionPhase, MissionProgress, SweepProgress
+from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepProgress
+from robotd.mission.modes import Mode
 from robotd.server import api
 from robotd.server.envelope import Request, decode_request, encode_error, encode_result
 from robotd.server.exchange import Exchanges
@@ -186,6 +187,37 @@ def test_a_mission_that_was_not_done_says_why(phase: MissionPhase) -> None:
     run.accept(progress(phase))
     with pytest.raises(MissionError, match=f"map {phase}: because"):
         run.check()
+
+
+def test_a_client_that_got_no_processor_says_that_its_lease_ended_for_that() -> None:
+    run = MissionRun(api.MissionStarted(7, 0.4), 0.0)
+    assert run.is_due(3.2)
+    refused = run.refused(ServerError("refused", "mission 7 is not under way any more: the lease of mission 7 expired"))
+    assert refused.code == "refused"
+    assert "expired; this program renewed its lease of 0.4 s late by 3.1 s" in refused.message
+    assert "continue with: robotctl arm" in refused.message
+    run.accept(progress(MissionPhase.STOPPED))
+    with pytest.raises(MissionError, match=r"because; this program renewed its lease of 0.4 s late by 3.1 s"):
+        run.check()
+
+
+def test_a_client_that_renewed_in_time_blames_nobody() -> None:
+    run = MissionRun(api.MissionStarted(7, 0.4), 0.0)
+    assert run.is_due(0.3)
+    assert run.refused(ServerError("refused", "why")).message == "why"
+
+
+def test_a_status_is_told_when_the_mission_is_held_and_when_it_goes_on() -> None:
+    run = a_run()
+    going, held, others = (status(7, None), status(7, "too busy"), status(6, "too busy"))
+    assert run.accept(held) is None, "nothing is told before the mission's own first word"
+    run.accept(progress(MissionPhase.STARTED))
+    told = [run.accept(event) for event in (going, others, held, held, going, going)]
+    assert told == [None, None, held, None, going, None]
+
+
+def status(mission_id: int, held: str | None) -> Status:
+    return Status(1, Mode.MAPPING, "", (), None, (), mission_id, None, None, None, held)
 
 
 def test_an_end_known_from_a_renewal_waits_for_messages_under_way_then_counts() -> None:
