@@ -14,6 +14,7 @@ from robotd.config import Config, effective_text
 from robotd.core.errors import RequestTimeout, RobotdError
 from robotd.hardware.devices.device import LinkState
 from robotd.server.client import Client
+from robotd.sim.pace import SLOWED
 
 UNFINISHED = "unfinished"
 """Name of the map of a demonstration that failed; the next one keeps it."""
@@ -72,7 +73,13 @@ def rig(directory: Path, config: Config, emulator: list[str]) -> Iterator[Rig]:
         try:
             yield Rig(client, truth)
         except RobotdError as error:
-            raise RobotdError(f"{error}; {_kept(client, directory)}; log: {log}; then start it again") from error
+            reason = f"{error}{slowed(log.read_text(encoding='utf-8', errors='replace'))}"
+            raise RobotdError(f"{reason}; {_kept(client, directory)}; log: {log}; then start it again") from error
+
+
+def slowed(log: str) -> str:
+    """Return what a log says of the machine, to be put after a reason; nothing if it had processors to spare."""
+    return f"; {SLOWED}, for the simulated robot got no processor for a while" if SLOWED in log else ""
 
 
 def _kept(client: Client, directory: Path) -> str:

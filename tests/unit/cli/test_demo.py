@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from robotd.cli.demo.rig import UNFINISHED
+from robotd.cli.demo.rig import UNFINISHED, slowed
 from robotd.cli.demo.room import fresh
+from robotd.sim.pace import SLOWED
 
 
 def _left_behind(directory: Path, name: str, text: str) -> None:
@@ -30,3 +31,8 @@ def test_what_a_finished_one_left_goes(tmp_path: Path) -> None:
     fresh(directory)
     assert not (directory / "maps").exists()
     assert not list(directory.glob("failed-*"))
+
+
+def test_a_demonstration_that_fails_on_a_busy_machine_says_so() -> None:
+    assert slowed(f"devices are there\n{SLOWED}\ndrive: silent for 1 s\n").startswith("; this machine is busy")
+    assert slowed("devices are there\ndrive: silent for 1 s\n") == ""
