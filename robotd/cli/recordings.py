@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def _start(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client:
-        path = client.record_start(None if arguments.file is None else str(arguments.file.absolute()))
+        path = client.record_start(None if arguments.file is None else str(arguments.file))
     return _tell(arguments, f"recording to {path}", {"path": path})
 
 
@@ -106,7 +106,12 @@ def _file(parser: argparse.ArgumentParser) -> None:
 
 
 def _new_file(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", nargs="?", type=Path, help="where to (default: a new file where the daemon keeps them)")
+    parser.add_argument(
+        "file",
+        nargs="?",
+        type=Path,
+        help="name of a new file below the daemon's recording.dir (default: one named by the time)",
+    )
 
 
 VERBS = (

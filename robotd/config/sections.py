@@ -28,7 +28,7 @@ class RecordingSettings:
     """Where recordings go, and from when on one can begin."""
 
     dir: str = field(default_factory=lambda: f"{state_dir()}/recordings")
-    """Directory of the recordings for which no file is named."""
+    """Directory of the recordings; none is made elsewhere."""
     from_start: bool = False
     """Record from the start of the daemon, always."""
     preroll_bytes: Annotated[int, Within(0, 2**32, "bytes")] = 16 * 1024 * 1024

@@ -1,6 +1,8 @@
 """The whole configuration: every room's settings under one roof."""
 
+import os
 from dataclasses import dataclass, field
+from pathlib import PurePath
 
 from robotd.config.environment import runtime_dir
 from robotd.config.sections import MapsSettings, RecordingSettings
@@ -46,6 +48,7 @@ class Config:
         _check_ports_differ(self.devices)
         _check_head(self.pantilt, self.rangefinder)
         _check_motion(self.drive, self.driving)
+        _check_places(self.maps, self.recording)
         _check_cells(self.grid, self.planning)
 
     @property
@@ -113,4 +116,13 @@ def _check_cells(grid: GridSettings, planning: PlanningSettings) -> None:
         raise ValueError(
             f"grid.resolution_m must be no more than twice planning.robot_radius_m, or no robot fits between"
             f" obstacles, got {grid.resolution_m} m and {planning.robot_radius_m} m"
+        )
+
+
+def _check_places(maps: MapsSettings, recording: RecordingSettings) -> None:
+    kept, recorded = (PurePath(os.path.normpath(section.dir)) for section in (maps, recording))
+    if kept.is_relative_to(recorded) or recorded.is_relative_to(kept):
+        raise ValueError(
+            "recording.dir must not be maps.dir, nor lie in it, nor the other way round;"
+            f' got "{recording.dir}" and "{maps.dir}"'
         )

@@ -64,6 +64,11 @@ class MapStore:
         self._keep = keep
         self._loaded: tuple[str, int] | None = None
 
+    @property
+    def root(self) -> Path:
+        """Where the maps are."""
+        return self._root
+
     def save(self, name: str, grid: OccupancyGrid, metadata: dict[str, Any], created_unix_ns: int) -> MapEntry:
         """Store a map as a new version, synced to the disk, and drop versions too many.
 

@@ -30,6 +30,7 @@ from robotd.mission.requests import Mission
 from robotd.mission.supervisor import Supervisor
 from robotd.recording.encoding import encoded
 from robotd.recording.entries import CommandEntry
+from robotd.recording.place import make_place
 from robotd.recording.preroll import PrerollJournal
 
 log = logging.getLogger(__name__)
@@ -164,13 +165,13 @@ class Control:
         self._supervisor.use(place)
 
     async def start_recording(self, path: str | None) -> str:
-        """Record from the daemon's start on; return the file.
+        """Record from the daemon's start on, to a file below the directory of recordings; return it.
 
         Raises:
-            RecordingError: it cannot be done now.
+            RecordingError: the file is to lie elsewhere, or it cannot be done now.
         """
-        file = self._recordings_dir / f"{now_ns() + wall_offset_ns()}.mcap" if path is None else Path(path)
-        await self._compute.run("make directory", _make_directory, file.parent)
+        name = f"{now_ns() + wall_offset_ns()}.mcap" if path is None else path
+        file = await self._compute.run("make directory", make_place, self._recordings_dir, name, self._store.root)
         self._journal.start(file)
         log.info("recording to %s", file)
         self._recording_changed()
@@ -219,13 +220,6 @@ class Control:
 
     def _recording_changed(self) -> None:
         self._supervisor.publish(self._supervisor.status)
-
-
-def _make_directory(directory: Path) -> None:
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RecordingError(f"cannot record to {directory}: {error.strerror}") from error
 
 
 def _use_map(arguments: dict[str, Any], grid: OccupancyGrid) -> CommandEntry:

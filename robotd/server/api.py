@@ -308,7 +308,7 @@ class MapShow(Command[MapPayload], frozen=True):
 
 
 class RecordStart(Command[RecordingFile], frozen=True):
-    """Start recording, into a new file of the daemon's or into this one."""
+    """Start recording, into a new file of the daemon's or into this one, which lies below its ``recording.dir``."""
 
     cmd, result, deadline_s = "record_start", RecordingFile, 10.0
     path: Annotated[str, Meta(min_length=1, max_length=1024, pattern=r"\A[^\x00]*\Z")] | None = None

@@ -63,8 +63,8 @@ async def repeat(live: Any, recording: Recording, *, dawdle_s: float) -> tuple[s
 
 @pytest.mark.parametrize("dawdle_s", [0.0, 0.037, 61.0])
 async def test_a_fresh_daemon_on_the_fake_makes_the_same_map(live: Any, tmp_path: Path, dawdle_s: float) -> None:
-    digest, recorded = await record(live, tmp_path / "a.mcap")
-    again, repeated, fake = await repeat(live, read(tmp_path / "a.mcap"), dawdle_s=dawdle_s)
+    digest, recorded = await record(live, tmp_path / "recordings" / "a.mcap")
+    again, repeated, fake = await repeat(live, read(tmp_path / "recordings" / "a.mcap"), dawdle_s=dawdle_s)
     assert [timeless(sweep) for sweep in repeated] == [timeless(sweep) for sweep in recorded]
     assert again == digest
     assert fake.finished

@@ -30,7 +30,7 @@ STALL_S = 0.4
 @asynccontextmanager
 async def going(live: Live, directory: Path) -> AsyncIterator[Living]:
     """Yield a robot that lets held missions go on, and check that its recording replays."""
-    file = directory / "held.mcap"
+    file = directory / "recordings" / "held.mcap"
     async with live(SimulatedRobot(load_world("office"), seed=4), armed=False) as it:
         await it.daemon.control.start_recording(str(file))
         await it.daemon.control.arm()

@@ -106,7 +106,8 @@ async def test_a_map_taken_into_use_comes_whole_out_of_the_journal(live: Live) -
 
 
 async def test_what_is_not_there_is_refused(live: Live, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
+    (tmp_path / "recordings").mkdir()
+    (tmp_path / "recordings" / "file").write_text("")
     async with live(office(), QUICK) as it:
         control = it.daemon.control
         with pytest.raises(MapError, match="no map is in use"):
@@ -116,7 +117,11 @@ async def test_what_is_not_there_is_refused(live: Live, tmp_path: Path) -> None:
         with pytest.raises(MapError):
             await control.load_map("nowhere", None, None)
         with pytest.raises(RecordingError, match="cannot record"):
-            await control.start_recording(str(tmp_path / "file" / "below" / "a.mcap"))
+            await control.start_recording("file/below/a.mcap")
+        for hidden in ("maps/lab/9", "maps/.tmp-lab-11", "elsewhere.mcap"):
+            with pytest.raises(RecordingError, match="recordings go below"):
+                await control.start_recording(str(tmp_path / hidden))
+            assert not (tmp_path / hidden).exists()
         assert control.status.recording is None
         assert await control.stop_recording() is None
         assert await control.start_recording(None)

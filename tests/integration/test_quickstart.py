@@ -217,4 +217,4 @@ def test_what_make_demo_runs_shows_the_main_job(tmp_path: Path) -> None:
         "map.png",
         "room.png",
     ]
-    assert (tmp_path / "demo" / "recording.mcap").stat().st_size > 100_000
+    assert (tmp_path / "demo" / "recordings" / "recording.mcap").stat().st_size > 100_000

@@ -22,8 +22,8 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(name="recorded")
 def _recorded(live: Any, tmp_path: Path) -> Path:
-    run_virtual(record(live, tmp_path / "a.mcap"))
-    return tmp_path / "a.mcap"
+    run_virtual(record(live, tmp_path / "recordings" / "a.mcap"))
+    return tmp_path / "recordings" / "a.mcap"
 
 
 def test_two_replays_come_to_what_was_recorded(recorded: Path) -> None:

@@ -41,8 +41,8 @@ async def record(live: Any, path: Path, dialects: Dialects) -> None:
 
 @pytest.mark.parametrize("dialects", ROBOTS, ids=lambda robot: f"{robot.drive}-{robot.pantilt}-{robot.rangefinder}")
 def test_a_replay_comes_to_what_was_recorded(live: Any, tmp_path: Path, dialects: Dialects) -> None:
-    run_virtual(record(live, tmp_path / "a.mcap", dialects))
-    report = replay_recording(tmp_path / "a.mcap")
+    run_virtual(record(live, tmp_path / "recordings" / "a.mcap", dialects))
+    report = replay_recording(tmp_path / "recordings" / "a.mcap")
     assert report.differences == ()
     assert report.digest == report.recorded_digest
     assert report.results > 3

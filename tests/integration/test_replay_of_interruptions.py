@@ -38,17 +38,17 @@ async def test_a_recording_started_late_begins_where_the_daemon_began(live: Live
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot) as it:
         await it.done(MapMission("office", (), robot.start))
-        await it.daemon.control.start_recording(str(tmp_path / "late.mcap"))
+        await it.daemon.control.start_recording(str(tmp_path / "recordings" / "late.mcap"))
         await it.done(LocalizeMission())
         await it.daemon.control.stop_recording()
-    check(replayed(tmp_path / "late.mcap"))
+    check(replayed(tmp_path / "recordings" / "late.mcap"))
 
 
 @pytest.mark.parametrize("after_s", [0.5, 4.3, 7.0])
 async def test_a_mission_stopped_in_the_middle_replays(live: Live, tmp_path: Path, after_s: float) -> None:
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot, armed=False) as it:
-        await it.daemon.control.start_recording(str(tmp_path / "stopped.mcap"))
+        await it.daemon.control.start_recording(str(tmp_path / "recordings" / "stopped.mcap"))
         await it.daemon.control.arm()
         it.daemon.control.start(MapMission("office", robot.stops_m, robot.start), 1000.0)
         await asyncio.sleep(after_s)
@@ -56,13 +56,13 @@ async def test_a_mission_stopped_in_the_middle_replays(live: Live, tmp_path: Pat
         await asyncio.sleep(1.0)
         assert it.daemon.supervisor.mode is Mode.DISARMED
         await it.daemon.control.stop_recording()
-    check(replayed(tmp_path / "stopped.mcap"))
+    check(replayed(tmp_path / "recordings" / "stopped.mcap"))
 
 
 async def test_a_lease_that_runs_out_stops_the_robot_and_replays(live: Live, tmp_path: Path) -> None:
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot, armed=False) as it:
-        await it.daemon.control.start_recording(str(tmp_path / "lease.mcap"))
+        await it.daemon.control.start_recording(str(tmp_path / "recordings" / "lease.mcap"))
         await it.daemon.control.arm()
         mission_id = it.daemon.control.start(MapMission("office", robot.stops_m, robot.start), 0.5)
         for _ in range(10):
@@ -74,7 +74,7 @@ async def test_a_lease_that_runs_out_stops_the_robot_and_replays(live: Live, tmp
         assert "lease" in it.daemon.control.status.reason
         assert not any(device.armed for device in it.daemon.control.status.devices)
         await it.daemon.control.stop_recording()
-    check(replayed(tmp_path / "lease.mcap"))
+    check(replayed(tmp_path / "recordings" / "lease.mcap"))
 
 
 def mode_of(it: Living) -> Mode:
@@ -88,7 +88,7 @@ async def test_a_map_taken_into_use_is_in_the_recording(live: Live, tmp_path: Pa
         await it.daemon.control.save_map("kept")
     again = SimulatedRobot(load_world("office"), seed=5)
     async with live(again, armed=False) as it:
-        await it.daemon.control.start_recording(str(tmp_path / "loaded.mcap"))
+        await it.daemon.control.start_recording(str(tmp_path / "recordings" / "loaded.mcap"))
         await it.daemon.control.arm()
         await asyncio.sleep(0.1)  # odometry comes with the telemetry
         await it.daemon.control.load_map("kept", None, again.start)
@@ -96,4 +96,4 @@ async def test_a_map_taken_into_use_is_in_the_recording(live: Live, tmp_path: Pa
         assert end.phase is MissionPhase.DONE
         await it.daemon.control.stop_recording()
     (tmp_path / "maps").rename(tmp_path / "maps moved away")
-    check(replayed(tmp_path / "loaded.mcap"))
+    check(replayed(tmp_path / "recordings" / "loaded.mcap"))

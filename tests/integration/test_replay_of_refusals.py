@@ -49,7 +49,7 @@ async def test_a_session_full_of_refusals_replays(live: Live, tmp_path: Path) ->
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot, armed=False) as it:
         control = it.daemon.control
-        await control.start_recording(str(tmp_path / "refused.mcap"))
+        await control.start_recording(str(tmp_path / "recordings" / "refused.mcap"))
         await refuse_everything(it)
         await control.arm()
         with pytest.raises(MissionError):
@@ -62,8 +62,12 @@ async def test_a_session_full_of_refusals_replays(live: Live, tmp_path: Path) ->
         await control.load_map("kept", None, robot.start)
         await it.done(LocalizeMission())
         await control.stop_recording()
-    check(replayed(tmp_path / "refused.mcap"))
-    recorded = [entry.name for entry in read(tmp_path / "refused.mcap").entries if isinstance(entry, CommandEntry)]
+    check(replayed(tmp_path / "recordings" / "refused.mcap"))
+    recorded = [
+        entry.name
+        for entry in read(tmp_path / "recordings" / "refused.mcap").entries
+        if isinstance(entry, CommandEntry)
+    ]
     assert recorded == ["arm", "start", "stop", "arm", "use_map", "start"]
 
 
@@ -71,7 +75,7 @@ async def test_an_arming_that_fails_halfway_is_recorded_and_replays(live: Live, 
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot, armed=False) as it:
         control = it.daemon.control
-        await control.start_recording(str(tmp_path / "halfway.mcap"))
+        await control.start_recording(str(tmp_path / "recordings" / "halfway.mcap"))
         own_board(robot, "pantilt").reboot(99)  # it is deaf for a second
         with pytest.raises(RobotdError):
             await control.arm()
@@ -80,6 +84,10 @@ async def test_an_arming_that_fails_halfway_is_recorded_and_replays(live: Live, 
         await control.arm()
         await it.done(MapMission("office", (), robot.start))
         await control.stop_recording()
-    recorded = [entry.name for entry in read(tmp_path / "halfway.mcap").entries if isinstance(entry, CommandEntry)]
+    recorded = [
+        entry.name
+        for entry in read(tmp_path / "recordings" / "halfway.mcap").entries
+        if isinstance(entry, CommandEntry)
+    ]
     assert recorded == ["arm", "arm", "start"]
-    check(replayed(tmp_path / "halfway.mcap"))
+    check(replayed(tmp_path / "recordings" / "halfway.mcap"))

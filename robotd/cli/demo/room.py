@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     emulator = ["sim", arguments.world, "--seed", str(arguments.seed)]
     with rig(directory, wired(Config(driving=brisk()), directory), emulator) as parts:
         client = parts.client
-        recording = client.record_start(str(directory / "recording.mcap"))
+        recording = client.record_start("recording.mcap")
         client.arm()
         console.print("Making the map, stop by stop:")
         stops_m = world.stops_m[: arguments.stops]

@@ -119,13 +119,15 @@ def test_a_map_of_nothing_is_drawn_as_nothing() -> None:
 def test_recording_is_started_and_stopped(client: Any, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     file = tmp_path / "a.mcap"
     assert main(["record", "start", str(file)]) == 0
+    assert main(["record", "start", "day/b.mcap"]) == 0
     assert main(["record", "start", "--json"]) == 0
     assert main(["record", "stop"]) == 0
     assert [asked for asked in client.asked if asked != "close"] == [
         ("record_start", str(file)),
+        ("record_start", "day/b.mcap"),
         ("record_start", None),
     ]
-    named, unnamed, stopped = capsys.readouterr().out.splitlines()
+    named, _, unnamed, stopped = capsys.readouterr().out.splitlines()
     assert named == f"recording to {file}"
     assert json.loads(unnamed) == {"path": "recordings/new.mcap"}
     assert stopped == "recorded recordings/new.mcap"

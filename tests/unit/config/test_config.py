@@ -156,6 +156,26 @@ def test_what_follows_from_a_mistake_is_not_a_second_one() -> None:
     assert [line.split(": ")[1] for line in complaints(text)] == ["rangefinder.dialect", "drive.telemetry_ms"]
 
 
+@pytest.mark.parametrize(
+    ("maps", "recordings"),
+    [
+        ("/srv/x", "/srv/x"),
+        ("/srv/x", "/srv/x/maps/"),
+        ("/srv/x/y/z", "/srv/x"),
+        ("/srv/x", "/srv/./y/../x/a"),
+        ("a", "a/b"),
+    ],
+)
+def test_recordings_and_maps_lie_apart(maps: str, recordings: str, tmp_path: Path) -> None:
+    text = f'[maps]\ndir = "{maps}"\n[recording]\ndir = "{recordings}"\n'
+    (found,) = complaints(text)
+    assert found.startswith("r.toml:4: recording.dir: must not be maps.dir, nor lie in it, nor the other way round")
+    (tmp_path / "robotd.toml").write_text(f'[maps]\ndir = "{tmp_path}/a"\n[recording]\ndir = "a/b"\n')
+    with pytest.raises(ConfigError, match=r"robotd.toml:4: recording.dir: must not be maps.dir"):
+        load(tmp_path / "robotd.toml")
+    assert loads('[maps]\ndir = "/srv/x"\n[recording]\ndir = "/srv/x-2"\n').recording.dir == "/srv/x-2"
+
+
 def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"none.toml: cannot be read: No such file or directory$"):
         load(tmp_path / "none.toml")
