@@ -11,7 +11,7 @@ from robotd.core.log import LONGEST_LINE, MOST_LINES, PrintableFormatter
 @pytest.fixture
 def written() -> tuple[logging.Logger, io.StringIO]:
     # A logger of its own: the runner would capture the others' lines, and cannot pass on half a letter.
-    logger, text = logging.Logger("robotd.test of the log", logging.INFO), io.StringIO()
+    logger, text = logging.Logger("robotd.test of the log", logging.INFO), io.StringIO()  # noqa: LOG001  # as said
     handler = logging.StreamHandler(text)
     handler.setFormatter(PrintableFormatter("%(levelname)s %(name)s: %(message)s"))
     logger.addHandler(handler)
