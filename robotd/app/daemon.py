@@ -96,7 +96,10 @@ async def run(config: Config) -> int:
             if not ending.is_hastened:
                 raise
         finally:
-            await daemon.control.stop_recording()
+            try:
+                await daemon.control.keeping.keep_last()
+            finally:
+                await daemon.control.stop_recording()
     return ending.exit_code
 
 
@@ -109,7 +112,8 @@ async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
         if config.recording.from_start:
             await daemon.control.start_recording(None)
         parts = {name: group.create_task(part, name=name) for name, part in daemon.parts().items()}
-        tasks = [serving, *parts.values(), group.create_task(keep_going(daemon), name="keep going")]
+        keeping = group.create_task(daemon.control.keeping.run(), name="keep maps")
+        tasks = [serving, *parts.values(), keeping, group.create_task(keep_going(daemon), name="keep going")]
         for task in tasks:
             task.add_done_callback(partial(_stop_if_failed, daemon))
         within_s = watchdog_s()

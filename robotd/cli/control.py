@@ -39,7 +39,7 @@ def _print_status(status: Status) -> None:
             *([("held", status.held)] if status.held else []),
             ("battery", battery),
             ("bumpers pressed", pressed),
-            ("map in use", status.map_name or "none"),
+            ("map in use", _map_in_words(status)),
             ("recording to", status.recording or "nothing"),
         ]
     )
@@ -49,6 +49,14 @@ def _print_status(status: Status) -> None:
     ]
     print_table(("device", "link", "motion", "faults", "detail"), rows)
     print_table(("device", "counted on its line since start"), [(one.name, _counted(one)) for one in status.devices])
+
+
+def _map_in_words(status: Status) -> str:
+    """Return the map in use, and what to do lest it gets lost."""
+    if not status.map_unsaved:
+        return status.map_name or "none"
+    kept = "in memory alone" if status.map_kept_version is None else f"kept as version {status.map_kept_version}"
+    return f"{status.map_name}, not saved ({kept}): robotctl map save"
 
 
 def _counted(device: DeviceStatus) -> str:

@@ -1,4 +1,4 @@
-"""``map start``, ``map save``, ``map load``, ``map list`` and ``map show``."""
+"""``map start``, ``map save``, ``map load``, ``map discard``, ``map list`` and ``map show``."""
 
 import argparse
 import shutil
@@ -88,12 +88,19 @@ def _load(arguments: argparse.Namespace) -> int:
         return _tell(arguments, "loaded", client.map_load(arguments.name, arguments.version, arguments.robot))
 
 
+def _discard(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        client.map_discard()
+    out().print("what was not saved of the map in use was given up")
+    return OK
+
+
 def _tell(arguments: argparse.Namespace, what: str, entry: MapEntryInfo) -> int:
     if arguments.json:
         print_json(asdict(entry))
     else:
         size = f"{entry.cols} x {entry.rows} cells of {entry.resolution_m * 1000:g} mm"
-        out().print(f"{what} {entry.name} version {entry.version}: {size}, digest {entry.digest}")
+        out().print(f"{what} {entry.name} version {_version(entry)}: {size}, digest {entry.digest}")
     return OK
 
 
@@ -105,13 +112,22 @@ def _list(arguments: argparse.Namespace) -> int:
         return OK
     rows = [
         (
-            *(entry.name, entry.version, _date(entry.created_unix_ns), f"{entry.cols} x {entry.rows}"),
+            *(
+                entry.name,
+                _version(entry),
+                _date(entry.created_unix_ns),
+                f"{entry.cols} x {entry.rows}",
+            ),
             f"damaged: {entry.damage}" if entry.damage else entry.digest[:12],
         )
         for entry in entries
     ]
     print_table(("map", "version", "made (UTC)", "cells", "digest"), rows)
     return OK
+
+
+def _version(entry: MapEntryInfo) -> str:
+    return f"{entry.version} (unsaved)" if entry.unsaved else f"{entry.version}"
 
 
 def _date(unix_ns: int) -> str:
@@ -186,6 +202,13 @@ VERBS = (
     Verb("map save", "store the map in use", "robotctl map save", _save, _save_arguments, asks_daemon=True),
     Verb(
         "map load", "take a stored map into use", "robotctl map load kitchen", _load, _load_arguments, asks_daemon=True
+    ),
+    Verb(
+        "map discard",
+        "give up what was not saved of the map in use, which then stands in nobody's way",
+        "robotctl map discard",
+        _discard,
+        asks_daemon=True,
     ),
     Verb("map list", "list the stored maps", "robotctl map list", _list, asks_daemon=True),
     Verb(

@@ -67,6 +67,21 @@ def publish_directory(temporary: Path, final: Path, files: Mapping[str, Buffer])
     sync_directory(final.parent)
 
 
+def replace_file(temporary: Path, final: Path, data: Buffer) -> None:
+    """Put another file in the place of one: after a crash at any moment there is the old one or the new, whole.
+
+    ``temporary``, a directory to be, must lie on the same file system; after a crash it may be left behind.
+
+    Raises:
+        OSError: the disk refused.
+    """
+    make_directory(temporary)
+    write_synced(temporary / final.name, data)
+    os.rename(temporary / final.name, final)  # noqa: PTH104  # every change of the disk goes through os, for the fault tests
+    sync_directory(final.parent)
+    remove_leftover(temporary)
+
+
 def withdraw_directory(path: Path, bin_path: Path) -> None:
     """Take a directory out of its place in one step, then remove it bit by bit; raises OSError."""
     os.rename(path, bin_path)  # noqa: PTH104  # every change of the disk goes through os, for the fault tests

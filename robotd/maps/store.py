@@ -1,6 +1,7 @@
 """Maps on disk, as ``root/NAME/VERSION/{manifest.json, cells.bin, map.pgm, map.yaml}``.
 
-A version appears whole or not at all and is never changed afterwards. ``cells.bin`` is the map: the cells row by
+A version appears whole or not at all and is never changed afterwards; one that is kept *unsaved* loses that mark, in
+one step, when it is saved. ``cells.bin`` is the map: the cells row by
 row, 8 bits each; ``map.pgm`` and ``map.yaml`` are exports of it for other programs. Loading checks everything and
 never falls back by itself: a robot that trusts the wrong map is worse off than one that has none.
 """
@@ -8,7 +9,7 @@ never falls back by itself: a robot that trusts the wrong map is worse off than 
 import contextlib
 import logging
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +20,23 @@ from robotd.grid.image import encode_pgm, trinary_from_cells
 from robotd.grid.map_yaml import map_yaml
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.grid.spec import GridSpec
-from robotd.maps.atomic import Buffer, make_directory, publish_directory, remove_leftover, withdraw_directory
+from robotd.maps.atomic import (
+    Buffer,
+    make_directory,
+    publish_directory,
+    remove_leftover,
+    replace_file,
+    withdraw_directory,
+)
 from robotd.maps.lock import sole_writer
 from robotd.maps.manifest import FileSum, Manifest, check_name, decode_manifest
 from robotd.maps.places import check_new_name, directories, leftovers, next_version, temporary_place, versions
 
 MANIFEST, CELLS, IMAGE, YAML = "manifest.json", "cells.bin", "map.pgm", "map.yaml"
+UNSAVED = "unsaved"
+"""Key of the metadata that marks a version nobody asked for."""
+UNSAVED_KEPT = 3
+"""How many such versions of each map are kept; they take no place from the others."""
 _MANIFEST_MAX_BYTES = 1 << 20
 
 _log = logging.getLogger(__name__)
@@ -46,6 +58,11 @@ class MapEntry:
     """Its placement; None if the manifest is damaged."""
     damage: str | None = None
     """Why its manifest cannot be read."""
+
+    @property
+    def is_unsaved(self) -> bool:
+        """Whether nobody asked for it: it was kept so that it is not lost."""
+        return self.metadata.get(UNSAVED) is True
 
 
 class MapStore:
@@ -72,6 +89,8 @@ class MapStore:
     def save(self, name: str, grid: OccupancyGrid, metadata: dict[str, Any], created_unix_ns: int) -> MapEntry:
         """Store a map as a new version, synced to the disk, and drop versions too many.
 
+        What is there already as a version marked :data:`UNSAVED` is not written again: it takes on this metadata.
+
         Raises:
             MapError: the name is no name, another writer would not end, or the disk refused; what was there before
                 is untouched.
@@ -84,7 +103,7 @@ class MapStore:
                 return self._save(name, grid, metadata, created_unix_ns)
 
     def load(self, name: str, version: int | None = None) -> tuple[OccupancyGrid, MapEntry]:
-        """Return a map, checked byte by byte; the newest version if none is given.
+        """Return a map, checked byte by byte; the newest version that somebody saved, or else kept, if none is given.
 
         Raises:
             MapError: there is no such map, or it is damaged; says what is damaged, and which older version is not.
@@ -119,6 +138,9 @@ class MapStore:
         check_new_name(name, self._names())
         make_directory(self._root / name)
         self._remove_leftovers()
+        kept = self._kept_like(name, grid.digest())
+        if kept is not None:
+            return self._marked(kept, metadata, created_unix_ns)
         version = next_version(self._root / name)
         files, manifest = _files_of(name, version, grid, metadata, created_unix_ns)
         path = self._root / name / str(version)
@@ -136,7 +158,7 @@ class MapStore:
         versions = self._versions(name)
         if not versions:
             raise MapError(f"there is no map {name!r}; there is {', '.join(self._names()) or 'none at all'}")
-        wanted = versions[-1] if version is None else version
+        wanted = self._newest(name, versions) if version is None else version
         if wanted not in versions:
             raise MapError(f"map {name} has no version {wanted}; it has {', '.join(map(str, versions))}")
         try:
@@ -156,6 +178,29 @@ class MapStore:
             return _entry_of(_read_manifest(path, name, version), path)
         except MapError as error:
             return _damaged(name, version, path, str(error))
+
+    def _newest(self, name: str, versions: tuple[int, ...]) -> int:
+        saved = (version for version in reversed(versions) if not self._listed(name, version).is_unsaved)
+        return next(saved, versions[-1])
+
+    def _kept_like(self, name: str, digest: str) -> MapEntry | None:
+        """Return the version marked unsaved that is this map, and intact."""
+        for entry in (self._listed(name, version) for version in reversed(self._versions(name))):
+            if entry.is_unsaved and entry.digest == digest:
+                with contextlib.suppress(MapError):
+                    return self._load(name, entry.version)[1]
+        return None
+
+    def _marked(self, kept: MapEntry, metadata: dict[str, Any], created_unix_ns: int) -> MapEntry:
+        """Give a version that is kept other metadata, in one step: saving it makes it one like all others."""
+        if metadata.get(UNSAVED) is True:
+            return kept
+        manifest = replace(
+            _read_manifest(kept.path, kept.name, kept.version), metadata=metadata, created_unix_ns=created_unix_ns
+        )
+        replace_file(self._leftover(kept.name, kept.version), kept.path / MANIFEST, manifest.encode())
+        self._prune(kept.name)
+        return _entry_of(manifest, kept.path)
 
     def _intact(self, name: str, damaged: int) -> str:
         for version in reversed([version for version in self._versions(name) if version != damaged]):
@@ -184,7 +229,10 @@ class MapStore:
             remove_leftover(path)
 
     def _prune(self, name: str) -> None:
-        for version in self._versions(name)[: -self._keep]:
+        entries = [self._listed(name, version) for version in self._versions(name)]
+        saved = [entry.version for entry in entries if not entry.is_unsaved]
+        unsaved = [entry.version for entry in entries if entry.is_unsaved]
+        for version in (*saved[: -self._keep], *unsaved[:-UNSAVED_KEPT]):
             if (name, version) != self._loaded:
                 try:
                     withdraw_directory(self._root / name / str(version), self._leftover(name, version))

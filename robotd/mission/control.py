@@ -23,10 +23,11 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.maps.store import MapEntry, MapStore
 from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MapChanged, Status
+from robotd.mission.keeping import Keeping
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Occasion
 from robotd.mission.noted import NotedMap, NotedRenewal, NotedStart, NotedStop, grid_of, mission_of, noted_as
-from robotd.mission.requests import Mission
+from robotd.mission.requests import MapMission, Mission
 from robotd.mission.supervisor import Supervisor
 from robotd.recording.encoding import encoded
 from robotd.recording.entries import CommandEntry
@@ -55,6 +56,7 @@ class Control:
         self._compute = compute
         self._recordings_dir = recordings_dir
         self.config_text = config_text
+        self.keeping = Keeping(supervisor, store, compute)
 
     @property
     def events(self) -> Broadcast[Event]:
@@ -92,6 +94,19 @@ class Control:
         self._supervisor.require_clearable()
         self._journal.command(now_ns(), "clear", {})
         await self._supervisor.clear()
+
+    async def begin(self, mission: Mission, lease_s: float) -> int:
+        """Start a mission as :meth:`start` does; a new map waits until the one in use is kept.
+
+        Raises:
+            MissionError: as :meth:`start`; or it was stopped while it waited; or see :meth:`Keeping.make_way`.
+        """
+        if isinstance(mission, MapMission):
+            halts = self._supervisor.halts
+            await self.keeping.make_way()
+            if self._supervisor.halts != halts:
+                raise MissionError("stopped while the map in use was being kept")
+        return self.start(mission, lease_s)
 
     def start(self, mission: Mission, lease_s: float) -> int:
         """Start a mission under a lease; see :meth:`Supervisor.start`."""
@@ -131,30 +146,49 @@ class Control:
             MapError: there is none, or it cannot be written; what was there before is untouched.
         """
         place = self._place()
-        metadata = {"generation": place.generation, "map_id": place.map_id}
+        metadata: dict[str, Any] = {"generation": place.generation, "map_id": place.map_id}
         created_ns = now_ns() + wall_offset_ns()
         wanted = name or place.name
         entry = await self._compute.run("save map", self._store.save, wanted, place.grid, metadata, created_ns)
+        place.settled_generation = max(place.settled_generation, metadata["generation"])
         log.info("map %s was saved as version %d of %s (%s)", place.name, entry.version, entry.name, entry.digest)
+        self._changed()
         return entry
+
+    def discard_map(self) -> None:
+        """Give up what nobody saved of the map in use, which stays in use.
+
+        Raises:
+            MapError: there is none.
+            MissionError: a mission is under way.
+        """
+        place = self._place()
+        self._supervisor.require_replaceable_map()
+        log.info("what was not saved of map %s (%d changes) was given up", place.name, place.generation)
+        place.settled_generation = place.generation
+        self._changed()
 
     async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
         """Make a stored map the one in use; ``robot_in_map`` says where the robot stands on it, if known.
 
         Raises:
             MapError: it is missing or damaged; the map in use stays.
-            MissionError: a mission is under way.
+            MissionError: a mission is under way, or the map in use would be lost, see :meth:`Keeping.make_way`.
         """
+        self._supervisor.require_replaceable_map()
         grid, entry = await self._compute.run("read map", self._store.load, name, version)
         pose = None if robot_in_map is None else msgspec.to_builtins(robot_in_map)
         arguments = {"map_id": entry.digest, "name": name, "robot_in_map": pose}
         command = await self._compute.run("pack map", _use_map, arguments, grid)
-        self._use(command, grid, entry.digest)
+        await self.keeping.make_way()  # last of all, so that nothing changes the map meanwhile
+        self._use(command, grid, entry.digest, unsaved=entry.version if entry.is_unsaved else None)
         return entry
 
-    def _use(self, command: CommandEntry, grid: OccupancyGrid, digest: str) -> None:
+    def _use(self, command: CommandEntry, grid: OccupancyGrid, digest: str, *, unsaved: int | None = None) -> None:
         arguments = command.arguments
         place = MapInUse(arguments["map_id"], arguments["name"], grid, None, digest)
+        if unsaved is not None:
+            place.settled_generation, place.kept_version = -1, unsaved
         here = self._supervisor.robot.drive.odometry.latest
         if arguments["robot_in_map"] is not None:
             if here is None:
@@ -174,7 +208,7 @@ class Control:
         file = await self._compute.run("make directory", make_place, self._recordings_dir, name, self._store.root)
         self._journal.start(file)
         log.info("recording to %s", file)
-        self._recording_changed()
+        self._changed()
         return str(file)
 
     async def stop_recording(self) -> str | None:
@@ -183,7 +217,7 @@ class Control:
         if path is None:
             return None
         finish = self._journal.stop()
-        self._recording_changed()
+        self._changed()
         await self._compute.run("end recording", finish)
         log.info("the recording %s is complete", path)
         return str(path)
@@ -218,7 +252,7 @@ class Control:
             raise MapError("no map is in use: make one, or load one")
         return place
 
-    def _recording_changed(self) -> None:
+    def _changed(self) -> None:
         self._supervisor.publish(self._supervisor.status)
 
 

@@ -32,6 +32,10 @@ class Status:
     """File being recorded to."""
     held: str | None = None
     """Why the mission under way is held; None if it is not. It goes on by itself."""
+    map_unsaved: bool = False
+    """Whether the map in use has changes that nobody saved."""
+    map_kept_version: int | None = None
+    """The version as which they are kept nevertheless; None as long as they are in memory alone."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,6 +52,12 @@ class MapInUse:
     latest: NDArray[np.uint8] = field(init=False)
     """``uint8[rows, cols]``: what the latest sweep that met each cell said of it, of those laid in since this map came
     into use; what was seen before is in the grid alone. Never changed, only replaced."""
+    settled_generation: int = 0
+    """The change up to which it is as somebody saved it, or gave it up; -1 if it came into use unsaved."""
+    kept_generation: int = 0
+    """The change up to which it is in the store, though unsaved."""
+    kept_version: int | None = None
+    """Which version of its name that is."""
     is_doubted: bool = False
     """Whether the tie is no longer believed: a robot that looked and did not find itself, or was out of sight of
     its wheels, does not know where it is, though it may still know which way it looks."""
@@ -62,6 +68,21 @@ class MapInUse:
         self.latest = np.zeros(
             self.grid.spec.shape, np.uint8
         )  # NOTHING, and not touched: that would take long on the loop
+
+    @property
+    def is_unsaved(self) -> bool:
+        """Whether it has changes that nobody saved."""
+        return self.generation > self.settled_generation
+
+    @property
+    def is_at_risk(self) -> bool:
+        """Whether it has changes that are in memory alone."""
+        return self.generation > max(self.settled_generation, self.kept_generation)
+
+    @property
+    def kept_as(self) -> int | None:
+        """The version as which all that nobody saved is kept; None if some is not, or everything was saved."""
+        return self.kept_version if self.is_unsaved and not self.is_at_risk else None
 
     def pose_of(self, odometry: Odometry) -> Pose2 | None:
         """Return where odometry places the robot on the map, if anything ties them that is believed."""
@@ -110,3 +131,8 @@ class MapInUse:
     def binary(self) -> BinaryMap:
         """Return the thresholded map."""
         return BinaryMap.from_grid(self.grid)
+
+
+def in_place_of(place: MapInUse | None) -> str:
+    """Say in the log which map another one takes the place of."""
+    return "" if place is None else f", in the place of {place.name} ({place.map_id}, changed {place.generation} times)"

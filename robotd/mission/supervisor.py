@@ -19,12 +19,13 @@ from robotd.core.text import printable
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
 from robotd.localization.estimate import PoseEstimate, PoseState
+from robotd.mission.advice import with_advice
 from robotd.mission.battery import low_battery
 from robotd.mission.context import MissionContext, Publish, Reporter
 from robotd.mission.events import Event, MissionPhase, Status
 from robotd.mission.holding import Holding
 from robotd.mission.lease import Lease
-from robotd.mission.map_in_use import MapInUse
+from robotd.mission.map_in_use import MapInUse, in_place_of
 from robotd.mission.missions import KINDS, carry_out
 from robotd.mission.modes import UNDER_WAY, Mode, Occasion, next_mode
 from robotd.mission.prediction import Predictor, unlocalized
@@ -81,7 +82,8 @@ class Supervisor:
         self._sweeps = 0
         self._lease: Lease | None = None
         self._predictor = Predictor()
-        self._halts = 0
+        self.halts = 0
+        """How often the robot was stopped."""
         self._stopped_by = ""
         """Why the mission that is ending, or ended last, was stopped."""
         self._changes = LogLimit(burst=50)
@@ -109,6 +111,8 @@ class Supervisor:
             map_name=self.place.name if self.place else None,
             recording=self._recording(),
             held=self.holding.hold.cause,
+            map_unsaved=self.place is not None and self.place.is_unsaved,
+            map_kept_version=self.place.kept_as if self.place else None,
         )
 
     @property
@@ -125,7 +129,7 @@ class Supervisor:
         if isinstance(event, PoseEstimate) and event.state is PoseState.LOCALIZED and event.final:
             self._predictor.said = event.best
         self._note(event, self.place, made)
-        self.events.publish(event)
+        self.events.publish(with_advice(event, self.place))
 
     async def run(self) -> None:
         """Watch the devices until cancelled; whatever ends it stops the robot."""
@@ -176,10 +180,10 @@ class Supervisor:
         return devices
 
     async def _arm_devices(self, devices: tuple[Device, ...]) -> None:
-        halts = self._halts
+        halts = self.halts
         for device in devices:
             await device.arm()
-            if self._halts != halts:
+            if self.halts != halts:
                 raise MissionError(f"stopped while arming: {self._reason}")
         if not all(device.status.armed for device in devices):
             raise MissionError("a device was lost while the others were arming")
@@ -257,7 +261,7 @@ class Supervisor:
 
     def adopt(self, place: MapInUse) -> None:
         """Take over a map, from a mission or from the store, and tell everybody."""
-        log.info("map %s (%s) is in use%s", place.name, place.map_id, _in_place_of(self.place))
+        log.info("map %s (%s) is in use%s", place.name, place.map_id, in_place_of(self.place))
         self.place = place
         self._predictor.said = None
         self.publish(place.whole(now_ns()))
@@ -273,7 +277,7 @@ class Supervisor:
     def halt(self, occasion: Occasion, reason: str) -> None:
         """Stop first, then everything else."""
         self.robot.stop_now()
-        self._halts += 1
+        self.halts += 1
         self.holding.end()
         if self._mission is not None and self._mission is not asyncio.current_task():
             if not self._mission.done() and not self._mission.cancelling():
@@ -393,7 +397,3 @@ class Supervisor:
         while True:
             await asyncio.sleep(1.0)
             self.publish(self.status)
-
-
-def _in_place_of(place: MapInUse | None) -> str:
-    return "" if place is None else f", in the place of {place.name} ({place.map_id}, changed {place.generation} times)"

@@ -63,6 +63,8 @@ class MapEntryInfo:
     resolution_m: float
     damage: str | None = None
     """Why this version cannot be read; its other numbers are then zero."""
+    unsaved: bool = False
+    """Whether nobody saved it: it was kept so that it is not lost."""
 
     @classmethod
     def of(cls, entry: MapEntry) -> "MapEntryInfo":
@@ -71,7 +73,9 @@ class MapEntryInfo:
         resolution_m = entry.spec.resolution_m if entry.spec else 0.0
         created_ns = entry.created_unix_ns
         damage = None if entry.damage is None else printable(entry.damage)
-        return cls(entry.name, entry.version, entry.digest, created_ns, rows, cols, resolution_m, damage)
+        return cls(
+            entry.name, entry.version, entry.digest, created_ns, rows, cols, resolution_m, damage, entry.is_unsaved
+        )
 
 
 class PoseArgument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -222,7 +226,7 @@ class Clear(Command[Done], frozen=True):
 class MapStart(Command[MissionStarted], frozen=True):
     """Start making a new map, stop by stop."""
 
-    cmd, result = "map_start", MissionStarted
+    cmd, result, deadline_s = "map_start", MissionStarted, 60.0  # the map in use may have to be kept first
     name: MapName
     stops_m: Stops = ()
     start: PoseArgument = PoseArgument.of(IDENTITY)
@@ -293,6 +297,12 @@ class MapLoad(Command[MapEntryInfo], frozen=True):
     robot_in_map: PoseArgument | None = None
 
 
+class MapDiscard(Command[Done], frozen=True):
+    """Give up what nobody saved of the map in use."""
+
+    cmd, result = "map_discard", Done
+
+
 class ListMaps(Command[MapList], frozen=True):
     """List the stored maps."""
 
@@ -334,7 +344,7 @@ COMMANDS: dict[str, type[Command[Any]]] = {
         *(Hello, GetStatus, GetConfig),
         *(Arm, Disarm, Stop, Clear),
         *(MapStart, Localize, DriveTo, Renew),
-        *(MapSave, MapLoad, ListMaps, MapShow),
+        *(MapSave, MapLoad, MapDiscard, ListMaps, MapShow),
         *(RecordStart, RecordStop),
     )
 }

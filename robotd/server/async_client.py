@@ -207,6 +207,10 @@ class AsyncClient:
         pose = None if robot_in_map is None else api.PoseArgument.of(robot_in_map)
         return await self.call(api.MapLoad(name, version, pose))
 
+    async def map_discard(self) -> None:
+        """Give up what nobody saved of the map in use."""
+        await self.call(api.MapDiscard())
+
     async def map_list(self) -> tuple[MapEntryInfo, ...]:
         """Return the stored maps."""
         return (await self.call(api.ListMaps())).maps

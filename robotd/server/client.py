@@ -199,6 +199,10 @@ class Client:
         pose = None if robot_in_map is None else api.PoseArgument.of(robot_in_map)
         return self.call(api.MapLoad(name, version, pose))
 
+    def map_discard(self) -> None:
+        """Give up what nobody saved of the map in use."""
+        self.call(api.MapDiscard())
+
     def map_list(self) -> tuple[MapEntryInfo, ...]:
         """Return the stored maps."""
         return self.call(api.ListMaps()).maps

@@ -40,8 +40,8 @@ class Control(Protocol):
     async def clear(self) -> None:
         """Acknowledge latched faults; the robot stays disarmed."""
 
-    def start(self, mission: Mission, lease_s: float) -> int:
-        """Start a mission under a lease and return its number.
+    async def begin(self, mission: Mission, lease_s: float) -> int:
+        """Start a mission under a lease and return its number; the map in use is not lost by it.
 
         Raises:
             MissionError: not now; says why.
@@ -68,7 +68,10 @@ class Control(Protocol):
         """Store the map in use, under its own name unless one is given; ``MapError`` if there is none, or no room."""
 
     async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
-        """Take a stored map into use; ``MapError`` if there is none, ``MissionError`` while a mission is under way."""
+        """Take a stored map into use; ``MapError`` if there is none, ``MissionError`` if that cannot be now."""
+
+    def discard_map(self) -> None:
+        """Give up what nobody saved of the map in use; ``MapError`` if there is none, ``MissionError`` not now."""
 
     async def list_maps(self) -> tuple[MapEntry, ...]:
         """Return the stored maps."""

@@ -50,6 +50,7 @@ class Handlers:
             api.Renew: self._renew,
             api.MapSave: self._map_save,
             api.MapLoad: self._map_load,
+            api.MapDiscard: self._map_discard,
             api.ListMaps: self._map_list,
             api.MapShow: self._map_show,
             api.RecordStart: self._record_start,
@@ -98,7 +99,7 @@ class Handlers:
 
     async def _start(self, command: api.StartCommand) -> api.MissionStarted:
         lease_s = self._lease_s if command.lease_s is None else command.lease_s
-        return api.MissionStarted(self._control.start(command.mission, lease_s), lease_s)
+        return api.MissionStarted(await self._control.begin(command.mission, lease_s), lease_s)
 
     async def _renew(self, command: api.Renew) -> api.Renewed:
         await asyncio.sleep(0)  # what was published before the request came has then been noted
@@ -118,6 +119,10 @@ class Handlers:
     async def _map_load(self, command: api.MapLoad) -> api.MapEntryInfo:
         pose = command.robot_in_map.pose if command.robot_in_map else None
         return api.MapEntryInfo.of(await self._control.load_map(command.name, command.version, pose))
+
+    async def _map_discard(self, _: api.MapDiscard) -> Done:
+        self._control.discard_map()
+        return Done()
 
     async def _map_list(self, _: api.ListMaps) -> api.MapList:
         return api.MapList(tuple(api.MapEntryInfo.of(entry) for entry in await self._control.list_maps()))

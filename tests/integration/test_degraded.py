@@ -67,7 +67,10 @@ async def test_a_weak_rangefinder_leaves_a_map_and_it_is_said_how_many_readings_
         "22 of 120 readings failed",
         "24 of 120 readings failed",
     ]
-    assert messages(said)[-1] == ("2 stops swept; stop 0: 22 of 120 readings failed; stop 1: 24 of 120 readings failed")
+    assert messages(said)[-1] == (
+        "2 stops swept; stop 0: 22 of 120 readings failed; stop 1: 24 of 120 readings failed"
+        "; the map office is not saved yet: robotctl map save"
+    )
 
 
 async def test_a_rangefinder_that_fails_too_often_ends_the_mission_not_the_map(live: Live) -> None:

@@ -16,8 +16,13 @@ from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import main, run
 from robotd.config import Config
 from robotd.core.errors import TransportError
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.spec import GridSpec
 from robotd.hardware.transport.transport import Connect, Transport
+from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute
+from robotd.mission.keeping import Keeping
+from robotd.mission.map_in_use import MapInUse
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import read
 from robotd.server.lock import lock_directory
@@ -161,3 +166,22 @@ async def test_an_error_in_the_daemon_itself_stops_the_robot(short: Path, monkey
             await asyncio.wait_for(running, 5.0)
         await asyncio.sleep(0.05)
         assert BoardState.ARMED not in {own_board(robot, name).state for name in robot.boards}
+
+
+@pytest.mark.real_clock
+async def test_a_map_that_nobody_saved_outlives_sigterm(short: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = SimulatedRobot(load_world("office"), seed=1)
+    grid = OccupancyGrid(GridSpec(0.1, 0.0, 0.0, (20, 30)))
+    monkeypatch.setattr(Keeping, "run", lambda _: asyncio.Event().wait())  # the end itself must keep it
+    async with connectors(robot) as connects:
+        captured = Captured(connects, monkeypatch)
+        running = asyncio.create_task(run(config_in(short)))
+        daemon = await captured.composed
+        await until_ready(daemon)
+        place = MapInUse("new-1", "lab", grid, None)
+        place.generation = 2
+        daemon.supervisor.adopt(place)
+        os.kill(os.getpid(), signal.SIGTERM)
+        await asyncio.wait_for(running, 5.0)
+    loaded, entry = MapStore(short / "maps").load("lab")
+    assert (entry.is_unsaved, loaded.digest()) == (True, grid.digest())

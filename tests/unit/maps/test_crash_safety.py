@@ -284,3 +284,26 @@ def test_a_model_of_the_disk_without_syncs_would_lose_the_map(tmp_path: Path, mo
     powerless.write_what_is_left(tmp_path / "after")
     with pytest.raises(MapError, match="is damaged"):
         MapStore(tmp_path / "after").load("lab")
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_while_a_kept_map_is_saved_leaves_it_kept_or_saved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: Any
+) -> None:
+    MapStore(tmp_path / "template").save("lab", grid_of(3), {"unsaved": True}, 1)
+    at = 0
+    while True:
+        at += 1
+        root = tmp_path / f"case-{at}"
+        shutil.copytree(tmp_path / "template", root)
+        faulty = FaultyOs(at, fault, for_ever=False)
+        with monkeypatch.context() as patch:
+            patch.setattr(atomic, "os", faulty)
+            reported = save_and_report(root)
+        grid, entry = MapStore(root).load("lab")
+        np.testing.assert_array_equal(grid.cells, grid_of(3).cells)
+        assert entry.version == 1
+        assert reported != "saved" or not entry.is_unsaved
+        if faulty.calls < at:
+            break
+    assert at > 5, "the faults reached every call"

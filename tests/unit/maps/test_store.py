@@ -14,7 +14,7 @@ from hypothesis.extra.numpy import arrays
 from robotd.core.errors import MapError
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.grid.spec import GridSpec
-from robotd.maps.store import MapStore
+from robotd.maps.store import MapEntry, MapStore
 
 SPEC = GridSpec(0.05, -1.0 / 3.0, 2.5, (6, 8))
 
@@ -206,3 +206,47 @@ def test_a_root_that_is_a_file_is_said(tmp_path: Path) -> None:
     (tmp_path / "root").write_text("")
     with pytest.raises(MapError, match="cannot save map lab"):
         MapStore(tmp_path / "root").save("lab", grid_of(1), {}, 0)
+
+
+def kept(store: MapStore, seed: int) -> MapEntry:
+    return store.save("lab", grid_of(seed), {"unsaved": True}, seed)
+
+
+def test_unsaved_versions_take_no_place_from_saved_ones_and_three_are_kept(tmp_path: Path) -> None:
+    store = store_with(tmp_path, 3, keep=3)
+    for seed in range(4, 10):
+        kept(store, seed)
+    assert [(entry.version, entry.is_unsaved) for entry in store.list()] == [
+        *((version, False) for version in (1, 2, 3)),
+        *((version, True) for version in (7, 8, 9)),
+    ]
+
+
+def test_the_newest_saved_version_is_loaded_before_any_that_nobody_saved(tmp_path: Path) -> None:
+    store = MapStore(tmp_path)
+    only = kept(store, 1)
+    assert store.load("lab")[1] == only
+    store.save("lab", grid_of(2), {}, 2)
+    assert kept(store, 3).version == 3
+    assert store.load("lab")[1].version == 2
+    assert store.load("lab", 3)[0].digest() == grid_of(3).digest()
+
+
+def test_saving_what_is_kept_takes_the_mark_away_and_keeping_it_again_writes_nothing(tmp_path: Path) -> None:
+    store = MapStore(tmp_path)
+    first = kept(store, 1)
+    assert kept(store, 1) == first
+    saved = store.save("lab", grid_of(1), {"stops": 2}, 17)
+    assert (saved.version, saved.is_unsaved, saved.metadata, saved.created_unix_ns) == (1, False, {"stops": 2}, 17)
+    assert store.list() == (saved,)
+    grid, entry = store.load("lab", 1)
+    assert (entry, grid.digest()) == (saved, grid_of(1).digest())
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".lock", "lab"]
+
+
+def test_what_is_kept_but_damaged_is_saved_anew(tmp_path: Path) -> None:
+    store = MapStore(tmp_path)
+    (kept(store, 1).path / "cells.bin").write_bytes(bytes(48))
+    saved = store.save("lab", grid_of(1), {}, 2)
+    assert saved.version == 2
+    assert store.load("lab")[0].digest() == grid_of(1).digest()

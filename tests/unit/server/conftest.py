@@ -90,7 +90,7 @@ class FakeControl:
     async def clear(self) -> None:
         raise RuntimeError("a bug in the daemon")
 
-    def start(self, mission: Mission, lease_s: float) -> int:
+    async def begin(self, mission: Mission, lease_s: float) -> int:
         if not self.armed or self.is_busy:
             raise MissionError("not now")
         self.calls.append("start")
@@ -124,6 +124,9 @@ class FakeControl:
     async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
         self.calls.append(f"load {name} {version} {robot_in_map}")
         return _entry(name, version or 3, "d2", 6)
+
+    def discard_map(self) -> None:
+        self.calls.append("discard")
 
     async def list_maps(self) -> tuple[MapEntry, ...]:
         return (_entry("office", 3, "d2", 6),)

@@ -41,6 +41,7 @@ SAMPLES: list[api.Command[Any]] = [
     api.Renew(17),
     api.MapSave("a"),
     api.MapLoad("a", 3, api.PoseArgument(0.0, 1.0)),
+    api.MapDiscard(),
     api.ListMaps(),
     api.MapShow("a", 1),
     api.RecordStart("somewhere/new.mcap"),

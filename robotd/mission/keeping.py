@@ -1,0 +1,91 @@
+"""Keeps the map in use from getting lost: what nobody saved goes to the store by itself, marked as unsaved.
+
+It writes beside the mission, and nothing that the robot does depends on it: a replay has none of this, and writes
+nothing.
+"""
+
+import asyncio
+import logging
+
+from robotd.core.clock import now_ns, wall_offset_ns
+from robotd.core.errors import MapError, MissionError
+from robotd.maps.store import UNSAVED, MapEntry, MapStore
+from robotd.mission.compute import Compute
+from robotd.mission.map_in_use import MapInUse
+from robotd.mission.modes import UNDER_WAY
+from robotd.mission.supervisor import Supervisor
+
+_LAST_S = 20.0
+"""How long the end of the daemon waits for the disk; the service manager must wait longer (``TimeoutStopSec``)."""
+
+log = logging.getLogger(__name__)
+
+
+class Keeping:
+    """Watches the map in use and keeps it whenever no mission is changing it."""
+
+    def __init__(self, supervisor: Supervisor, store: MapStore, compute: Compute) -> None:
+        self._supervisor = supervisor
+        self._store = store
+        self._compute = compute
+        self._turn = asyncio.Lock()
+        self._tried: tuple[str, int] | None = None
+        """What was tried last: a disk that refused it is not asked again with every event."""
+
+    async def run(self) -> None:
+        """Keep the map at the end of every mission that changed it, until cancelled."""
+        with self._supervisor.events.subscribe() as events:
+            async for _ in events:  # whichever: those missed while the disk was busy are no loss
+                place = self._supervisor.place
+                if place is not None and self._supervisor.mode not in UNDER_WAY and self._tried != _state_of(place):
+                    await self.keep()
+
+    async def keep(self) -> str | None:
+        """Bring what nobody saved of the map in use to the store; return why that cannot be done, None if it was."""
+        async with self._turn:
+            while (place := self._supervisor.place) is not None and place.is_at_risk:
+                self._tried = _state_of(place)
+                try:
+                    entry = await self._kept(place)
+                except MapError as error:
+                    log.error("the unsaved map %s is in memory alone: %s", place.name, error)  # noqa: TRY400  # foreseen
+                    return str(error)
+                log.info("map %s is not saved, but kept as version %d: robotctl map save", entry.name, entry.version)
+                self._supervisor.publish(self._supervisor.status)
+            return None
+
+    async def make_way(self) -> None:
+        """Keep the map in use before another comes in its place.
+
+        Raises:
+            MissionError: it cannot be kept, and nobody gave it up; says what to do.
+        """
+        if self._supervisor.mode in UNDER_WAY:
+            return  # then no other comes in its place
+        why = await self.keep()
+        place = self._supervisor.place
+        if why is not None and place is not None:
+            raise MissionError(
+                f"the unsaved map {place.name} would be lost, for it cannot be kept: {why}; "
+                "make room and try again, or give it up: robotctl map discard"
+            )
+
+    async def keep_last(self) -> None:
+        """Keep the map at the daemon's end, for which the disk has a while."""
+        try:
+            async with asyncio.timeout(_LAST_S):
+                await self.keep()
+        except TimeoutError:
+            log.error("the disk took longer than %g s to keep the unsaved map", _LAST_S)  # noqa: TRY400  # that is all
+
+    async def _kept(self, place: MapInUse) -> MapEntry:
+        generation = place.generation
+        metadata = {"generation": generation, "map_id": place.map_id, UNSAVED: True}
+        created_ns = now_ns() + wall_offset_ns()
+        entry = await self._compute.run("keep map", self._store.save, place.name, place.grid, metadata, created_ns)
+        place.kept_generation, place.kept_version = generation, entry.version
+        return entry
+
+
+def _state_of(place: MapInUse) -> tuple[str, int]:
+    return place.map_id, place.generation

@@ -1,0 +1,209 @@
+"""A map that nobody saved is not lost, whatever comes next; and a replay of all that writes nothing."""
+
+import asyncio
+import contextlib
+import errno
+from collections.abc import AsyncIterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from robotd.app.replaying import replay_recording
+from robotd.config import Config
+from robotd.core.clock import run_virtual
+from robotd.core.errors import MissionError
+from robotd.maps import atomic
+from robotd.maps.store import MapStore
+from robotd.mission.events import MissionPhase, MissionProgress, Status
+from robotd.mission.requests import LocalizeMission, MapMission
+from robotd.mission.stop_and_sweep import SweepSettings
+from robotd.sim.robot import SimulatedRobot
+from robotd.sim.world import load_world
+from tests.integration.conftest import Live
+from tests.integration.living import LEASE_S, Living
+
+QUICK = replace(Config(), sweep=SweepSettings(readings=120))
+
+
+def office() -> SimulatedRobot:
+    return SimulatedRobot(load_world("office"), seed=5)
+
+
+@contextlib.asynccontextmanager
+async def keeping(it: Living) -> AsyncIterator[None]:
+    """Let the daemon keep maps by itself, as the program does."""
+    task = asyncio.create_task(it.daemon.control.keeping.run())
+    await asyncio.sleep(0)
+    try:
+        yield
+    finally:
+        task.cancel()
+        await asyncio.wait((task,))
+
+
+async def kept(it: Living) -> Status:
+    """Return the status that says that the map is kept."""
+    async with asyncio.timeout(5.0):
+        async for event in it.events:
+            if isinstance(event, Status) and event.map_kept_version is not None:
+                return event
+    raise AssertionError("a subscription never ends")
+
+
+def digest_in_use(it: Living) -> str:
+    assert it.daemon.supervisor.place is not None
+    return it.daemon.supervisor.place.grid.digest()
+
+
+def fill(disk: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    disk.setattr(atomic, "write_synced", refuse)
+
+
+async def test_a_finished_map_is_kept_said_and_becomes_a_saved_one(
+    live: Live, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot = office()
+    caplog.set_level("INFO")
+    async with live(robot, QUICK) as it, keeping(it):
+        said = await it.done(MapMission("office", (), robot.start))
+        assert [event.message for event in said if isinstance(event, MissionProgress)][-1] == (
+            "1 stops swept; the map office is not saved yet: robotctl map save"
+        )
+        status = await kept(it)
+        assert (status.map_unsaved, status.map_kept_version) == (True, 1)
+        assert "kept as version 1: robotctl map save" in caplog.text
+        (entry,) = await it.daemon.control.list_maps()
+        assert (entry.is_unsaved, entry.digest) == (True, digest_in_use(it))
+        saved = await it.daemon.control.save_map(None)
+        assert (saved.version, saved.is_unsaved) == (1, False)
+        assert await it.daemon.control.list_maps() == (saved,)
+        status = it.daemon.control.status
+        assert (status.map_unsaved, status.map_kept_version) == (False, None)
+
+
+async def test_mapping_stopped_after_two_of_five_stops_is_kept(live: Live) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it, keeping(it):
+        it.daemon.control.start(MapMission("office", robot.stops_m[:4], robot.start), LEASE_S)
+        sweeps = 0
+        async for event in it.events:
+            sweeps += isinstance(event, MissionProgress) and event.phase is MissionPhase.DRIVING
+            if sweeps == 2:
+                break
+        await it.daemon.control.stop("enough")
+        status = await kept(it)
+        assert status.map_kept_version == 1
+        assert it.daemon.supervisor.place is not None
+        assert it.daemon.supervisor.place.generation == 2
+        grid, entry = MapStore(Path(it.daemon.control._store._root)).load("office")
+        assert (entry.metadata["generation"], grid.digest()) == (2, digest_in_use(it))
+
+
+async def test_a_map_of_which_nothing_was_seen_is_not_kept(live: Live) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it, keeping(it):
+        it.daemon.control.start(MapMission("office", (), robot.start), LEASE_S)
+        await asyncio.sleep(0.1)
+        await it.daemon.control.stop("at once")
+        await asyncio.sleep(2.0)
+        assert not it.daemon.control.status.map_unsaved
+        assert await it.daemon.control.list_maps() == ()
+
+
+async def test_starting_another_map_and_loading_one_keep_it_first(live: Live) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it:  # nobody keeps it before
+        control = it.daemon.control
+        await it.done(MapMission("first", (), robot.start))
+        first = digest_in_use(it)
+        await control.begin(MapMission("second", (), robot.start), LEASE_S)
+        async for event in it.events:
+            if isinstance(event, MissionProgress) and event.is_last:
+                break
+        second = digest_in_use(it)
+        loaded = await control.load_map("first", None, robot.start)
+        assert [(one.name, one.digest, one.is_unsaved) for one in await control.list_maps()] == [
+            ("first", first, True),
+            ("second", second, True),
+        ]
+        assert (loaded.digest, digest_in_use(it)) == (first, first)
+        assert (control.status.map_unsaved, control.status.map_kept_version) == (True, 1)
+        assert not (await control.save_map(None)).is_unsaved
+
+
+async def test_what_the_full_disk_refuses_is_dropped_only_when_it_was_given_up(
+    live: Live, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it, keeping(it):
+        control = it.daemon.control
+        await it.done(MapMission("old", (), robot.start))
+        await control.save_map(None)
+        with pytest.MonkeyPatch.context() as disk:
+            fill(disk)
+            await it.done(MapMission("new", (), robot.start))
+            await asyncio.sleep(5.0)
+            said = [line.getMessage() for line in caplog.records if "memory alone" in line.getMessage()]
+            assert said == ["the unsaved map new is in memory alone: cannot save map new: No space left on device"]
+            new = digest_in_use(it)
+            with pytest.raises(MissionError, match=r"map new would be lost.*No space.*robotctl map discard"):
+                await control.begin(MapMission("newer", (), robot.start), LEASE_S)
+            with pytest.raises(MissionError, match="map new would be lost"):
+                await control.load_map("old", None, None)
+            assert (control.status.map_unsaved, control.status.map_kept_version) == (True, None)
+            assert digest_in_use(it) == new
+            control.discard_map()
+            assert not control.status.map_unsaved
+            await control.load_map("old", None, None)
+        assert [entry.name for entry in await control.list_maps()] == ["old"]
+
+
+async def test_a_stop_while_the_map_is_being_kept_wins_over_the_start(
+    live: Live, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it:
+        control = it.daemon.control
+        await it.done(MapMission("first", (), robot.start))
+        slow, keep = asyncio.Event(), control.keeping.keep
+
+        async def slowly() -> str | None:
+            await slow.wait()
+            return await keep()
+
+        monkeypatch.setattr(control.keeping, "keep", slowly)
+        starting = asyncio.create_task(control.begin(MapMission("second", (), robot.start), LEASE_S))
+        await asyncio.sleep(0.1)
+        await control.stop("a person")
+        await control.arm()
+        slow.set()
+        with pytest.raises(MissionError, match="stopped while"):
+            await starting
+
+
+@pytest.mark.slow
+def test_a_session_in_which_maps_were_kept_replays_bit_for_bit_and_writes_nothing(live: Live, tmp_path: Path) -> None:
+    async def session() -> None:
+        robot = office()
+        async with live(robot, armed=False) as it, keeping(it):
+            control = it.daemon.control
+            await control.start_recording(str(tmp_path / "kept.mcap"))
+            await control.arm()
+            await it.done(MapMission("first", (), robot.start))
+            await kept(it)
+            await it.done(MapMission("second", (), robot.start))
+            await control.load_map("first", None, robot.start)
+            await it.done(LocalizeMission())
+            await control.stop_recording()
+
+    run_virtual(session())
+    files = sorted((tmp_path / "maps").rglob("*"))
+    assert len(files) > 5
+    report = replay_recording(tmp_path / "kept.mcap")
+    assert report.differences == ()
+    assert report.results > 5
+    assert sorted((tmp_path / "maps").rglob("*")) == files
