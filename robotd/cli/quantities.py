@@ -3,6 +3,9 @@
 import math
 from argparse import ArgumentTypeError
 from collections.abc import Callable
+from typing import Any
+
+from robotd.core.bounds import bounds_of
 
 
 def number(text: str) -> float:
@@ -21,12 +24,18 @@ def positive(text: str) -> float:
     return value
 
 
-def share(text: str) -> float:
-    """Return a share of a whole, less than all of it."""
-    value = number(text)
-    if not 0.0 <= value < 1.0:
-        raise ArgumentTypeError(f"must be at least 0 and less than 1, got {text}")
-    return value
+def within(kind: Any, field: str) -> Callable[[str], float]:
+    """Return what reads a number that a field of a settings dataclass may hold."""
+    bounds = bounds_of(kind)[field]
+
+    def bounded(text: str) -> float:
+        value = number(text)
+        complaint = bounds.complaint(value)
+        if complaint is not None:
+            raise ArgumentTypeError(complaint)
+        return value
+
+    return bounded
 
 
 def whole(lowest: int) -> Callable[[str], int]:

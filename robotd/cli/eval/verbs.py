@@ -20,7 +20,7 @@ from robotd.cli.eval.verdict import RIGHT_M, RIGHT_RAD, Case
 from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
 from robotd.cli.outputs import EVAL_REPORT, PICTURES, STANDARD_OUTPUT, output_argument, write
 from robotd.cli.plots import require_plots
-from robotd.cli.quantities import positive, share, whole
+from robotd.cli.quantities import positive, whole, within
 from robotd.cli.terminal import err, print_json
 from robotd.cli.verb import INTERRUPTED, OK, Verb
 from robotd.core.errors import RecordingError
@@ -148,18 +148,22 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--cases", type=whole(1), default=100, metavar="N", help="scans to seek (default: 100)")
     parser.add_argument("--seed", type=whole(0), default=0, metavar="N", help="chooses them (default: 0)")
     parser.add_argument(
-        "--resolution", type=positive, default=0.05, metavar="M", help="side of a cell of the map [m] (default: 0.05)"
+        "--resolution",
+        type=within(GridSettings, "resolution_m"),
+        default=0.05,
+        metavar="M",
+        help="side of a cell of the map [m] (default: 0.05)",
     )
     parser.add_argument(
         "--raise-alpha",
-        type=share,
+        type=within(GridSettings, "raise_alpha"),
         default=0.5,
         metavar="A",
         help="share of the doubt that a hit leaves (default: 0.5)",
     )
     parser.add_argument(
         "--lower-alpha",
-        type=share,
+        type=within(GridSettings, "lower_alpha"),
         default=0.9,
         metavar="A",
         help="share of an obstacle that a beam through it leaves (default: 0.9)",

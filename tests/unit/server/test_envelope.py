@@ -262,3 +262,45 @@ def test_a_result_survives_the_way() -> None:
 def test_what_is_no_reply_is_the_servers_fault(data: bytes) -> None:
     with pytest.raises(RemoteProtocolError):
         decode_reply(data)
+
+
+def numbers_in(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """Return where the numbers are in the arguments of a request."""
+    if isinstance(value, dict):
+        return [place for key, item in value.items() for place in numbers_in(item, (*path, key))]
+    if isinstance(value, list):
+        return [place for index, item in enumerate(value) for place in numbers_in(item, (*path, index))]
+    return [path] if type(value) in {int, float} else []
+
+
+BOUNDED = [
+    *SAMPLES,
+    api.Localize(within=api.AreaArgument(1.0, 2.0, 3.0), heading_rad=0.5, lease_s=1.0),
+    api.DriveTo(1.0, 2.0, lease_s=1.0),
+]
+NUMBERS = [
+    (command.cmd, place, msgpack.unpackb(encode_request(5, command)))
+    for command in BOUNDED
+    for place in numbers_in(msgpack.unpackb(encode_request(5, command))["args"])
+]
+
+
+def test_there_are_numbers_to_try() -> None:
+    assert {cmd for cmd, _, _ in NUMBERS} == {"map_start", "localize", "drive_to", "renew", "map_load", "map_show"}
+
+
+@pytest.mark.parametrize("absurd", [math.nan, math.inf, -math.inf, 1e300, -1e6, 2**63])
+@pytest.mark.parametrize(
+    ("cmd", "place", "fields"), NUMBERS, ids=lambda value: "".join(map(str, value)) if isinstance(value, tuple) else ""
+)
+def test_every_number_of_every_request_has_bounds(cmd: str, place: tuple[Any, ...], fields: Any, absurd: float) -> None:
+    fields = msgpack.unpackb(msgpack.packb(fields))  # a copy to change
+    inner = fields["args"]
+    for step in place[:-1]:
+        inner = inner[step]
+    inner[place[-1]] = absurd
+    answer = decode_request(msgpack.packb(fields), LIMIT)
+    assert isinstance(answer, BadRequest)
+    assert answer.error.code == api.ErrorCode.BAD_ARGUMENT
+    if math.isfinite(absurd):  # what is no number is refused before anybody asks whose argument it is
+        assert answer.error.message.startswith(f"{cmd}: {place[0]}")

@@ -167,3 +167,19 @@ def test_a_log_is_never_overwritten_by_the_report(log_file: Path, capsys: pytest
     assert main(["eval", str(log_file), "--json", str(log_file)]) == 1
     assert "is not a JSON document of eval; it is left as it is" in capsys.readouterr().err
     assert log_file.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "complaint"),
+    [
+        ("--resolution", "50", "--resolution: must be 0.005 to 2 m, got 50; mm? then 0.05"),
+        ("--raise-alpha", "30", "--raise-alpha: must be 0 to 0.99, got 30; %? then 0.3"),
+        ("--lower-alpha", "nan", "--lower-alpha: must be a finite number, got nan"),
+    ],
+)
+def test_what_no_map_can_have_is_wrong_usage(
+    option: str, value: str, complaint: str, log_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(["eval", str(log_file), option, value])
+    assert capsys.readouterr().err.endswith(f"error: argument {complaint}\n")
