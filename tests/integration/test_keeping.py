@@ -191,7 +191,7 @@ def test_a_session_in_which_maps_were_kept_replays_bit_for_bit_and_writes_nothin
         robot = office()
         async with live(robot, armed=False) as it, keeping(it):
             control = it.daemon.control
-            await control.start_recording(str(tmp_path / "kept.mcap"))
+            await control.start_recording(str(tmp_path / "recordings" / "kept.mcap"))
             await control.arm()
             await it.done(MapMission("first", (), robot.start))
             await kept(it)
@@ -203,7 +203,7 @@ def test_a_session_in_which_maps_were_kept_replays_bit_for_bit_and_writes_nothin
     run_virtual(session())
     files = sorted((tmp_path / "maps").rglob("*"))
     assert len(files) > 5
-    report = replay_recording(tmp_path / "kept.mcap")
+    report = replay_recording(tmp_path / "recordings" / "kept.mcap")
     assert report.differences == ()
     assert report.results > 5
     assert sorted((tmp_path / "maps").rglob("*")) == files
