@@ -16,7 +16,7 @@ from robotd.app.ending import Ending
 from robotd.app.stall_guard import guarded
 from robotd.app.stalls import Stalls, keep_going
 from robotd.config import Config, default_path, effective_text, load
-from robotd.core.clock import now_ns, wall_offset_ns
+from robotd.core.clock import now_ns, run_counting, wall_offset_ns
 from robotd.core.errors import ConfigError, RobotdError
 from robotd.core.log import LONGEST_LINE, configure
 from robotd.core.text import printable
@@ -45,7 +45,7 @@ def main(argv: list[str] | None = None) -> int:
     configure(arguments.log_level)
     exit_code = 0
     try:
-        exit_code = asyncio.run(run(config))
+        exit_code = run_counting(run(config))
     except* RobotdError as errors:  # foreseen, so they need no traceback; others end the program with theirs
         for one in _one_by_one(errors):
             log.error("%s", one)  # noqa: TRY400  # as above

@@ -13,8 +13,18 @@ from robotd.hardware.wire.requests import summarize_requests
 from robotd.mission.causes import check_cause
 from robotd.mission.noted import check_noted
 from robotd.recording.comparison import Difference, compare, results_digest
-from robotd.recording.entries import LINE_BROKE, BytesEntry, CauseEntry, CommandEntry, Entry, LineEntry, ResultEntry
-from robotd.recording.moments import run_recorded
+from robotd.recording.entries import (
+    LINE_BROKE,
+    BytesEntry,
+    CauseEntry,
+    CommandEntry,
+    Entry,
+    LineEntry,
+    ResultEntry,
+    TurnEntry,
+)
+from robotd.recording.journal import TURNS_MAX
+from robotd.recording.moments import pass_to, run_recorded
 from robotd.recording.playback import Playback
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import Recording, read
@@ -76,6 +86,8 @@ def check_recorded(recording: Recording) -> None:
                     _check_broken(entry.arguments)
             elif isinstance(entry, BytesEntry | LineEntry):
                 _check_device(entry.device)
+            elif isinstance(entry, TurnEntry):
+                _check_turns(entry.turns)
         except RecordingError as error:
             raise RecordingError(f"entry {number} of the recording: {error}") from error
 
@@ -85,6 +97,11 @@ def _check_broken(arguments: dict[str, Any]) -> None:
     if not isinstance(device, str) or not isinstance(reason, str):
         raise RecordingError(f"cause {LINE_BROKE!r}: expected a device and a reason, got {str(arguments)[:80]}")
     _check_device(device)
+
+
+def _check_turns(turns: int) -> None:
+    if not 0 <= turns <= TURNS_MAX:
+        raise RecordingError(f"expected an input 0 to {TURNS_MAX} turns after another, got {turns}")
 
 
 def _check_device(device: str) -> None:
@@ -119,6 +136,7 @@ async def _play(recording: Recording, journal: PrerollJournal) -> tuple[Entry, .
 
 
 async def _repeat(daemon: Daemon, entry: CommandEntry) -> None:
+    pass_to(entry.time_ns)
     try:
         await daemon.control.repeat(entry.name, entry.arguments)
     except RobotdError:

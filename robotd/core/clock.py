@@ -27,7 +27,50 @@ def wall_offset_ns() -> int:
     return time.time_ns() - time.monotonic_ns()
 
 
-class VirtualClockLoop(asyncio.SelectorEventLoop):
+class TurnCountingLoop(asyncio.SelectorEventLoop):
+    """An event loop that counts its turns, so that a recording can say what happened while nothing was at rest."""
+
+    def __init__(self, selector: "CountingSelector | None" = None) -> None:
+        self._counting = selector or CountingSelector()
+        super().__init__(self._counting)
+        self._counting.follow(lambda: not self._ready)  # type: ignore[attr-defined]  # asyncio's own queue
+
+    @property
+    def turn(self) -> int:
+        """Number of the turn under way."""
+        return self._counting.turn
+
+    @property
+    def rested_at(self) -> int:
+        """Number of the last turn before which there was nothing left to do."""
+        return self._counting.rested_at
+
+
+class CountingSelector(selectors.DefaultSelector):
+    """A selector that counts: a loop asks it once each turn."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.turn = 0
+        self.rested_at = 0
+        self._is_at_rest: Callable[[], bool] = lambda: True
+
+    def follow(self, is_at_rest: Callable[[], bool]) -> None:
+        """Ask this whether the loop has nothing to do; a timer that is due counts as nothing, as in a replay."""
+        self._is_at_rest = is_at_rest
+
+    def _count(self) -> None:
+        self.turn += 1
+        if self._is_at_rest():
+            self.rested_at = self.turn
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        """Count the turn, and wait for descriptors as any selector does."""
+        self._count()
+        return super().select(timeout)
+
+
+class VirtualClockLoop(TurnCountingLoop):
     """An event loop whose clock jumps to the next timer as soon as nothing is ready.
 
     Executor work is done at once, on this thread: it takes no virtual time and keeps its order.
@@ -54,7 +97,7 @@ class VirtualClockLoop(asyncio.SelectorEventLoop):
         return future
 
 
-class _JumpingSelector(selectors.DefaultSelector):
+class _JumpingSelector(CountingSelector):
     """A selector that turns waiting into a jump of the clock."""
 
     def __init__(self, jump: Callable[[float], None]) -> None:
@@ -62,15 +105,22 @@ class _JumpingSelector(selectors.DefaultSelector):
         self._jump = jump
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        self._count()
         if timeout is None:
-            ready = super().select(_STUCK_AFTER_S)
+            ready = selectors.DefaultSelector.select(self, _STUCK_AFTER_S)
             if not ready:
                 raise RuntimeError("virtual time is stuck: no timer is set and no descriptor is ready")
             return ready
-        ready = super().select(0)
+        ready = selectors.DefaultSelector.select(self, 0)
         if not ready and timeout > 0:
             self._jump(timeout)
         return ready
+
+
+def run_counting(main: Coroutine[Any, Any, T]) -> T:
+    """Run a coroutine to its end in real time, on a loop that counts its turns."""
+    with asyncio.Runner(loop_factory=TurnCountingLoop) as runner:
+        return runner.run(main)
 
 
 def run_virtual(main: Coroutine[Any, Any, T], *, start_ns: int = 0) -> T:

@@ -59,8 +59,15 @@ class NotedCompute:
         self._done: Counter[str] = Counter()
 
     async def run(self, name: str, function: Callable[..., T], *args: object) -> T:
-        """Return ``function(*args)`` and note that it is done."""
-        result = await self._inner.run(name, function, *args)
+        """Return ``function(*args)``, or raise what it raises, and note that it is done."""
+        try:
+            result = await self._inner.run(name, function, *args)
+        except Exception:  # that it failed is taken up too, and leads to something
+            self._note_next(name)
+            raise
+        self._note_next(name)
+        return result
+
+    def _note_next(self, name: str) -> None:
         self._note(name, self._done[name])
         self._done[name] += 1
-        return result

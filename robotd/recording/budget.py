@@ -8,7 +8,7 @@ needs it.
 import enum
 from collections import Counter
 
-from robotd.recording.entries import BytesEntry, CauseEntry, CommandEntry, Entry, LineEntry
+from robotd.recording.entries import BytesEntry, CauseEntry, CommandEntry, Entry, LineEntry, TurnEntry
 
 
 class Source(enum.StrEnum):
@@ -23,7 +23,7 @@ class Source(enum.StrEnum):
 def source_of(entry: Entry) -> Source:
     """Return where an entry comes from."""
     match entry:
-        case BytesEntry() | LineEntry() | CauseEntry():
+        case BytesEntry() | LineEntry() | CauseEntry() | TurnEntry():
             return Source.LINES
         case CommandEntry():
             return Source.MAPS if "grid" in entry.arguments else Source.REQUESTS

@@ -22,20 +22,24 @@ from robotd.recording.entries import (
     LineEntry,
     RecordingHeader,
     ResultEntry,
+    TurnEntry,
 )
 
-K = TypeVar("K", bound=RecordingHeader | LineEntry | CommandEntry | ComputedEntry | CauseEntry | ResultEntry)
+K = TypeVar(
+    "K", bound=RecordingHeader | LineEntry | CommandEntry | ComputedEntry | CauseEntry | ResultEntry | TurnEntry
+)
 _TIME_MAX_NS = 2**63 - 1
 """What a clock of nanoseconds can show."""
 PROFILE = "robotd"
 HEADER_TOPIC = "header"
 _SERIAL = "serial"
 _LINE = "line"
-_JSON_ENTRIES: dict[str, type[CommandEntry | ComputedEntry | CauseEntry | ResultEntry]] = {
+_JSON_ENTRIES: dict[str, type[CommandEntry | ComputedEntry | CauseEntry | ResultEntry | TurnEntry]] = {
     "command": CommandEntry,
     "computed": ComputedEntry,
     "cause": CauseEntry,
     "result": ResultEntry,
+    "turn": TurnEntry,
 }
 _NOT_SENT = {"time_ns", "encoded"}
 """The message has a time of its own, and does not hold itself."""
@@ -89,7 +93,7 @@ def encoded(entry: E) -> E:
     return entry
 
 
-def _message_of(entry: CommandEntry | ComputedEntry | CauseEntry | ResultEntry) -> bytes:
+def _message_of(entry: CommandEntry | ComputedEntry | CauseEntry | ResultEntry | TurnEntry) -> bytes:
     made: bytes | None = getattr(entry, "encoded", None)
     names = (field.name for field in fields(entry) if field.name not in _NOT_SENT)
     return _dumps({name: getattr(entry, name) for name in names}) if made is None else made

@@ -94,4 +94,26 @@ class ResultEntry:
     """As of :class:`CommandEntry`."""
 
 
-Entry = BytesEntry | LineEntry | CommandEntry | ComputedEntry | CauseEntry | ResultEntry
+@dataclass(frozen=True, slots=True)
+class TurnEntry:
+    """The next input came before the effects of the one before it were over, so many turns of the loop after it.
+
+    An input without this came when the loop was at rest.
+    """
+
+    time_ns: int
+    turns: int
+
+
+Entry = BytesEntry | LineEntry | CommandEntry | ComputedEntry | CauseEntry | ResultEntry | TurnEntry
+
+
+def is_input(entry: Entry) -> bool:
+    """Whether an entry came to the daemon from outside its loop, rather than from its own doing."""
+    match entry:
+        case BytesEntry():
+            return entry.direction is Direction.FROM_BOARD
+        case LineEntry():
+            return entry.up  # that it is down follows from a failure, or from what the daemon did
+        case _:
+            return isinstance(entry, CommandEntry | ComputedEntry | CauseEntry)

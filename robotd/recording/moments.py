@@ -41,6 +41,10 @@ class RecordedTimeLoop(VirtualClockLoop):
         """
         self._next_ns, self._play = next_ns, play
 
+    def pass_to(self, time_ns: int) -> None:
+        """Let the time of a moment come that is played while the effects of another are not over."""
+        self._now_ns = max(self._now_ns, time_ns)
+
     def call_at(  # type: ignore[override]  # typeshed has the loop's TypeVarTuple here
         self, when: float, callback: Callable[..., object], *args: Any, context: Context | None = None
     ) -> asyncio.TimerHandle:
@@ -76,6 +80,13 @@ def _nothing() -> None:
 def _fire(timer: asyncio.TimerHandle) -> None:
     if not timer.cancelled():
         timer._run()  # noqa: SLF001  # a loop runs its handles; asyncio's own does the same
+
+
+def pass_to(time_ns: int) -> None:
+    """Let a recorded time come, where it takes effect; does nothing on a loop that plays no recording."""
+    loop = asyncio.get_running_loop()
+    if isinstance(loop, RecordedTimeLoop):
+        loop.pass_to(time_ns)
 
 
 def run_recorded(main: Coroutine[Any, Any, T], *, start_ns: int) -> T:

@@ -21,8 +21,18 @@ from typing import TypeVar
 
 from robotd.core.errors import TransportError
 from robotd.hardware.link.tap import Direction
-from robotd.recording.entries import LINE_BROKE, BytesEntry, CauseEntry, CommandEntry, ComputedEntry, Entry, LineEntry
-from robotd.recording.moments import RecordedTimeLoop
+from robotd.recording.entries import (
+    LINE_BROKE,
+    BytesEntry,
+    CauseEntry,
+    CommandEntry,
+    ComputedEntry,
+    Entry,
+    LineEntry,
+    TurnEntry,
+    is_input,
+)
+from robotd.recording.moments import RecordedTimeLoop, pass_to
 from robotd.recording.reader import Recording
 
 SETTLE_S = 0.001
@@ -81,27 +91,51 @@ class Playback:
         return self._entries[self._at].time_ns if self._at < len(self._entries) else None
 
     def _play_next(self) -> None:
+        entry = self._entries[self._at]
         self._at += 1
-        self._play(self._entries[self._at - 1])
+        self._play(entry)
         if self._at == len(self._entries):
             self._over.set()
+        elif is_input(entry):
+            self._join()
+
+    def _join(self) -> None:
+        """Let the next input come in its turn if it came before the effects of this one were over."""
+        for at in range(self._at, len(self._entries) - 1):
+            entry = self._entries[at]
+            if isinstance(entry, TurnEntry):
+                self._play_after(entry.turns, at + 1)
+            if isinstance(entry, TurnEntry) or is_input(entry):
+                return
+
+    def _play_after(self, turns: int, last: int) -> None:
+        """Play up to an entry, so many turns of the loop from now."""
+        if turns > 0:
+            asyncio.get_running_loop().call_soon(self._play_after, turns - 1, last)
+            return
+        while self._at <= last:
+            self._play_next()
 
     def _play(self, entry: Entry) -> None:
         match entry:
             case BytesEntry(direction=Direction.FROM_BOARD):
-                self.line(entry.device).deliver(entry.data)
+                self.line(entry.device).deliver(entry)
             case LineEntry():
-                self.line(entry.device).change(up=entry.up)
+                self.line(entry.device).change(entry)
             case CommandEntry():
                 self._carry_out(entry)
             case CauseEntry(name=name) if name == LINE_BROKE:
                 self.line(entry.arguments["device"]).break_down(entry.arguments["reason"])
             case CauseEntry():
-                self._take_up(entry)
+                asyncio.get_running_loop().call_soon(self._take_up_now, entry)  # bytes need a turn to be read, too
             case ComputedEntry():
                 self.compute.release(entry)
             case _:
                 """What the daemon wrote, and the results that it came to, are for the comparison."""
+
+    def _take_up_now(self, entry: CauseEntry) -> None:
+        pass_to(entry.time_ns)
+        self._take_up(entry)
 
 
 class ReplayLine:
@@ -122,23 +156,26 @@ class ReplayLine:
             self._current.taken = True
             return self._current
         self._waiting = asyncio.get_running_loop().create_future()
-        return await self._waiting
+        transport = await self._waiting
+        pass_to(transport.opened_ns)
+        return transport
 
-    def deliver(self, data: bytes) -> None:
+    def deliver(self, entry: BytesEntry) -> None:
         """Let bytes arrive from the board; on a line that is down they are lost."""
-        if self._current is not None and data:
-            self._current.deliver(data)
+        if self._current is not None and entry.data:
+            self._current.deliver(entry)
 
     def break_down(self, reason: str) -> None:
         """Let the next read fail as it did."""
         if self._current is not None:
             self._current.lose(reason)
 
-    def change(self, *, up: bool) -> None:
-        """Open the line, or lose it."""
+    def change(self, entry: LineEntry) -> None:
+        """Open the line, or lose it: the latter a turn later, for the daemon may give it up itself by then."""
         if self._current is not None:
-            self._current.lose(f"{self._current.name}: the line was lost in the recording")
-        self._current = ReplayTransport(f"replay of {self._device}") if up else None
+            reason = f"{self._current.name}: the line was lost in the recording"
+            asyncio.get_running_loop().call_soon(self._current.lose, reason)
+        self._current = ReplayTransport(f"replay of {self._device}", entry.time_ns) if entry.up else None
         if self._current is not None and self._waiting is not None and not self._waiting.done():
             self._current.taken = True
             self._waiting.set_result(self._current)
@@ -150,9 +187,10 @@ class ReplayTransport:
     Chunks arrive exactly as they were read when they were recorded.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, opened_ns: int) -> None:
         self._name = name
-        self._chunks: deque[bytes] = deque()
+        self.opened_ns = opened_ns
+        self._chunks: deque[BytesEntry] = deque()
         self._changed = asyncio.Event()
         self._lost: str | None = None
         self.taken = False
@@ -169,7 +207,9 @@ class ReplayTransport:
             self._check()
             self._changed.clear()
             await self._changed.wait()
-        return self._chunks.popleft()
+        entry = self._chunks.popleft()
+        pass_to(entry.time_ns)
+        return entry.data
 
     def write(self, data: bytes) -> None:
         """Take bytes for a board that is not there; TransportError if the line is gone."""
@@ -187,10 +227,10 @@ class ReplayTransport:
         self._chunks.clear()
         self.lose(f"{self._name}: closed")
 
-    def deliver(self, data: bytes) -> None:
+    def deliver(self, entry: BytesEntry) -> None:
         """Let a chunk arrive."""
         if self._lost is None:
-            self._chunks.append(data)
+            self._chunks.append(entry)
             self._changed.set()
 
     def lose(self, reason: str) -> None:
@@ -210,22 +250,37 @@ class RecordedCompute:
     """
 
     def __init__(self, recording: Recording) -> None:
-        jobs = [(entry.name, entry.index) for entry in recording.entries if isinstance(entry, ComputedEntry)]
+        jobs = {(e.name, e.index): e.time_ns for e in recording.entries if isinstance(e, ComputedEntry)}
         self._names = {name for name, _ in jobs}
+        self._times_ns = jobs
+        self._notes_failures = recording.notes_causes
         self._released = {job: asyncio.Event() for job in jobs}
         self._ended = asyncio.Event()
         self._done: Counter[str] = Counter()
         self._turns: defaultdict[str, asyncio.Lock] = defaultdict(asyncio.Lock)
 
     async def run(self, name: str, function: Callable[..., T], *args: object) -> T:
-        """Return ``function(*args)``, no earlier than in the recording; jobs of one name keep their order."""
-        result = function(*args)
-        if name in _ADDED_JOBS - self._names:
-            return result
-        async with self._turns[name]:
-            await self._released.get((name, self._done[name]), self._ended).wait()
-            self._done[name] += 1
+        """Return or raise what ``function(*args)`` does, no earlier than in the recording.
+
+        Jobs of one name keep their order.
+        """
+        try:
+            result = function(*args)
+        except Exception:
+            if self._notes_failures:
+                await self._wait(name)
+            raise
+        await self._wait(name)
         return result
+
+    async def _wait(self, name: str) -> None:
+        if name in _ADDED_JOBS - self._names:
+            return
+        async with self._turns[name]:
+            job = name, self._done[name]
+            await self._released.get(job, self._ended).wait()
+            pass_to(self._times_ns.get(job, 0))
+            self._done[name] += 1
 
     def release(self, entry: ComputedEntry) -> None:
         """Let a job be handed back."""

@@ -1,6 +1,7 @@
 """One random session: a client's commands, cables that fail, clients that die, stalls; recorded, and replayed."""
 
 import asyncio
+import contextlib
 import random
 import tempfile
 from collections.abc import Callable, Coroutine
@@ -12,6 +13,7 @@ from robotd.app.replaying import ReplayReport, replay_recording
 from robotd.app.stall_guard import STALL_S
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.errors import RobotdError
+from robotd.mission.events import MissionProgress
 from robotd.mission.hold import Stall
 from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
@@ -24,6 +26,8 @@ _LEASE_S = 0.5
 _PAUSE_MAX_S = 2.0
 _FEW_MS = 0.003
 _FAULT_MAX_S = 3.0
+_MAPS_FIRST = 0.5
+"""Share of the sessions that begin with a map."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +67,8 @@ class _Session:
 
     async def run(self, directory: Path, actions: int) -> None:
         async with bench(directory, Dialects()) as it:
+            if self._rng.random() < _MAPS_FIRST:
+                await self._make_a_map(it)
             for _ in range(actions):
                 await asyncio.sleep(
                     self._rng.choice((self._rng.uniform(0, _FEW_MS), self._rng.uniform(0, _PAUSE_MAX_S)))
@@ -94,6 +100,9 @@ class _Session:
             "stall": lambda: self._stall(it),
             "fault": lambda: self._fault(it),
             "fault and stop": lambda: self._fault_and_stop(it),
+            "arm and stop": lambda: self._arm_and_stop(it),
+            "stop with bytes": lambda: self._with_bytes(it, lambda: it.daemon.control.stop("enough")),
+            "arm with bytes": lambda: self._with_bytes(it, it.daemon.control.arm),
         }
 
     async def _bring_back(self, it: Bench) -> None:
@@ -119,6 +128,32 @@ class _Session:
         it.cables[device].set_fault(FAULTS[fault](self._rng))
         await asyncio.sleep(self._rng.uniform(0, _FAULT_MAX_S))
         it.cables[device].mend()
+
+    async def _arm_and_stop(self, it: Bench) -> None:
+        """Let a stop come some turns of the loop after arming began, before or after it is answered."""
+        arming = asyncio.create_task(self._bring_back(it))
+        await self._some_turns(30)
+        await it.daemon.control.stop("enough")
+        await arming
+
+    async def _with_bytes(self, it: Bench, ask: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        """Let a request come within some turns of the loop of a line's bytes."""
+        with it.daemon.robot.drive.odometry.subscribe() as odometry, contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(_PAUSE_MAX_S):  # its line may be down
+                await odometry.get()
+        await self._some_turns(5)
+        await ask()
+
+    async def _some_turns(self, most: int) -> None:
+        for _ in range(self._rng.randrange(most)):
+            await asyncio.sleep(0)
+
+    async def _make_a_map(self, it: Bench) -> None:
+        """Make a map of one stop, so that localizing and driving are not merely refused."""
+        self.done.append("make a map")
+        await it.daemon.control.arm()
+        it.start(MapMission("first", (), it.robot.start, Legs.STRAIGHT))
+        await it.until(lambda event: isinstance(event, MissionProgress) and event.is_last)
 
     async def _fault_and_stop(self, it: Bench) -> None:
         """Let a line be lost and a stop come within two milliseconds, in either order."""

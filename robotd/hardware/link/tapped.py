@@ -58,6 +58,10 @@ class TappedLine:
         """Queue bytes in place of everything not yet written; TransportError when the line is gone."""
         try:
             self._transport.write_urgent(data)
+        except TransportError as error:
+            if self._is_open:  # a stop may come after the line was given up
+                self._tap.line_broke(self._device, now_ns(), str(error))
+            raise
         finally:  # as above
             self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), data)
 

@@ -51,7 +51,7 @@ async def test_at_the_end_the_job_under_way_is_waited_for_and_those_behind_it_ar
     assert jobs[1].cancelled()
 
 
-async def test_what_was_handed_back_is_noted_by_name_and_number_and_what_was_not_is_not() -> None:
+async def test_what_was_handed_back_is_noted_by_name_and_number_and_what_failed_too() -> None:
     noted: list[tuple[str, int]] = []
     inner = ThreadCompute()
     compute = NotedCompute(inner, lambda name, index: noted.append((name, index)))
@@ -61,7 +61,7 @@ async def test_what_was_handed_back_is_noted_by_name_and_number_and_what_was_not
         await compute.run("narrow", lambda: 1 // 0)
     await compute.run("narrow", lambda: None)
     inner.close()
-    assert noted == [("narrow", 0), ("insert", 0), ("narrow", 1), ("narrow", 2)]
+    assert noted == [("narrow", 0), ("insert", 0), ("narrow", 1), ("narrow", 2), ("narrow", 3)]
 
 
 @pytest.mark.real_clock
