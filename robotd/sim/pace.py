@@ -18,6 +18,8 @@ LATE_NS = 50_000_000
 BEAT_NS = 20_000_000
 CATCHING_UP = 1.5
 """So many simulated seconds pass in one while time is made up for; set-points still last until they are renewed."""
+MOST_BEHIND_NS = 500_000_000
+"""No further: a daemon takes a clock that falls behind by more for a liar."""
 SLOWED = "this machine is busy: simulated time is slowed"
 
 
@@ -85,7 +87,7 @@ class SlowedTime:
         return left_ns / (CATCHING_UP if self._behind_ns else 1.0) / NS_PER_S
 
     def _lose(self, lost_ns: int) -> None:
-        self._behind_ns += lost_ns
+        self._behind_ns = min(self._behind_ns + lost_ns, MOST_BEHIND_NS)
         if not self._has_said:
             self._has_said = True
             self._say(SLOWED)

@@ -16,7 +16,7 @@ from robotd.sim import pace
 from robotd.sim.board_clock import BoardClock
 from robotd.sim.boards.drive import DriveBoard
 from robotd.sim.host import serve
-from robotd.sim.pace import BEAT_NS, CATCHING_UP, LATE_NS, SLOWED, SlowedTime
+from robotd.sim.pace import BEAT_NS, CATCHING_UP, LATE_NS, MOST_BEHIND_NS, SLOWED, SlowedTime
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
 
@@ -65,11 +65,11 @@ def test_time_lost_stands_still_and_is_made_up_for(host: Host, said: list[str]) 
     host.time_ns += BEAT_NS
     before_ns = time.now_ns()
     _beat(time)
-    host.time_ns += BEAT_NS + 2 * NS_PER_S
+    host.time_ns += BEAT_NS + MOST_BEHIND_NS
     assert time.now_ns() == before_ns + BEAT_NS
     assert time.wait_s(before_ns + BEAT_NS + NS_PER_S) == pytest.approx(1.0 / CATCHING_UP)
     seen_ns = [time.now_ns()]
-    for _ in range(round(2 * NS_PER_S / BEAT_NS / (CATCHING_UP - 1.0))):
+    for _ in range(round(MOST_BEHIND_NS / BEAT_NS / (CATCHING_UP - 1.0))):
         assert seen_ns[-1] < host.time_ns
         _beat(time)
         host.time_ns += BEAT_NS
@@ -78,6 +78,12 @@ def test_time_lost_stands_still_and_is_made_up_for(host: Host, said: list[str]) 
     assert steps_ns == {round(CATCHING_UP * BEAT_NS)}
     assert seen_ns[-1] == host.time_ns
     assert said == [SLOWED]
+
+
+def test_time_falls_no_further_behind_than_a_daemon_believes(host: Host, said: list[str]) -> None:
+    time = SlowedTime(said.append)
+    host.time_ns += 2 * NS_PER_S
+    assert time.now_ns() == host.time_ns - MOST_BEHIND_NS
 
 
 def test_time_never_runs_backwards_however_it_is_asked(host: Host, said: list[str]) -> None:
