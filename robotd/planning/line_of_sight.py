@@ -16,6 +16,8 @@ Position = tuple[float, float]
 
 _ON_THE_EDGE = 1e-9
 """A leg that only touches an edge or a corner from outside is in the cells on its own side of it."""
+_NO_LENGTH = 1e-12
+"""A leg that goes no farther along an axis, in cells, does not go along it at all."""
 
 
 def centre_of(cell: Cell) -> Position:
@@ -64,7 +66,7 @@ def distances_of_leg(cells: NDArray[np.intp], one: Position, other: Position) ->
     """Return how near a straight leg comes to each of some cells, their squares included, ``float64[n]`` in cells."""
     low = cells.astype(np.float64)
     begin, end = np.array(one), np.array(other)
-    along = end - begin
+    along = np.where(np.abs(end - begin) < _NO_LENGTH, 0.0, end - begin)  # dividing by less would overflow
     found = np.minimum(_from_point(low, begin), _from_point(low, end))
     square = float(along @ along)
     if square == 0.0:

@@ -4,7 +4,7 @@ import itertools
 import math
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
@@ -52,6 +52,7 @@ def test_in_sight_means_that_no_cell_that_the_leg_runs_through_is_taken(
 
 @settings(max_examples=100)
 @given(cells, st.one_of(positions, on_quarters), st.one_of(positions, on_quarters))
+@example((0, 0), (1.0, 0.0), (1.0, 5e-324))
 def test_how_near_a_leg_comes_to_a_cell(cell: tuple[int, int], one: Position, other: Position) -> None:
     found = float(distances_of_leg(np.array([cell]), one, other)[0])
     assert found <= slow_distance(cell, one, other) + 1e-9
