@@ -18,8 +18,8 @@ LATE_NS = 50_000_000
 BEAT_NS = 20_000_000
 CATCHING_UP = 1.5
 """So many simulated seconds pass in one while time is made up for; set-points still last until they are renewed."""
-MOST_BEHIND_NS = 500_000_000
-"""No further: a daemon takes a clock that falls behind by more for a liar."""
+MOST_BEHIND_NS = 300_000_000
+"""No further: a daemon takes a clock that stays half a second behind for a liar."""
 SLOWED = "this machine is busy: simulated time is slowed"
 
 
