@@ -13,6 +13,7 @@ from robotd.grid.occupancy import MAX_SIDE_CELLS
 from robotd.grid.spec import GridSpec
 
 SCHEMA = 1
+_FILE_MAX_BYTES = MAX_SIDE_CELLS**2 + 1024  # an image has a few words before its cells
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
@@ -110,8 +111,8 @@ def _check_sizes(manifest: Manifest) -> None:
     check_name(manifest.name)
     if max(manifest.spec.shape) > MAX_SIDE_CELLS:
         raise MapError(f"manifest.json makes no sense: more than {MAX_SIDE_CELLS} cells along a side")
-    if not all(0 <= one.size_bytes <= MAX_SIDE_CELLS**2 for one in manifest.files.values()):
-        raise MapError(f"manifest.json makes no sense: expected files of 0 to {MAX_SIDE_CELLS**2} bytes")
+    if not all(0 <= one.size_bytes <= _FILE_MAX_BYTES for one in manifest.files.values()):
+        raise MapError(f"manifest.json makes no sense: expected files of 0 to {_FILE_MAX_BYTES} bytes")
 
 
 def _sum(content: dict[str, Any]) -> str:

@@ -220,7 +220,7 @@ class AsyncClient:
         return unpack_map(await self.call(api.MapShow(name, version)))
 
     async def record_start(self, path: str | None = None) -> str | None:
-        """Start recording and return where."""
+        """Start recording, to a new file below the daemon's ``recording.dir``, and return where."""
         return (await self.call(api.RecordStart(path))).path
 
     async def record_stop(self) -> str | None:

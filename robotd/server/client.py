@@ -212,7 +212,7 @@ class Client:
         return unpack_map(self.call(api.MapShow(name, version)))
 
     def record_start(self, path: str | None = None) -> str | None:
-        """Start recording and return where."""
+        """Start recording, to a new file below the daemon's ``recording.dir``, and return where."""
         return self.call(api.RecordStart(path)).path
 
     def record_stop(self) -> str | None:

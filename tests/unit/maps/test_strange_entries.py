@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robotd.core.errors import MapError
-from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.occupancy import MAX_SIDE_CELLS, OccupancyGrid
 from robotd.grid.spec import GridSpec
 from robotd.maps.atomic import Buffer, publish_directory
 from robotd.maps.store import MapStore
@@ -162,6 +162,13 @@ def test_a_twin_that_is_there_already_goes_on(root: Path) -> None:
 def test_names_that_a_file_system_may_change_are_refused(root: Path, name: str) -> None:
     with pytest.raises(MapError, match="cannot name a"):
         MapStore(root).save(name, grid_of(3), {}, 3)
+
+
+@pytest.mark.slow
+def test_the_largest_map_is_found_again(root: Path) -> None:
+    spec = GridSpec(0.05, 0.0, 0.0, (MAX_SIDE_CELLS, MAX_SIDE_CELLS))
+    saved = MapStore(root).save("hall", OccupancyGrid(spec, np.full(spec.shape, 128, np.uint8)), {}, 1)
+    assert MapStore(root).load("hall")[1] == saved
 
 
 def test_the_longest_name_fits(root: Path) -> None:
