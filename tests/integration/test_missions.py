@@ -79,7 +79,7 @@ async def test_requests_are_noted_so_that_they_can_be_asked_again(live: Live) ->
         await control.repeat(noted.name, noted.arguments)
         assert last_command(it).arguments == noted.arguments
         assert msgspec.convert(noted.arguments["mission"], MapMission) == mission
-        with pytest.raises(MissionError, match="unknown request 'fly'"):
+        with pytest.raises(RecordingError, match="unknown request 'fly'"):
             await control.repeat("fly", {})
 
 
