@@ -31,6 +31,9 @@ class GridSpec:
             raise ValueError("origin must be finite")
         if min(self.shape) < 1:
             raise ValueError(f"shape must be at least 1 x 1, got {self.shape}")
+        # Whole numbers and NumPy's are written otherwise than what comes back from disk: one map had two digests.
+        for name in ("resolution_m", "origin_x_m", "origin_y_m"):
+            object.__setattr__(self, name, float(getattr(self, name)))
 
     @property
     def rows(self) -> int:

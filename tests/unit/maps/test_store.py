@@ -250,3 +250,12 @@ def test_what_is_kept_but_damaged_is_saved_anew(tmp_path: Path) -> None:
     saved = store.save("lab", grid_of(1), {}, 2)
     assert saved.version == 2
     assert store.load("lab")[0].digest() == grid_of(1).digest()
+
+
+@pytest.mark.parametrize("origin", [0, np.float64(-3.0), True], ids=repr)
+def test_a_grid_placed_by_whole_numbers_or_numpys_comes_back(tmp_path: Path, origin: float) -> None:
+    store = MapStore(tmp_path, keep=10)
+    grid = OccupancyGrid(GridSpec(1, origin, origin, (4, 5)))
+    saved = store.save("lab", grid, {}, 1)
+    loaded, entry = store.load("lab")
+    assert (entry.version, loaded.digest()) == (saved.version, grid.digest())
