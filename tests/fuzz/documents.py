@@ -76,7 +76,7 @@ def _configured(data: bytes) -> object:
 
 
 def _configurations() -> list[bytes]:
-    return [b"", b'[drive]\nport = "/dev/ttyS0"\ncounts_per_m = 3.5\n', effective_text(Config()).encode()]
+    return [b"", b'[drive]\nport = "/dev/ttyS0"\ncounts_per_m = 35000\n', effective_text(Config()).encode()]
 
 
 def _recordings() -> list[bytes]:
