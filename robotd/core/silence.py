@@ -18,27 +18,29 @@ class Silence:
         self._loop = asyncio.get_running_loop()
         self._timer: asyncio.TimerHandle | None = None
         if begins:
-            self._set(lasts_s)
+            self._set(self._loop.time() + lasts_s)
 
     def renew(self) -> None:
-        """Start the time anew."""
+        """Start the time again."""
         self.end()
-        self._set(self._lasts_s)
+        self._set(self._loop.time() + self._lasts_s)
 
     def end(self) -> None:
         """Call nobody any more."""
         if self._timer is not None:
             self._timer.cancel()
 
-    def _set(self, seconds: float) -> None:
+    def _set(self, due_s: float) -> None:
         self._missed_s = self._attention.missed_s
-        self._timer = self._loop.call_later(seconds, self._due)
+        self._due_s = due_s
+        self._timer = self._loop.call_at(due_s, self._due)
 
     def _due(self) -> None:
         self._attention.look()
         missed_s = self._attention.missed_s - self._missed_s
         if missed_s > 0.0:
-            self._set(missed_s)  # what came meanwhile waits to be read
+            # What came meanwhile waits to be read. Counted from when it was due, not from now: a replay fires it later.
+            self._set(self._due_s + missed_s)
         else:
             self._fell_silent()
 

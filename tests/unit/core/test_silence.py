@@ -67,3 +67,14 @@ async def _wait_in_vain(first_word_s: float | None = None) -> None:
             await asyncio.sleep(first_word_s)
             silence.renew()
         await asyncio.sleep(100.0)
+
+
+async def test_a_timer_that_fires_late_counts_from_when_it_was_due() -> None:
+    loop, fell = asyncio.get_running_loop(), list[float]()
+    began_s = loop.time()
+    silence = Silence(1.0, lambda: fell.append(loop.time() - began_s))
+    attention().miss(0.25)
+    silence._timer.cancel()  # type: ignore[union-attr]  # a replay fires it at the next recorded moment
+    loop.call_at(began_s + 1.125, silence._due)
+    await asyncio.sleep(2.0)
+    assert fell == [pytest.approx(1.25)]
