@@ -82,7 +82,7 @@ class _Guard:
             await asyncio.sleep(_BEAT_EVERY_S)
 
     def look(self) -> None:
-        """Tell of a stall that has just ended, once; asked by the beat, and by whoever takes what came meanwhile."""
+        """Tell of a stall that has just ended, once; asked by the beat, and by readers of what came meanwhile."""
         if self._due_s is None:
             return
         now_s = asyncio.get_running_loop().time()

@@ -38,7 +38,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="keep every Nth stop out of the map, to localize at; 0 for none (default: 2)",
     )
-    parser.add_argument("--limit", type=whole(1), metavar="N", help="end after so many stops")
+    parser.add_argument("--limit", type=whole(1), metavar="N", help="end after N stops")
     reading_arguments(parser)
 
 
