@@ -6,7 +6,7 @@ sockets are, if not in /run/robotd. Ctrl-C stops the robot first.
 
 import asyncio
 
-from robotd.localization.estimate import PoseEstimate
+from robotd.contract.estimate import PoseEstimate
 from robotd.server.async_client import AsyncClient
 
 

@@ -11,15 +11,15 @@ from robotd.cli.plots import require_plots
 from robotd.cli.quantities import number, positive, whole
 from robotd.cli.verb import OK, Verb
 from robotd.core.errors import RobotdError
-from robotd.localization.exact.arrangement import Arrangement, at_least
-from robotd.localization.exact.beams import Beam
-from robotd.localization.exact.feasible import PolygonMap, best_rank, ranked
-from robotd.localization.exact.formats import FORMATS
-from robotd.localization.exact.planar import PlanarSet
-from robotd.localization.exact.points import Point
-from robotd.localization.exact.polygons import edge_count
-from robotd.localization.exact.rationals import ARITHMETICS, DEFAULT, Rational, name_of, rational
-from robotd.localization.exact.regions import regions
+from robotd.exact.arrangement import Arrangement, at_least
+from robotd.exact.beams import Beam
+from robotd.exact.feasible import PolygonMap, best_rank, ranked
+from robotd.exact.formats import FORMATS
+from robotd.exact.planar import PlanarSet
+from robotd.exact.points import Point
+from robotd.exact.polygons import edge_count
+from robotd.exact.rationals import ARITHMETICS, DEFAULT, Rational, name_of, rational
+from robotd.exact.regions import regions
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,13 +7,13 @@ from typing import Any
 from robotd.cli.exact_inputs import Question
 from robotd.cli.terminal import print_json, print_pairs, print_table
 from robotd.core.errors import RobotdError
-from robotd.localization.exact.beams import Beam
-from robotd.localization.exact.casting import Outcome, Verdict, cast
-from robotd.localization.exact.points import Point
-from robotd.localization.exact.rationals import Rational, rational
-from robotd.localization.exact.regions import Region
-from robotd.localization.exact.smallest_error import smallest_error
-from robotd.localization.exact.surds import Number
+from robotd.exact.beams import Beam
+from robotd.exact.casting import Outcome, Verdict, cast
+from robotd.exact.points import Point
+from robotd.exact.rationals import Rational, rational
+from robotd.exact.regions import Region
+from robotd.exact.smallest_error import smallest_error
+from robotd.exact.surds import Number
 
 Place = tuple[float, Region]
 """A heading [deg] and a region of poses of that heading."""

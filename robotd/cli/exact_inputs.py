@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robotd.core.errors import MapError, RobotdError
+from robotd.exact.beams import Beam, theta_slices
+from robotd.exact.formats import FORMATS
+from robotd.exact.outlines import outlines
+from robotd.exact.planar import PlanarSet
+from robotd.exact.rationals import DEFAULT, Arithmetic, rational
+from robotd.exact.readings import beams_of
 from robotd.grid.binary import BinaryMap
-from robotd.localization.exact.beams import Beam, theta_slices
-from robotd.localization.exact.formats import FORMATS
-from robotd.localization.exact.outlines import outlines
-from robotd.localization.exact.planar import PlanarSet
-from robotd.localization.exact.rationals import DEFAULT, Arithmetic, rational
-from robotd.localization.exact.readings import beams_of
 from robotd.maps.store import MANIFEST, MapStore
 
 

@@ -8,10 +8,10 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
 from robotd.cli.paper import INK, TRUTH, Box, paper, save
-from robotd.localization.exact.arrangement import Arrangement
-from robotd.localization.exact.feasible import best_rank, of_rank
-from robotd.localization.exact.loops import outline_loops, single_lines, single_points
-from robotd.localization.exact.planar import PlanarSet
+from robotd.exact.arrangement import Arrangement
+from robotd.exact.feasible import best_rank, of_rank
+from robotd.exact.loops import outline_loops, single_lines, single_points
+from robotd.exact.planar import PlanarSet
 
 SOLID = "#4a5763"
 _BEST = "#0b63ce"

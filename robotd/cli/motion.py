@@ -10,8 +10,8 @@ from robotd.cli.progress import MissionBars
 from robotd.cli.terminal import complain, out, print_json
 from robotd.cli.verb import FAILED, INTERRUPTED, OK
 from robotd.cli.wording import as_json, estimate_in_words
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.errors import MissionError, RobotdError
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.requests import Mission
 from robotd.server.client import Client
 from robotd.server.mission_run import MissionEvent

@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from robotd.cli.outputs import PNG, check, write
-from robotd.grid.spec import GridSpec
+from robotd.core.grid_spec import GridSpec
 
 Points = NDArray[np.float64]
 Box = tuple[float, float, float, float]

@@ -29,8 +29,8 @@ from robotd.cli.paper import (
     paper,
     save,
 )
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.grid.spec import GridSpec
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,9 @@ from robotd.cli.quantities import heading_of_deg, number
 from robotd.cli.terminal import out, print_json
 from robotd.cli.verb import OK, Verb
 from robotd.cli.wording import as_json, estimate_in_words, in_words, region_in_words
+from robotd.contract.area import Area
+from robotd.contract.estimate import PoseEstimate
 from robotd.core.errors import RequestTimeout
-from robotd.localization.area import Area
-from robotd.localization.estimate import PoseEstimate
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, PriorHeading
 from robotd.server.feed import Gap
 from robotd.server.topics import Topic

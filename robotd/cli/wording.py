@@ -5,8 +5,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from robotd.contract.estimate import PoseEstimate, PoseState, Region
 from robotd.core.pose import Odometry, Pose2
-from robotd.localization.estimate import PoseEstimate, PoseState, Region
 from robotd.mission.events import MapChanged, MissionProgress, Status, SweepDone, SweepProgress
 from robotd.server.topics import EVENTS, LogEntry, Published
 

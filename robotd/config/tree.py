@@ -11,10 +11,10 @@ from robotd.grid.occupancy import GridSettings
 from robotd.hardware.devices.catalogue import DIALECTS, MOTORLESS, SCANNERS, line_format
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
 from robotd.hardware.transport.address import connector
-from robotd.localization.error_model import ErrorModel
-from robotd.localization.judgement import Judgement
-from robotd.localization.refinement import RefinementSettings
-from robotd.localization.second_look import SecondLookSettings
+from robotd.localization.fit.refinement import RefinementSettings
+from robotd.localization.judge.error_model import ErrorModel
+from robotd.localization.judge.judgement import Judgement
+from robotd.localization.judge.second_look import SecondLookSettings
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.steering import DrivingSettings
 from robotd.mission.stop_and_sweep import SweepSettings

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
 
 FREE_MAX = 127
 """Greatest value of a cell that counts as free; so a cell without evidence counts as occupied."""

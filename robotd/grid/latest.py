@@ -7,11 +7,11 @@ there last, too: a chair that was put where ten sweeps saw nothing.
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading
 from robotd.grid import kernels
 from robotd.grid.readings import numbers_of
-from robotd.grid.spec import GridSpec
 
 NOTHING, PASSED, HIT = 0, 1, 2
 """Values of a cell: no sweep met it; beams ran through it and none ended in it; one ended in it."""

@@ -4,8 +4,8 @@ Numbers are written as the shortest text that reads back to the same float (map_
 three decimals; we do not). No yaml library: these files are seven lines of ``key: value``.
 """
 
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.image import FREE_THRESH, OCCUPIED_THRESH
-from robotd.grid.spec import GridSpec
 
 
 def map_yaml(image: str, spec: GridSpec) -> str:

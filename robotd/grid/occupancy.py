@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.bounds import Within, refuse_outside
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid import kernels
 from robotd.grid.readings import numbers_of
-from robotd.grid.spec import GridSpec
 from robotd.grid.tables import NO_INFORMATION, lower_table, raise_table
 
 MAX_SIDE_CELLS = 8192

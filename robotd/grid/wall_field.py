@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.grid import kernels
 from robotd.grid.kernels.fitting import REACH_CELLS, SKIP_MAX
-from robotd.grid.spec import GridSpec
 from robotd.grid.window import CellWindow, influence
 
 

@@ -11,18 +11,18 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.contract.area import Area
+from robotd.contract.estimate import PoseEstimate, PoseState, Region
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading
 from robotd.grid.readings import numbers_of
-from robotd.localization.area import Area
-from robotd.localization.counting import NOTHING, Count, Found
-from robotd.localization.described import Answer, Situation, described
-from robotd.localization.estimate import PoseEstimate, PoseState, Region
-from robotd.localization.judgement import Judgement
+from robotd.localization.conservative.unexcluded import Unexcluded
+from robotd.localization.describe import Answer, Situation, described
+from robotd.localization.judge.judgement import Judgement
+from robotd.localization.judge.second_look import SecondLook, second_look
+from robotd.localization.places.pieces import pieces_of
 from robotd.localization.ready_map import ReadyMap
-from robotd.localization.regions import pieces_of
-from robotd.localization.second_look import SecondLook, second_look
-from robotd.localization.unexcluded import Unexcluded
+from robotd.localization.stop import NOTHING, Count, Found
 
 _ALIKE_M, _ALIKE_RAD = 0.1, 0.03
 """So much aside and so much turned are as far from a place."""

@@ -6,13 +6,13 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
-from robotd.localization.conservative import ErrorBounds, SureObstacles
-from robotd.localization.conservative_rank import ConservativeMap
-from robotd.localization.error_model import ErrorModel
-from robotd.localization.likelihood import Likelihood
-from robotd.localization.obstacles import Obstacles, UnknownCells
-from robotd.localization.prepared import PreparedMap
-from robotd.localization.search import SearchMap
+from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles
+from robotd.localization.conservative.conservative_rank import ConservativeMap
+from robotd.localization.judge.error_model import ErrorModel
+from robotd.localization.judge.likelihood import Likelihood
+from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
+from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.search.bounded_search import SearchMap
 from robotd.localization.settings import LocalizationSettings
 
 

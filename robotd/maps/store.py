@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from robotd.core.errors import MapError
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.image import encode_pgm, trinary_from_cells
 from robotd.grid.map_yaml import map_yaml
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.grid.spec import GridSpec
 from robotd.maps.atomic import (
     Buffer,
     make_directory,

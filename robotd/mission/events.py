@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.contract.estimate import PoseEstimate
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry
 from robotd.core.reading import Sweep
-from robotd.grid.spec import GridSpec
 from robotd.hardware.devices.device import DeviceStatus
-from robotd.localization.estimate import PoseEstimate
 from robotd.mission.modes import Mode
 
 

@@ -7,12 +7,12 @@ on how fast this machine happens to be.
 import asyncio
 import math
 
+from robotd.contract.estimate import PoseEstimate, PoseState, Region
 from robotd.core.angles import wrap_rad
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import RangeReading
-from robotd.localization.estimate import PoseEstimate, PoseState, Region
 from robotd.localization.localizer import Localizer
 from robotd.mission.compute import cores
 from robotd.mission.context import MissionContext, Reporter

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from robotd.contract.estimate import PoseEstimate
 from robotd.core.errors import MissionError
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.grid.spec import GridSpec
-from robotd.localization.estimate import PoseEstimate
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.driving import run_driving
 from robotd.mission.localizing import pose_text, run_localizing

@@ -9,9 +9,9 @@ import msgspec
 import numpy as np
 
 from robotd.core.errors import RecordingError
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import MAX_SIDE_CELLS, OccupancyGrid
-from robotd.grid.spec import GridSpec
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission, Mission
 
 _LEASE_MAX_S = 1e9

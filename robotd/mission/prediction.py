@@ -3,9 +3,9 @@
 import math
 from dataclasses import dataclass
 
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.angles import wrap_rad
 from robotd.core.pose import Odometry, Pose2
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.map_in_use import MapInUse
 
 _MOVED_M = 0.02

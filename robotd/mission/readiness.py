@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.window import CellWindow
-from robotd.localization.error_model import ErrorModel
+from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 

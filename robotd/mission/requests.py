@@ -3,8 +3,8 @@
 import enum
 from dataclasses import dataclass
 
+from robotd.contract.area import Area
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.localization.area import Area
 
 
 class Legs(enum.StrEnum):

@@ -9,8 +9,8 @@ from typing import Any
 
 import msgspec
 
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.reading import Sweep
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import Event, MapChanged, MissionProgress, SweepDone
 from robotd.mission.map_in_use import MapInUse
 from robotd.recording.encoding import encoded

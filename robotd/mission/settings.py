@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 from robotd.grid.occupancy import GridSettings
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
-from robotd.localization.error_model import ErrorModel
-from robotd.localization.judgement import Judgement
+from robotd.localization.judge.error_model import ErrorModel
+from robotd.localization.judge.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.steering import DrivingSettings
 from robotd.mission.stop_and_sweep import SweepSettings

@@ -9,6 +9,7 @@ import logging
 from collections.abc import Callable
 from dataclasses import replace
 
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import LinkTimeout, MissionError, RobotdError
@@ -18,7 +19,6 @@ from robotd.core.silence import within
 from robotd.core.text import printable
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.advice import with_advice
 from robotd.mission.battery import low_battery
 from robotd.mission.context import MissionContext, Publish, Reporter

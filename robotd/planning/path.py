@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.bounds import Within, refuse_outside
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
 from robotd.grid.tables import NO_INFORMATION
 from robotd.planning.distance_field import NEIGHBOURS, STEP_CELLS, distance_field
 from robotd.planning.line_of_sight import Position, centre_of, distances_of_leg, in_sight, pulled_straight

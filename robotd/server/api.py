@@ -12,9 +12,9 @@ from typing import Annotated, Any, ClassVar, Generic, TypeVar
 import msgspec
 from msgspec import Meta
 
+from robotd.contract.area import Area
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.text import LONGEST, printable, printable_bytes
-from robotd.localization.area import Area
 from robotd.maps.store import MapEntry
 from robotd.mission.events import MissionProgress, Status
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading

@@ -19,11 +19,11 @@ from typing import Self, TypeVar
 import zmq
 import zmq.asyncio
 
+from robotd.contract.area import Area
+from robotd.contract.estimate import PoseEstimate
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RequestTimeout, RobotdError, ServerError
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.localization.area import Area
-from robotd.localization.estimate import PoseEstimate
 from robotd.mission.events import MapChanged, Status
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
 from robotd.server import api

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.errors import RemoteProtocolError
-from robotd.grid.spec import GridSpec
+from robotd.core.grid_spec import GridSpec
 from robotd.mission.events import MapChanged
 
 _INDEX = np.dtype("<u4")

@@ -4,8 +4,8 @@ Nothing is left to a single message: the end is published, and every renewal is 
 progress as well, so a reader that missed the one hears the other.
 """
 
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.errors import MissionError, ServerError
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
 from robotd.server.api import MissionStarted, Renewed
 from robotd.server.feed import Gap

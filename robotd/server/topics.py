@@ -12,9 +12,9 @@ from typing import Any
 import msgpack
 import msgspec
 
+from robotd.contract.estimate import PoseEstimate
 from robotd.core.errors import RemoteProtocolError
 from robotd.core.pose import Odometry
-from robotd.localization.estimate import PoseEstimate
 from robotd.mission.events import Event, MapChanged, MissionProgress, Status, SweepDone, SweepProgress
 from robotd.server.api import VERSION
 from robotd.server.envelope import to_plain

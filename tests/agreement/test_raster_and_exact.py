@@ -1,7 +1,7 @@
 """The rasterized and the exact algorithm agree on maps that are made of cells, up to bounds that are written down here.
 
 Lengths in cells; delta is a cell's diagonal, sqrt(2), or a hair more. A robot stands at the centre of a cell. Let
-``raster(eps)`` be the cells of :mod:`robotd.localization.feasible`, and D, E the exact sets of one reading.
+``raster(eps)`` be the cells of :mod:`.feasible_poses`, and D, E the exact sets of one reading.
 
 **Whatever is exactly feasible at eps - delta is feasible in the raster at eps.** The obstacle point within eps - delta
 of the beam's end is at most half a diagonal from the centre of its cell, and so is the end from the centre of the head:
@@ -28,19 +28,19 @@ from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.exact.beams import Beam, beam
+from robotd.exact.feasible import PolygonMap, is_feasible
+from robotd.exact.locate import contains
+from robotd.exact.minkowski import blocked
+from robotd.exact.outlines import outlines
+from robotd.exact.planar import PlanarSet
+from robotd.exact.points import Point
+from robotd.exact.rationals import Rational, rational
+from robotd.exact.sweep import arrange
 from robotd.grid.footprints import dilate
-from robotd.localization.exact.beams import Beam, beam
-from robotd.localization.exact.feasible import PolygonMap, is_feasible
-from robotd.localization.exact.locate import contains
-from robotd.localization.exact.minkowski import blocked
-from robotd.localization.exact.outlines import outlines
-from robotd.localization.exact.planar import PlanarSet
-from robotd.localization.exact.points import Point
-from robotd.localization.exact.rationals import Rational, rational
-from robotd.localization.exact.sweep import arrange
-from robotd.localization.feasible import feasible_poses
-from robotd.localization.obstacles import Obstacles
-from robotd.localization.probe import probe_of
+from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.reference.feasible_poses import feasible_poses
+from robotd.localization.reference.probe import probe_of
 
 DIAGONAL = rational("1.41422")
 """delta: a rational number just above sqrt(2)."""

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from robotd.grid.readings import numbers_of
-from robotd.localization.counted import count_all
-from robotd.localization.rank import even_headings
-from robotd.localization.search import best_poses
+from robotd.localization.count.count_all import count_all
+from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.search.bounded_search import best_poses
 from tests.benchmarks.sections.scaling import site_of
 
 _STATUS, _RESET = Path("/proc/self/status"), Path("/proc/self/clear_refs")

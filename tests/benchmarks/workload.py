@@ -8,12 +8,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.binary import BinaryMap
 from robotd.grid.footprints import dilate, disk_footprint
-from robotd.grid.spec import GridSpec
-from robotd.localization.prepared import PreparedMap
+from robotd.localization.obstacles.prepared_map import PreparedMap
 
 RESOLUTION_M = 0.05
 CUT_OFF_M = 6.0

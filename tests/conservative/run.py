@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from robotd.grid.spec import GridSpec
-from robotd.localization.conservative import ErrorBounds, SureObstacles
-from robotd.localization.conservative_rank import ConservativeMap, ConservativeRankGrid
-from robotd.localization.rank import even_headings
+from robotd.core.grid_spec import GridSpec
+from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles
+from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
+from robotd.localization.count.rank_grid import even_headings
 from tests.conservative.cases import Case, case_of
 
 

@@ -11,12 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from robotd.cli.exact_pictures import box_of, fill, outline
-from robotd.localization.exact.beams import Beam
-from robotd.localization.exact.feasible import PolygonMap, feasible_poses, of_rank, ranked
-from robotd.localization.exact.planar import PlanarSet
-from robotd.localization.exact.polygons import Polygon, ring_of, solid
-from robotd.localization.exact.rationals import rational
-from robotd.localization.exact.sweep import arrange
+from robotd.exact.beams import Beam
+from robotd.exact.feasible import PolygonMap, feasible_poses, of_rank, ranked
+from robotd.exact.planar import PlanarSet
+from robotd.exact.polygons import Polygon, ring_of, solid
+from robotd.exact.rationals import rational
+from robotd.exact.sweep import arrange
 from tests.exact.scenes import crossed_bars, halving_readings
 from tests.exact.sweep_figures import draw_depths, draw_sweep
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
 
-from robotd.localization.exact.arrangement import Arrangement, at_least
-from robotd.localization.exact.beams import Beam
-from robotd.localization.exact.feasible import (
+from robotd.exact.arrangement import Arrangement, at_least
+from robotd.exact.beams import Beam
+from robotd.exact.feasible import (
     PolygonMap,
     best_rank,
     feasible_arrangement,
@@ -18,11 +18,11 @@ from robotd.localization.exact.feasible import (
     is_feasible,
     ranked,
 )
-from robotd.localization.exact.planar import PlanarSet
-from robotd.localization.exact.polygons import edge_count
-from robotd.localization.exact.rationals import ARITHMETICS, rational
-from robotd.localization.exact.regions import regions
-from robotd.localization.exact.sweep import arrange
+from robotd.exact.planar import PlanarSet
+from robotd.exact.polygons import edge_count
+from robotd.exact.rationals import ARITHMETICS, rational
+from robotd.exact.regions import regions
+from robotd.exact.sweep import arrange
 from tests.exact.operations import counted
 from tests.exact.scenes import (
     crossed_bars,

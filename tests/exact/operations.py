@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 from unittest.mock import patch
 
-from robotd.localization.exact import points, sweep
-from robotd.localization.exact.supports import HalfCircle, Line
+from robotd.exact import points, sweep
+from robotd.exact.supports import HalfCircle, Line
 
 
 @dataclass(slots=True)

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from robotd.cli.exact_pictures import box_of, draw_ranks
-from robotd.localization.exact.feasible import PolygonMap, ranked
-from robotd.localization.exact.rationals import rational
+from robotd.exact.feasible import PolygonMap, ranked
+from robotd.exact.rationals import rational
 from tests.exact.growth import STEP_M, Growth
 from tests.exact.scenes import laboratory, readings
 

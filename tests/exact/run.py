@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 
-from robotd.localization.exact.polygons import edge_count
-from robotd.localization.exact.rationals import DEFAULT, name_of
+from robotd.exact.polygons import edge_count
+from robotd.exact.rationals import DEFAULT, name_of
 from tests.exact import growth
 from tests.exact.figures import FIGURES
 from tests.exact.growth import Growth
@@ -51,7 +51,7 @@ def _measured(out: Path) -> list[str]:
     lines = [
         "# The exact algorithm, measured",
         "",
-        "Written by `make exact`. What it computes is told in `robotd/localization/exact/`, how to ask it in",
+        "Written by `make exact`. What it computes is told in `robotd/exact/`, how to ask it in",
         "`robotctl exact --help`.",
         "",
         f"Python {platform.python_version()}, arithmetic: {name_of(DEFAULT)}; time of one processor, the least of two",

@@ -4,14 +4,14 @@ import math
 import random
 from pathlib import Path
 
-from robotd.localization.exact.beams import Beam, beam
-from robotd.localization.exact.casting import cast
-from robotd.localization.exact.formats import map_of_toml
-from robotd.localization.exact.planar import PlanarSet
-from robotd.localization.exact.points import Point
-from robotd.localization.exact.polygons import Polygon, Ring, ring_of, solid
-from robotd.localization.exact.rationals import DEFAULT, Arithmetic, Rational, rational
-from robotd.localization.exact.surds import Surd, arithmetic_of
+from robotd.exact.beams import Beam, beam
+from robotd.exact.casting import cast
+from robotd.exact.formats import map_of_toml
+from robotd.exact.planar import PlanarSet
+from robotd.exact.points import Point
+from robotd.exact.polygons import Polygon, Ring, ring_of, solid
+from robotd.exact.rationals import DEFAULT, Arithmetic, Rational, rational
+from robotd.exact.surds import Surd, arithmetic_of
 
 CUT_OFF_M = 4
 _FAR_M = 100

@@ -9,12 +9,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from robotd.cli.exact_pictures import fill, outline
-from robotd.localization.exact.arrangement import Arrangement
-from robotd.localization.exact.planar import PlanarSet, area_within, segment
-from robotd.localization.exact.points import Point
-from robotd.localization.exact.polygons import ring_of
-from robotd.localization.exact.rationals import rational
-from robotd.localization.exact.sweep import arrange
+from robotd.exact.arrangement import Arrangement
+from robotd.exact.planar import PlanarSet, area_within, segment
+from robotd.exact.points import Point
+from robotd.exact.polygons import ring_of
+from robotd.exact.rationals import rational
+from robotd.exact.sweep import arrange
 
 _INK, _LINE, _RED, _BLUE = "#22303c", "#c8102e", "#d9822b", "#0b63ce"
 _SHOWN = (2, 5, 8)

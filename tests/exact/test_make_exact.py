@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from robotd.localization.exact.feasible import PolygonMap
-from robotd.localization.exact.planar import PlanarSet, segment
-from robotd.localization.exact.points import Point
-from robotd.localization.exact.rationals import rational
-from robotd.localization.exact.sweep import arrange
+from robotd.exact.feasible import PolygonMap
+from robotd.exact.planar import PlanarSet, segment
+from robotd.exact.points import Point
+from robotd.exact.rationals import rational
+from robotd.exact.sweep import arrange
 from tests.exact import growth
 from tests.exact.figures import FIGURES
 from tests.exact.operations import counted

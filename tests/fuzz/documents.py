@@ -9,7 +9,7 @@ from typing import Any
 from robotd.cli.exact_inputs import read_beams, read_map
 from robotd.config import Config, effective_text, loads
 from robotd.core.errors import ConfigError, MapError, RecordingError, RemoteProtocolError, RobotdError, ServerError
-from robotd.grid.spec import GridSpec
+from robotd.core.grid_spec import GridSpec
 from robotd.hardware.link.tap import Direction
 from robotd.logs.scan import RecordedLog
 from robotd.maps.manifest import FileSum, Manifest, decode_manifest
@@ -185,7 +185,7 @@ DOCUMENTS = (
             b"POLYGON ((0 0, 1 0, 1 1, 0 0))",
             b"MULTIPOLYGON (((0 0, 2 0, 2 2, 0 0), (1 0.5, 1.5 0.5, 1.5 1, 1 0.5)))",
         ],
-        ("robotd/localization/exact/formats.py", "robotd/cli/exact_inputs.py"),
+        ("robotd/exact/formats.py", "robotd/cli/exact_inputs.py"),
         typed=(RobotdError,),
         tokens=(b"POLYGON ", b"MULTIPOLYGON ", b"GEOMETRYCOLLECTION (", b" Z ", b"((", b"))", b"EMPTY", b", "),
         size_max=256,
@@ -194,7 +194,7 @@ DOCUMENTS = (
         "beams",
         _in_file("a.txt", read_beams),
         lambda: [b"bearing_deg,range_m\n0,1.5\n90,2\n"],
-        ("robotd/localization/exact/readings.py", "robotd/cli/exact_inputs.py"),
+        ("robotd/exact/readings.py", "robotd/cli/exact_inputs.py"),
         typed=(RobotdError,),
         size_max=256,
     ),

@@ -10,9 +10,9 @@ from firmware_proto.rangefinder import ShotStatus
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
 from robotd.config import Config
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.errors import MissionError
 from robotd.hardware.devices.device import LinkState
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepProgress
 from robotd.mission.modes import Mode

@@ -4,8 +4,8 @@ import pytest
 
 from robotd.cli.emulated import config_text
 from robotd.config import Config, loads
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.hardware.devices.catalogue import MOTORLESS, SCANNERS
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.requests import LocalizeMission, MapMission
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
 from robotd.sim.robot import DEVICES, SimulatedRobot

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from robotd.config import Config
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.angles import wrap_rad
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.device import LinkState
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import Event, MapChanged, MissionPhase, SweepDone, SweepProgress
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Mode

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from robotd.config import Config
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.reading import ReadingStatus
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import SweepDone
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.sim.building import RecordedBuilding, select_stops

@@ -14,10 +14,10 @@ from robotd.grid.occupancy import GridSettings
 from robotd.grid.readings import numbers_of
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.wall_field import WallField
-from robotd.localization.obstacles import Obstacles, UnknownCells
-from robotd.localization.refinement import PoseBox, RefinementSettings, refine
-from robotd.localization.search import Disk, SearchMap, best_poses
-from robotd.localization.tracking import Tracked, TrackingSettings, track
+from robotd.localization.fit.refinement import PoseBox, RefinementSettings, refine
+from robotd.localization.fit.tracking import Tracked, TrackingSettings, track
+from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
+from robotd.localization.search.bounded_search import Disk, SearchMap, best_poses
 from robotd.sim.log_file import read_log
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_data]

@@ -5,10 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
-from robotd.localization.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 
 LARGE_CELLS = 8192
 REGIONS = 32

@@ -6,12 +6,12 @@ from matplotlib.axes import Axes
 
 from robotd.cli.exact_pictures import fill
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.localization.exact.arrangement import Arrangement
-from robotd.localization.exact.beams import Beam, beam
-from robotd.localization.exact.feasible import PolygonMap, best_rank, of_rank, ranked
-from robotd.localization.exact.formats import map_of_toml
-from robotd.localization.exact.planar import PlanarSet
-from robotd.localization.exact.rationals import rational
+from robotd.exact.arrangement import Arrangement
+from robotd.exact.beams import Beam, beam
+from robotd.exact.feasible import PolygonMap, best_rank, of_rank, ranked
+from robotd.exact.formats import map_of_toml
+from robotd.exact.planar import PlanarSet
+from robotd.exact.rationals import rational
 from robotd.sim.world import WORLDS_DIR
 from tests.paper.rooms import Room
 from tests.paper.trials import ERROR_M

@@ -11,13 +11,17 @@ from matplotlib.patches import Circle, Rectangle
 from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.grid.directional_flood import directional_flood
-from robotd.grid.floods import UNREACHED, Metric, flood
 from robotd.grid.footprints import dilate, disk_footprint
 from robotd.grid.ray import ray_offsets
 from robotd.grid.translation import reflected, translated
-from robotd.localization.flooded import flooded_blocked_set, flooded_endpoint_set, flooded_feasible_poses
-from robotd.localization.probe import Probe, probe_of
+from robotd.localization.reference.directional_flood import directional_flood
+from robotd.localization.reference.flooded_poses import (
+    flooded_blocked_set,
+    flooded_endpoint_set,
+    flooded_feasible_poses,
+)
+from robotd.localization.reference.floods import UNREACHED, Metric, flood
+from robotd.localization.reference.probe import Probe, probe_of
 
 Mask = NDArray[np.bool_]
 

@@ -14,9 +14,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
 from robotd.planning.path import PlanningSettings
 from robotd.planning.traversable import free_cells, inflated
 from robotd.sim.walls import Point, Walls, clearance_m

@@ -4,10 +4,10 @@ import math
 
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.localization.exact.feasible import best_rank, of_rank
-from robotd.localization.exact.locate import contains
-from robotd.localization.exact.points import Point
-from robotd.localization.exact.rationals import rational
+from robotd.exact.feasible import best_rank, of_rank
+from robotd.exact.locate import contains
+from robotd.exact.points import Point
+from robotd.exact.rationals import rational
 from tests.paper.exact import exact_ranks, obstacles_of
 from tests.paper.robot import true_ranges_m
 from tests.paper.rooms import LABORATORY, TESTS

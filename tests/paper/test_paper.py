@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 
 from robotd.core.pose import Pose2
 from robotd.grid.binary import BinaryMap
-from robotd.localization.feasible import feasible_poses
-from robotd.localization.obstacles import Obstacles
-from robotd.localization.probe import probe_of
+from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.reference.feasible_poses import feasible_poses
+from robotd.localization.reference.probe import probe_of
 from tests.paper.figures import FIGURES, draw_figures
 from tests.paper.page import table
 from tests.paper.page import test_row as row_of

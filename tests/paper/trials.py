@@ -11,9 +11,9 @@ from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import GridSettings, OccupancyGrid, OverRange, UpdatePolicy
-from robotd.localization.prepared import PreparedMap
-from robotd.localization.rank import RankGrid
-from robotd.localization.regions import Piece, pieces_of
+from robotd.localization.count.rank_grid import RankGrid
+from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.places.pieces import Piece, pieces_of
 from tests.paper.robot import ROBOT_RADIUS_M
 
 ERROR_M = 0.075

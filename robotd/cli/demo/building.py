@@ -18,8 +18,8 @@ from robotd.cli.simulate import odometry_argument
 from robotd.cli.terminal import bold
 from robotd.cli.verb import OK
 from robotd.config import Config
+from robotd.contract.estimate import PoseState
 from robotd.core.errors import MissionError
-from robotd.localization.estimate import PoseState
 from robotd.mission.events import MapChanged
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.mission.steering import DrivingSettings

@@ -12,11 +12,11 @@ from rich.table import Table
 from robotd.cli.progress import MissionBars
 from robotd.cli.terminal import plain_console
 from robotd.cli.wording import held_in_words
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
 from robotd.core.reading import ReadingStatus, Sweep
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepDone
 from robotd.mission.requests import Mission
 from robotd.server.client import Client

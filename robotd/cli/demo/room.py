@@ -22,7 +22,7 @@ from robotd.core.errors import RobotdError
 from robotd.core.reading import Sweep
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
-from robotd.localization.rank import RankGrid
+from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.ready_map import ReadyMap
 from robotd.mission.events import MapChanged
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission

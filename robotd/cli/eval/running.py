@@ -8,8 +8,8 @@ from robotd.cli.eval.cases import Query
 from robotd.cli.eval.recorded import Reach, readings_of
 from robotd.cli.eval.verdict import Case
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.localization.error_model import ErrorModel
-from robotd.localization.judgement import Judgement
+from robotd.localization.judge.error_model import ErrorModel
+from robotd.localization.judge.judgement import Judgement
 from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings

@@ -26,8 +26,8 @@ from robotd.cli.verb import INTERRUPTED, OK, Verb
 from robotd.core.errors import RecordingError
 from robotd.grid import kernels
 from robotd.grid.occupancy import GridSettings
-from robotd.localization.error_model import ErrorModel
-from robotd.localization.judgement import Judgement
+from robotd.localization.judge.error_model import ErrorModel
+from robotd.localization.judge.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
 from robotd.logs.scan import RecordedLog
 from robotd.mission.compute import cores

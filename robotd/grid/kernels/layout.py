@@ -47,7 +47,7 @@ def unpack(words: Words, cols: int) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PackedMap:
-    """What a map means to a reading (:mod:`robotd.localization.obstacles`), packed, and the tiles with free cells."""
+    """What a map means to a reading (:mod:`.beam_obstacles`), packed, and the tiles with free cells."""
 
     planes: Words
     """``uint64[5, words + 4, rows + 64]``, as named below."""

@@ -21,7 +21,7 @@ _SECTORS = 8
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ground:
-    """A map as the search reads it; the arrays of :class:`robotd.localization.obstacles.Obstacles`."""
+    """A map as the search reads it; the arrays of :class:`robotd.localization.obstacles.beam_obstacles.Obstacles`."""
 
     free: NDArray[np.bool_]
     blocking: NDArray[np.bool_]

@@ -10,7 +10,7 @@ from robotd.grid import kernels
 from robotd.grid.kernels import twins
 from robotd.grid.kernels.layout import BeamSettings, turned
 from robotd.grid.readings import numbers_of
-from robotd.localization.rank import RankGrid, even_headings
+from robotd.localization.count.rank_grid import RankGrid, even_headings
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
 

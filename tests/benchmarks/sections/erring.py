@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid.binary import BinaryMap
-from robotd.localization.conservative import ErrorBounds, SureObstacles
-from robotd.localization.conservative_rank import ConservativeMap, ConservativeRankGrid
-from robotd.localization.rank import even_headings
-from robotd.localization.smallest_error import (
+from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles
+from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
+from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.reference.smallest_error import (
     errors_for_share,
     errors_for_share_reading_by_reading,
     smallest_error_by_search,

@@ -8,14 +8,14 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid import kernels
 from robotd.grid.kernels import twins
 from robotd.grid.readings import numbers_of
-from robotd.grid.spec import GridSpec
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
-from robotd.localization.refinement import (
+from robotd.localization.fit.refinement import (
     DISTANCES,
     Heads,
     PoseBox,
@@ -24,7 +24,7 @@ from robotd.localization.refinement import (
     expected_ranges,
     refine,
 )
-from robotd.localization.tracking import Tracked, TrackingSettings, track
+from robotd.localization.fit.tracking import Tracked, TrackingSettings, track
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
 

@@ -13,16 +13,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.readings import numbers_of
-from robotd.grid.spec import GridSpec
 from robotd.grid.wall_field import WallField
-from robotd.localization.counted import count_all
-from robotd.localization.obstacles import Obstacles
-from robotd.localization.prepared import PreparedMap
-from robotd.localization.rank import bits_of, even_headings
-from robotd.localization.search import SearchMap, best_poses
+from robotd.localization.count.count_all import count_all
+from robotd.localization.count.rank_grid import bits_of, even_headings
+from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.search.bounded_search import SearchMap, best_poses
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing
 

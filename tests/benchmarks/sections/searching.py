@@ -9,14 +9,14 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.readings import numbers_of
-from robotd.grid.spec import GridSpec
 from robotd.grid.wall_field import WallField
-from robotd.localization.obstacles import Obstacles
-from robotd.localization.rank import even_headings
-from robotd.localization.refinement import PoseBox, refine
-from robotd.localization.search import BestPoses, Disk, SearchMap, best_poses
+from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.fit.refinement import PoseBox, refine
+from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.search.bounded_search import BestPoses, Disk, SearchMap, best_poses
 from tests.benchmarks import workload
 from tests.benchmarks.sections.refining import DRAWN
 from tests.benchmarks.timing import Timing, timed

@@ -16,8 +16,8 @@ from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import main, run
 from robotd.config import Config
 from robotd.core.errors import TransportError
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute

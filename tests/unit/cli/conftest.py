@@ -8,11 +8,11 @@ from typing import Any, Self
 import numpy as np
 import pytest
 
+from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.core.errors import MissionError
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.grid.spec import GridSpec
 from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.localization.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.mission.events import MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.mission.modes import Mode
 from robotd.mission.requests import Mission

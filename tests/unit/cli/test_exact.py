@@ -10,11 +10,11 @@ from matplotlib.image import imread
 from robotd.cli.exact_inputs import read_map
 from robotd.cli.main import main
 from robotd.core.errors import MapError
+from robotd.core.grid_spec import GridSpec
+from robotd.exact.locate import contains
+from robotd.exact.points import Point
+from robotd.exact.rationals import ARITHMETICS, rational
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
-from robotd.localization.exact.locate import contains
-from robotd.localization.exact.points import Point
-from robotd.localization.exact.rationals import ARITHMETICS, rational
 from robotd.maps.store import MapStore
 
 MAP = """outline_m = [[0, 0], [8, 0], [8, 6], [0, 6]]

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from robotd.cli.main import main
+from robotd.contract.area import Area
 from robotd.core.errors import RequestTimeout
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.localization.area import Area
 from robotd.mission.events import MissionPhase, MissionProgress
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, PriorHeading
 

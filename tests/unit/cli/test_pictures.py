@@ -8,8 +8,8 @@ from matplotlib.image import imread
 
 from robotd.cli.paper import bar_length_m, known_box
 from robotd.cli.pictures import Mark, draw_localization, draw_map, draw_room
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.grid.spec import GridSpec
 
 SPEC = GridSpec(0.1, -1.0, -2.0, (60, 40))
 

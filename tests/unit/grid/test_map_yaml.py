@@ -4,8 +4,8 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.map_yaml import map_yaml
-from robotd.grid.spec import GridSpec
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 specs = st.builds(GridSpec, st.floats(1e-300, 1e300), finite, finite, st.just((4, 4)))

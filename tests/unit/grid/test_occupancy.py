@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import GridSettings, OccupancyGrid, OverRange, UpdatePolicy
-from robotd.grid.spec import GridSpec
 
 SPEC = GridSpec(0.5, -3.0, -2.0, (9, 13))
 

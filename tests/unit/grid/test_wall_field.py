@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.grid.spec import GridSpec
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
 

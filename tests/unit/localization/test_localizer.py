@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from robotd.contract.area import Area
+from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
-from robotd.localization.area import Area
-from robotd.localization.estimate import PoseEstimate, PoseState
-from robotd.localization.judgement import Judgement
+from robotd.localization.fit.refinement import RefinementSettings, Walls
+from robotd.localization.judge.judgement import Judgement
 from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
-from robotd.localization.refinement import RefinementSettings, Walls
 from robotd.localization.settings import LocalizationSettings
 
 SETTINGS = LocalizationSettings()

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from robotd.core.errors import MapError
-from robotd.grid.spec import GridSpec
+from robotd.core.grid_spec import GridSpec
 from robotd.maps.manifest import SCHEMA, FileSum, Manifest, _sum, decode_manifest
 
 GOOD = Manifest("lab", 3, 17, "ab", GridSpec(0.05, 0.0, 0.0, (4, 5)), {"cells.bin": FileSum.of(b"cells")}, {})

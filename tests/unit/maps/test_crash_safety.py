@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from robotd.core.errors import MapError
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
 from robotd.maps import atomic
 from robotd.maps.store import MapStore
 

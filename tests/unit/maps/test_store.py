@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from robotd.core.errors import MapError
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.grid.spec import GridSpec
 from robotd.maps.store import MapEntry, MapStore
 
 SPEC = GridSpec(0.05, -1.0 / 3.0, 2.5, (6, 8))

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from robotd.core.errors import MapError
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
 from robotd.maps.lock import sole_writer
 from robotd.maps.store import MapStore
 
@@ -23,7 +23,7 @@ import sys
 from pathlib import Path
 import numpy as np
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
+from robotd.core.grid_spec import GridSpec
 from robotd.maps.store import MapStore
 
 root, first, count = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from robotd.contract.estimate import PoseState
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.localization.estimate import PoseState
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.prediction import Predictor, unlocalized
 

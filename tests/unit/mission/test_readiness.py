@@ -9,7 +9,7 @@ import pytest
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.localization.error_model import ErrorModel
+from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission import readiness

@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepDone
 from robotd.mission.map_in_use import MapInUse
 from robotd.mission.prediction import unlocalized

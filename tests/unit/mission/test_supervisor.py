@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.broadcast import Broadcast, Subscription
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, MissionError, RobotdError, TransportError
@@ -18,7 +19,6 @@ from robotd.hardware.devices.device import DeviceStatus, LinkState
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
 from robotd.hardware.devices.rangefinder import Shot
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.compute import ThreadCompute
 from robotd.mission.context import MissionContext
 from robotd.mission.events import Event, MissionPhase, MissionProgress

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.spec import GridSpec
 from robotd.planning.traversable import closed, free_cells, inflated, lone_hits
 
 masks = hnp.arrays(np.bool_, hnp.array_shapes(min_dims=2, max_dims=2, max_side=9))

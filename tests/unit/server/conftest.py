@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import MapError, MissionError
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.grid.spec import GridSpec
 from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.localization.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.maps.store import MapEntry
 from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.mission.lease import Lease

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.errors import MissionError, RemoteProtocolError, RequestTimeout, ServerError
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.mission.modes import Mode
 from robotd.server import api

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from robotd.contract.estimate import PoseState
 from robotd.core.errors import MissionError, RequestTimeout, ServerError, TransportError
 from robotd.core.pose import Pose2
-from robotd.localization.estimate import PoseState
 from robotd.mission.events import MissionPhase, MissionProgress
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.server.async_client import AsyncClient

@@ -15,9 +15,9 @@ from typing import Any
 import msgspec
 import pytest
 
+from robotd.contract.estimate import Circle, Cover, Extent, PoseState, Region
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.localization.estimate import Circle, Cover, Extent, PoseState, Region
 from robotd.mission.events import MapChanged, MissionPhase
 from robotd.mission.modes import Mode
 from robotd.mission.requests import Legs

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from robotd.contract.area import Area
 from robotd.core.errors import RemoteProtocolError, ServerError
 from robotd.core.pose import Pose2
-from robotd.localization.area import Area
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
 from robotd.server import api
 from robotd.server.envelope import (

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.broadcast import Broadcast
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, SweepProgress
 from robotd.server.decimation import Decimator
 from robotd.server.log_relay import relay_log

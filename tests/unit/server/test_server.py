@@ -19,11 +19,11 @@ import pytest
 import zmq
 import zmq.asyncio
 
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.clock import now_ns
 from robotd.core.errors import ServerError, TransportError
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
-from robotd.grid.spec import GridSpec
-from robotd.localization.estimate import PoseEstimate, PoseState
 from robotd.mission.events import MapChanged, MissionPhase, MissionProgress, Status
 from robotd.server import api
 from robotd.server.async_client import AsyncClient, AsyncSubscription

@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.core.errors import RemoteProtocolError
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry, Pose2, Twist2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.spec import GridSpec
 from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.localization.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
 from robotd.mission.modes import Mode
 from robotd.server.map_wire import MapPayload, pack_map, unpack_map

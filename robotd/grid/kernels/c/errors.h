@@ -1,4 +1,4 @@
-/* The smallest error radius of every cell (localization/smallest_error.py): what Python calls. */
+/* The smallest error radius of every cell (localization/reference/smallest_error.py): what Python calls. */
 
 typedef struct {
     const uint64_t *free;      /* [words + 4][rows + 64]: where the robot may stand */

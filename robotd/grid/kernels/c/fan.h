@@ -1,4 +1,4 @@
-/* Counting poses that cannot be excluded (localization/conservative.py): what Python calls.
+/* Counting poses that cannot be excluded (localization/conservative/conservative_poses.py): what Python calls.
  *
  * A fan is all beams that the error bounds allow, as windows of cells on successive lines of the grid (grid/fans.py).
  */

@@ -5,10 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.kernels._native import ffi, lib
 from robotd.grid.kernels.native.buffers import floats, longs, octets
-from robotd.grid.spec import GridSpec
 from robotd.grid.tables import UpdateTable
 
 

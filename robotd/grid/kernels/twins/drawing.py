@@ -21,7 +21,7 @@ Ints = NDArray[np.int64]
 
 
 def draw_beams(readings: NDArray[np.float64], headings: NDArray[np.float64], how: BeamSettings) -> Beams:
-    """Draw every reading at every heading, each beam with the cells that ``localization/probe.py`` gives it.
+    """Draw every reading at every heading, each beam with the cells that ``localization/reference/probe.py`` gives it.
 
     Args:
         readings: ``float64[n, 5]``: bearing [rad], range [m], x and y of the beam's start [m], all in the robot frame,

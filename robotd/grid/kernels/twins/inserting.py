@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.ray import ray_cells
-from robotd.grid.spec import GridSpec
 from robotd.grid.tables import UpdateTable
 
 

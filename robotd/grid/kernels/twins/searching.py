@@ -73,7 +73,7 @@ Beam = tuple[NDArray[np.int64], NDArray[np.int64] | None]
 
 
 def _beams(ground: Ground, question: Question, heading: int) -> list[Beam]:
-    """Draw all readings at one heading, by the rules of ``localization/probe.py``."""
+    """Draw all readings at one heading, by the rules of ``localization/reference/probe.py``."""
     heading_rad = question.headings_rad[heading]
     bearing_rad, range_m, x_m, y_m, is_miss = question.readings.T
     sin, cos = np.sin(heading_rad), np.cos(heading_rad)

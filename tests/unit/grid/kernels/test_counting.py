@@ -29,8 +29,8 @@ from robotd.grid.kernels.layout import (
     turned,
 )
 from robotd.grid.readings import numbers_of
-from robotd.localization.probe import probe_of
-from robotd.localization.rank import even_headings
+from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.reference.probe import probe_of
 
 try:
     NATIVE: ModuleType = importlib.import_module("robotd.grid.kernels.native")

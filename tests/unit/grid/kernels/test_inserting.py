@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.grid.kernels import twins
-from robotd.grid.spec import GridSpec
 from robotd.grid.tables import lower_table, raise_table
 
 try:

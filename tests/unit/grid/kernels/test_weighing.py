@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from robotd.grid.kernels import twins, weigh_beams
 from robotd.grid.kernels.chances import AS_MAPPED, IN_UNKNOWN, IN_VACANT, ChanceMap
-from robotd.localization.likelihood import skips_of
+from robotd.localization.judge.likelihood import skips_of
 
 VALUES = np.array([0, 60, 127, 128, 129, 190, 255], np.uint8)
 STOPS = np.where(np.arange(256) > 128, np.minimum(np.arange(256) / 255, 0.9), 0.001)

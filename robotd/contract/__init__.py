@@ -1,0 +1,1 @@
+"""What goes over the wire, declared once: requests, events, estimates, topics. Imports core alone."""

@@ -1,0 +1,1 @@
+"""Poses that cannot be excluded: the mode that never loses the true one."""

@@ -1,0 +1,102 @@
+"""The poses that one stop's readings do not exclude: what the conservative mode asks, after any reading.
+
+Unlike :mod:`.counting`, which asks for the best, this asks for all poses whose rank is no less than the true one's can
+be (:mod:`.conservative`): all readings but those that may break their bounds.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from robotd.contract.area import Area
+from robotd.core.reading import RangeReading
+from robotd.grid.readings import numbers_of
+from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
+from robotd.localization.count.count_all import MEMORY_BYTES, heading_batches
+from robotd.localization.search.bounded_search import Disk
+from robotd.localization.stop import FEW_HEADINGS, NOTHING, POSES_MAX, Found
+
+_HALF_DIAGONAL = math.sqrt(0.5)
+
+
+class Unexcluded:
+    """The readings of one stop against all its poses."""
+
+    def __init__(
+        self,
+        the_map: ConservativeMap,
+        headings_rad: Sequence[float],
+        within: Area | None,
+        *,
+        outlier_share: float,
+        threads: int,
+    ) -> None:
+        """Begin with no readings.
+
+        Args:
+            the_map: the map.
+            headings_rad: the headings to try, ascending; the true one lies within the map's bound of one of them.
+            within: where the robot is; None is anywhere.
+            outlier_share: of the readings, these may break their bounds.
+            threads: how many threads may share the work; no answer depends on it.
+        """
+        self.headings_rad = tuple(headings_rad)
+        self.readings: list[RangeReading] = []
+        self._map = the_map
+        self._within = within
+        self._outlier_share = outlier_share
+        self._threads = threads
+        self._kept = self._grid(self.headings_rad) if len(self.headings_rad) <= FEW_HEADINGS else None
+
+    def add(self, *readings: RangeReading) -> None:
+        """Take measured readings.
+
+        Raises:
+            ValueError: a reading measured nothing; then none is taken.
+        """
+        if self._kept is not None:
+            self._kept.add(*readings)
+        else:
+            numbers_of(readings)
+        self.readings.extend(readings)
+
+    def answers(self) -> Found:
+        """Return all poses that are not excluded.
+
+        O(headings x readings x cells), and a multiple of what :class:`.RankGrid` takes.
+        """
+        least_rank = max(1, len(self.readings) - math.floor(self._outlier_share * len(self.readings)))
+        best, count, found = 0, 0, []
+        for first, ranks in self._grids():
+            best, count = max(best, ranks.best_rank), count + ranks.count_of_rank(least_rank)
+            if count > POSES_MAX:
+                return Found(best, NOTHING.poses, NOTHING.ranks, is_all=False)
+            poses = ranks.cells_of_rank(least_rank)
+            found.append((poses + np.array([first, 0, 0]), ranks.rank_at(poses)))
+        if count == 0:
+            return NOTHING
+        poses, counts = (np.concatenate(part) for part in zip(*found, strict=True))
+        return self._inside(Found(best, poses, counts))
+
+    def _grids(self) -> Iterator[tuple[int, ConservativeRankGrid]]:
+        """Yield grids that count all readings, each of some headings, and the number of its first heading."""
+        if self._kept is not None:
+            yield 0, self._kept
+            return
+        batches = heading_batches(self._map.prepared, len(self.readings), self.headings_rad, MEMORY_BYTES)
+        for first, batch_rad in batches:
+            ranks = self._grid(batch_rad)
+            ranks.add(*self.readings)
+            yield first, ranks
+
+    def _grid(self, headings_rad: Sequence[float]) -> ConservativeRankGrid:
+        return ConservativeRankGrid(self._map, headings_rad, threads=self._threads)
+
+    def _inside(self, found: Found) -> Found:
+        """Leave out cells of which no point is where the robot is known to be."""
+        if self._within is None:
+            return found
+        disk = Disk.of(self._within, self._map.spec)
+        inside = np.hypot(found.poses[:, 1] - disk.row, found.poses[:, 2] - disk.col) <= disk.radius + _HALF_DIAGONAL
+        return Found(found.best_rank, found.poses[inside], found.ranks[inside]) if inside.any() else NOTHING

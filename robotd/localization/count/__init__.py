@@ -1,0 +1,1 @@
+"""Readings counted: rnk, over all poses or at one."""

@@ -1,0 +1,80 @@
+"""All poses counted within a stated memory: headings in batches, of which only the best poses are kept.
+
+A :class:`.RankGrid` holds the counts of all headings at once, which it must if readings are to
+come one by one. Where they are all there, one batch of headings after the other gives the same best poses, and the
+memory is that of one batch: so maps of any size can be counted. The bounded search (:mod:`.bounded_search`)
+gives the same answer sooner, by not counting what cannot be best.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.reading import RangeReading
+from robotd.localization.count.rank_grid import RankGrid, bits_of
+from robotd.localization.obstacles.prepared_map import PreparedMap
+
+MEMORY_BYTES = 1 << 28
+"""256 MiB."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CountedPoses:
+    """The poses of greatest rank, and those that come near them."""
+
+    best_rank: int
+    """The paper's kappa."""
+    poses: NDArray[np.intp]
+    """``intp[n, 3]``, ``(heading, row, col)``, ascending: all of at least the best rank less the slack, if not 0."""
+    ranks: NDArray[np.uint16]
+    """``uint16[n]``: how many readings each explains."""
+
+
+def count_all(
+    the_map: PreparedMap,
+    readings: Sequence[RangeReading],
+    headings_rad: Sequence[float],
+    *,
+    slack: int = 0,
+    threads: int = 1,
+    memory_bytes: int = MEMORY_BYTES,
+) -> CountedPoses:
+    """Count all readings at every free cell and heading; the same as a rank grid would.
+
+    Args:
+        the_map: the map.
+        readings: measured readings.
+        headings_rad: the headings to try, map frame.
+        slack: poses that explain so many readings fewer than the best are wanted, too.
+        threads: how many threads may share the counting; the answer does not depend on it.
+        memory_bytes: how much the counters may take; they take no less than one heading needs.
+
+    Raises:
+        ValueError: a reading measured nothing, or there are more than 65535.
+        TooLarge: a single heading needs more memory than a rank grid may take.
+    """
+    best, found = 0, []
+    for first, batch_rad in heading_batches(the_map, len(readings), headings_rad, memory_bytes):
+        ranks = RankGrid(the_map, batch_rad, threads=threads)
+        ranks.add(*readings)
+        best = max(best, ranks.best_rank)
+        poses = ranks.cells_of_rank(max(1, best - slack))
+        found.append((poses + np.array([first, 0, 0]), ranks.rank_at(poses)))
+    poses = np.concatenate([np.empty((0, 3), np.intp), *(part for part, _ in found)])
+    counts = np.concatenate([np.empty(0, np.uint16), *(part for _, part in found)])
+    near = counts >= max(1, best - slack)  # what came near the best of earlier headings may not come near the best
+    return CountedPoses(best, poses[near], counts[near])
+
+
+def heading_batches(
+    the_map: PreparedMap, readings: int, headings_rad: Sequence[float], memory_bytes: int
+) -> Iterator[tuple[int, Sequence[float]]]:
+    """Yield headings in batches whose counters take no more than so much memory, each after its first one's number.
+
+    A batch has one heading at least, whatever that takes.
+    """
+    batch = max(1, memory_bytes // max(1, the_map.packed.counter_bytes(1, bits_of(readings))))
+    for first in range(0, len(headings_rad), batch):
+        yield first, headings_rad[first : first + batch]

@@ -1,0 +1,187 @@
+"""How many readings each pose explains: the paper's rnk(M, Z, p), counted reading by reading or many at once.
+
+[BrownDonald2000]_ sec. 2.2.1 (consistent readings), 2.2.3 (theta slices), 2.3.3. What is counted is defined by
+:mod:`robotd.localization.reference.feasible_poses`; how, by :mod:`robotd.grid.kernels`.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.errors import TooLarge
+from robotd.core.reading import RangeReading
+from robotd.grid import kernels
+from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, BeamSettings, turned, unpack
+from robotd.grid.readings import numbers_of
+from robotd.localization.obstacles.prepared_map import PreparedMap
+
+_READINGS_MAX = int(np.iinfo(np.uint16).max)
+_BITS_AT_FIRST = 9
+"""A sweep of 300 readings fits; counters that must hold more are widened."""
+
+_BYTES_MAX = 1 << 30
+"""A rank grid that would be larger is refused."""
+
+_WORTH_THREADS = 1000
+"""Fewer beams than this are counted sooner than a thread is started."""
+
+
+class RankGrid:
+    """Counts feasible readings for every cell and every heading; it can be looked at after any of them.
+
+    Only free cells are poses; the rank of all others stays 0.
+
+    The counts of 2048 cells (a tile of 32 x 64 with a free cell in it), at one heading, take 256 bytes for every binary
+    digit, of which there are nine up to 511 readings: 300 headings of a room of 7 x 9 m at 50 mm take 10 MB, of
+    256 x 256 free cells 22 MB, of 1024 x 1024 free cells 350 MB. More than 1 GiB is refused; :func:`.counted.count_all`
+    counts maps of any size.
+    """
+
+    def __init__(self, the_map: PreparedMap, headings_rad: Sequence[float], *, threads: int = 1) -> None:
+        """Begin with no readings.
+
+        Args:
+            the_map: the map; what is derived from it is shared, nothing is copied.
+            headings_rad: the headings to try, map frame: one where it is known, else the theta slices.
+            threads: how many threads may share the counting; the counts do not depend on it.
+
+        Raises:
+            TooLarge: the counts would take more than 1 GiB.
+        """
+        self.spec = the_map.spec
+        self.headings_rad = tuple(headings_rad)
+        self.readings = 0
+        self._headings = turned(np.array(self.headings_rad, np.float64))
+        self._threads = threads
+        self._map = the_map.packed
+        reach_cells = 2 * max(the_map.spec.shape)
+        self._how = BeamSettings(the_map.spec.resolution_m, the_map.error_radius_cells, reach_cells)
+        self._refuse_if_too_large(bits_of(0))
+        self._counters = self._map.blank_counters(len(self.headings_rad), bits_of(0))
+
+    def add(self, *readings: RangeReading) -> None:
+        """Count measured readings, hits or misses; many at once cost less than one after the other.
+
+        O(directions x cells / 64 x length of the longest beam in cells + readings x headings x cells / 64), where the
+        directions are those of all readings at all headings.
+
+        Raises:
+            ValueError: a reading measured nothing, or it is the 65536th; then none was counted.
+            TooLarge: the counts of so many readings would take more than 1 GiB; then none was counted.
+        """
+        if self.readings + len(readings) > _READINGS_MAX:
+            raise ValueError(f"a rank grid counts {_READINGS_MAX} readings")
+        self._count(readings, subtract=False)
+
+    def remove(self, *readings: RangeReading) -> None:
+        """Take back readings that were added, in any order; costs what adding them did.
+
+        Which readings were added is not remembered: taking back others leaves counts that mean nothing.
+
+        Raises:
+            ValueError: a reading measured nothing, or more are taken back than were added; then nothing was.
+        """
+        if len(readings) > self.readings:
+            raise ValueError(f"{len(readings)} readings cannot be taken back of {self.readings}")
+        self._count(readings, subtract=True)
+
+    def _count(self, readings: Sequence[RangeReading], *, subtract: bool) -> None:
+        if not readings:
+            return
+        total = self.readings + (-len(readings) if subtract else len(readings))
+        numbers = numbers_of(readings)
+        self._make_room(bits_of(total))
+        self._count_numbers(numbers, subtract=subtract)
+        self.readings = total
+
+    def _count_numbers(self, numbers: NDArray[np.float64], *, subtract: bool) -> None:
+        """Count readings ``float64[n, 5]``, for which the counters have room."""
+        beams = kernels.draw_beams(numbers, self._headings, self._how)
+        threads = self._threads_for(len(numbers) * len(self.headings_rad))
+        kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
+
+    def _threads_for(self, beams: int) -> int:
+        """Return how many threads are worth starting."""
+        return self._threads if beams >= _WORTH_THREADS else 1
+
+    def _make_room(self, bits: int) -> None:
+        """Widen the counters so that they hold numbers of so many bits."""
+        missing = bits - self._counters.shape[2]
+        if missing > 0:
+            self._refuse_if_too_large(bits)
+            self._counters = np.pad(self._counters, ((0, 0), (0, 0), (0, missing), (0, 0)))
+
+    def _refuse_if_too_large(self, bits: int) -> None:
+        needed = self._map.counter_bytes(len(self.headings_rad), bits)
+        if needed > _BYTES_MAX:
+            raise TooLarge(
+                f"counting up to {(1 << bits) - 1} readings at {len(self.headings_rad)} headings on a map of "
+                f"{self.spec.rows} x {self.spec.cols} cells takes {needed / 2**30:.1f} GiB; at most "
+                f"{_BYTES_MAX / 2**30:.1f} GiB"
+            )
+
+    @property
+    def rank(self) -> NDArray[np.uint16]:
+        """The count, a new array ``uint16[headings, rows, cols]``."""
+        rank = np.zeros((len(self.headings_rad), *self.spec.shape), np.uint16)
+        tiled = np.zeros((len(self.headings_rad), self._map.rows, self._map.words), np.uint64)
+        blocks = tiled.reshape(len(self.headings_rad), -1, TILE_ROWS, self._map.words)
+        (top, left), (rows, cols) = self._map.origin, self.spec.shape
+        for bit in range(self._counters.shape[2]):
+            blocks[:, self._map.tiles[:, 1] // TILE_ROWS, :, self._map.tiles[:, 0]] = self._counters[:, :, bit]
+            cells = unpack(tiled[:, top : top + rows], left + cols)[:, :, left:]
+            rank |= cells.astype(np.uint16) << bit
+        return rank
+
+    @property
+    def best_rank(self) -> int:
+        """The greatest count (the paper's kappa)."""
+        return kernels.greatest(self._counters)
+
+    def cells_of_rank(self, least: int) -> NDArray[np.intp]:
+        """Return the poses that explain at least so many readings, ``intp[n, 3]`` as ``(heading, row, col)``, in order.
+
+        Only free cells are poses, even for a rank of 0.
+        """
+        reached = kernels.at_least(self._counters, self._map, max(least, 0))
+        if least <= 0:
+            reached &= self._map.free[PAD_WORDS:-PAD_WORDS, TILE_ROWS:-TILE_ROWS].T
+        heading, row, word = np.nonzero(reached)
+        which, bit = np.nonzero(unpack(reached[heading, row, word][:, None], WORD_CELLS))
+        poses = np.stack((heading[which], row[which], word[which] * WORD_CELLS + bit), axis=1)
+        poses -= np.array([0, *self._map.origin])
+        return poses
+
+    def count_of_rank(self, least: int) -> int:
+        """Return how many poses explain at least so many readings, one or more."""
+        reached = kernels.at_least(self._counters, self._map, max(least, 1))
+        return int(np.unpackbits(reached[reached != 0].view(np.uint8)).sum())
+
+    def rank_at(self, poses: NDArray[np.intp]) -> NDArray[np.uint16]:
+        """Return the counts ``uint16[n]`` of poses that :meth:`cells_of_rank` returned."""
+        heading, row, col = poses.T
+        row, col = row + self._map.origin[0], col + self._map.origin[1]
+        number = np.zeros((self._map.words, self._map.rows // TILE_ROWS), np.intp)
+        number[self._map.tiles[:, 0], self._map.tiles[:, 1] // TILE_ROWS] = np.arange(len(self._map.tiles))
+        tile = number[col // WORD_CELLS, row // TILE_ROWS]
+        words = self._counters[tile, heading, :, row % TILE_ROWS]
+        bits = words >> (col % WORD_CELLS).astype(np.uint64)[:, None] & np.uint64(1)
+        ranks: NDArray[np.uint16] = (bits << np.arange(bits.shape[1], dtype=np.uint64)).sum(axis=1).astype(np.uint16)
+        return ranks
+
+    @property
+    def best_cells(self) -> NDArray[np.intp]:
+        """The poses of greatest rank (the paper's loc), as :meth:`cells_of_rank`."""
+        return self.cells_of_rank(self.best_rank)
+
+
+def bits_of(readings: int) -> int:
+    """Return how many binary digits the counts of so many readings have."""
+    return max(_BITS_AT_FIRST, readings.bit_length())
+
+
+def even_headings(count: int) -> tuple[float, ...]:
+    """Return theta slices all round, ``2 pi k / count`` ([BrownDonald2000]_ sec. 2.2.3)."""
+    return tuple(math.tau * k / count for k in range(count))

@@ -1,0 +1,159 @@
+"""Regions in numbers: where they are, how far they reach, which readings they explain, and the best pose in each."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.contract.estimate import Covariance, Extent, Region
+from robotd.core.angles import wrap_rad
+from robotd.core.grid_spec import GridSpec
+from robotd.core.pose import Pose2
+from robotd.localization.count.explained import explained_at
+from robotd.localization.fit.refinement import PoseBox, RefinedPoses, RefinementSettings, refine
+from robotd.localization.places.pieces import Piece
+from robotd.localization.places.shapes import best_pose, cells_of, centre_of, circle_of, cover_of, extent_of
+from robotd.localization.ready_map import ReadyMap
+
+_NEAR_M, _NEAR_RAD = 0.15, 0.03
+"""The second look has moved its places uphill, by eye: the top of the hill is as near as that."""
+_RUNS_MAX = 32
+"""Longest list of cells in a message: about 300 bytes. What would be longer is told in coarser blocks."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Situation:
+    """What regions are described by: the map, the headings that were tried, and the readings."""
+
+    the_map: ReadyMap
+    headings_rad: tuple[float, ...]
+    readings: NDArray[np.float64]
+    """``float64[n, 5]``, of :func:`robotd.grid.readings.numbers_of`."""
+    refinement: RefinementSettings
+
+    @property
+    def spec(self) -> GridSpec:
+        """Where the cells lie."""
+        return self.the_map.ternary.spec
+
+    def refined(self, boxes: Sequence[PoseBox]) -> RefinedPoses:
+        """Return the pose in each box that fits the readings best."""
+        return refine(self.the_map.walls, self.readings, boxes, self.refinement)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Answer:
+    """One region, and what the second look says of it."""
+
+    piece: Piece
+    belief: float = 0.0
+    begin: Pose2 | None = None
+    """The best place in or near to it, if the second look took it into consideration."""
+
+
+def described(answers: Sequence[Answer], situation: Situation) -> tuple[Region, ...]:
+    """Return regions as they are told, in the same order."""
+    if not answers:
+        return ()
+    extents = [extent_of(answer.piece.poses, situation.spec, situation.headings_rad) for answer in answers]
+    boxes = [_box(answer, extent, situation) for answer, extent in zip(answers, extents, strict=True)]
+    wide = situation.refined(boxes)
+    # The box round a region that is no box holds cells that are not in it: there its nearest cell must do.
+    narrow = situation.refined(
+        [_box_of_cell(answer.piece, box, situation) for answer, box in zip(answers, boxes, strict=True)]
+    )
+    fits = (
+        _Fit.of(wide if _holds(answer.piece, wide.pose(number), situation) else narrow, number)
+        for number, answer in enumerate(answers)
+    )
+    return tuple(
+        _described(answer, extent, fit, situation) for answer, extent, fit in zip(answers, extents, fits, strict=True)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Fit:
+    """One refined pose."""
+
+    pose: Pose2
+    covariance: Covariance
+    residual_m: float
+
+    @classmethod
+    def of(cls, refined: RefinedPoses, number: int) -> "_Fit":
+        x, y, heading = (tuple(row) for row in refined.covariances[number].tolist())
+        return cls(refined.pose(number), (x, y, heading), float(refined.residual_m[number]))
+
+
+def _described(answer: Answer, extent: Extent, fit: _Fit, situation: Situation) -> Region:
+    piece, spec, headings_rad = answer.piece, situation.spec, situation.headings_rad
+    cells = cells_of(piece.poses, spec.cols)
+    heading, row, col = best_pose(piece)
+    prepared = situation.the_map.prepared
+    explained = explained_at(prepared, situation.readings, (row, col), headings_rad[heading])
+    return Region(
+        belief=answer.belief,
+        pose=fit.pose,
+        covariance=fit.covariance,
+        residual_m=fit.residual_m,
+        centre=centre_of(piece, spec, headings_rad),
+        extent=extent,
+        circle=circle_of(cells, spec),
+        cover=cover_of(cells, _RUNS_MAX),
+        cells=len(cells),
+        poses=len(piece.poses),
+        best_rank=int(piece.ranks.max()),
+        explained=tuple(explained.tolist()),
+    )
+
+
+def _box(answer: Answer, extent: Extent, situation: Situation) -> PoseBox:
+    """Return the box round a region; where a place in it is known to be the best, only what is near to that."""
+    begin = answer.begin or _best_of(answer.piece, situation)
+    x_m = min(max(begin.x_m, extent.x_min_m), extent.x_max_m)
+    y_m = min(max(begin.y_m, extent.y_min_m), extent.y_max_m)
+    heading_rad = _heading_in(extent, begin.heading_rad)
+    half_m, half_rad = (math.inf, math.inf) if answer.begin is None else (_NEAR_M, _NEAR_RAD)
+    return PoseBox(
+        Pose2(x_m, y_m, heading_rad),
+        max(extent.x_min_m, x_m - half_m),
+        min(extent.x_max_m, x_m + half_m),
+        max(extent.y_min_m, y_m - half_m),
+        min(extent.y_max_m, y_m + half_m),
+        max(extent.heading_min_rad, heading_rad - half_rad),
+        min(extent.heading_max_rad, heading_rad + half_rad),
+    )
+
+
+def _heading_in(extent: Extent, heading_rad: float) -> float:
+    """Return the heading of an extent that is nearest to another, counted as the extent counts."""
+    middle_rad = (extent.heading_min_rad + extent.heading_max_rad) / 2
+    near_rad = middle_rad + wrap_rad(heading_rad - middle_rad)
+    return min(max(near_rad, extent.heading_min_rad), extent.heading_max_rad)
+
+
+def _best_of(piece: Piece, situation: Situation) -> Pose2:
+    heading, row, col = best_pose(piece)
+    return Pose2(*situation.spec.centre_of(row, col), situation.headings_rad[heading])
+
+
+def _box_of_cell(piece: Piece, box: PoseBox, situation: Situation) -> PoseBox:
+    """Return the cell of a region that is nearest to where a box begins."""
+    spec = situation.spec
+    half_m = spec.resolution_m / 2
+    place = spec.positions_at(np.array([[box.start.x_m, box.start.y_m]]))[0] - 0.5
+    off = piece.poses[:, 1:] - place
+    row, col = piece.poses[int(np.hypot(off[:, 0], off[:, 1]).argmin()), 1:].tolist()
+    x_m, y_m = spec.centre_of(row, col)
+    start = Pose2(x_m, y_m, box.start.heading_rad)
+    return PoseBox(
+        start, x_m - half_m, x_m + half_m, y_m - half_m, y_m + half_m, box.heading_min_rad, box.heading_max_rad
+    )
+
+
+def _holds(piece: Piece, pose: Pose2, situation: Situation) -> bool:
+    """Whether the cell of a pose is one of the region's."""
+    row, col = situation.spec.cell_at(pose.x_m, pose.y_m)
+    return bool(((piece.poses[:, 1] == row) & (piece.poses[:, 2] == col)).any())

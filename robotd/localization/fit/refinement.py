@@ -1,0 +1,282 @@
+"""From a cell to a point: the pose that best lays the heads of the readings on the walls, within a box round the cell.
+
+Feasible poses ([BrownDonald2000]_ sec. 2.2.1) are cells; a sweep of 300 readings knows more than its cell. The sum of
+robust squared distances from the heads to the nearest wall is minimized, from a start and within bounds that the pose
+never leaves. It is said where in its cells a wall lies (:class:`Walls`), since that is worth half a cell: 25 mm.
+
+The covariance is that of the weighted least squares: the inverse normal matrix times the variance of the distances,
+which is taken from the readings themselves, times how much neighbouring readings err together. It tells how far the
+pose may be from the place where endlessly many such readings would see it *on this map*. What the map has wrong all
+along a wall no reading can tell: ``map_error_m`` is added for that. A direction in which the walls do not hold the pose
+(a corridor) has a standard deviation of up to 256 cells, however small the box.
+"""
+
+import enum
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.angles import wrap_rad
+from robotd.core.bounds import Within, refuse_outside
+from robotd.core.grid_spec import GridSpec
+from robotd.core.pose import Pose2
+from robotd.grid import kernels
+from robotd.grid.kernels.fitting import ENDS, Fits
+from robotd.grid.wall_field import WallField
+
+
+class Walls(enum.StrEnum):
+    """Where in its cells a wall lies."""
+
+    FACES = "faces"
+    """At the sides of its cells: a drawn map, whose cells are the truth."""
+    CENTRES = "centres"
+    """Along the middle of its cells: a map made of readings, whose heads lie anywhere in the cells they raised."""
+
+
+@dataclass(frozen=True, slots=True)
+class RefinementSettings:
+    """How poses are refined."""
+
+    walls: Walls = Walls.CENTRES
+    """Where in its cells a wall lies: ``centres`` for a map made of readings, ``faces`` for a drawn one."""
+    outlier_m: Annotated[float, Within(0.001, 5.0, "m")] = 0.2
+    """A reading whose head is farther than this from every wall has no say."""
+    map_error_m: Annotated[float, Within(0.0, 1.0, "m")] = 0.02
+    """How far the walls of the map may be off, all together: the standard deviation of x and y is no less."""
+    map_error_rad: Annotated[float, Within(0.0, 0.5, "rad")] = 0.005
+    """The same for the heading."""
+
+    def __post_init__(self) -> None:
+        """Refuse impossible values."""
+        refuse_outside(self)
+
+
+@dataclass(frozen=True, slots=True)
+class PoseBox:
+    """Where a pose may lie, and where to begin; headings are not wrapped, so that bounds may go round."""
+
+    start: Pose2
+    x_min_m: float
+    x_max_m: float
+    y_min_m: float
+    y_max_m: float
+    heading_min_rad: float
+    heading_max_rad: float
+
+    def __post_init__(self) -> None:
+        """Refuse a box that holds nothing."""
+        if not (
+            self.x_min_m <= self.x_max_m
+            and self.y_min_m <= self.y_max_m
+            and self.heading_min_rad <= self.heading_max_rad
+        ):
+            raise ValueError(f"bounds in the wrong order: {self}")
+
+    def begun_at(self, start: Pose2) -> "PoseBox":
+        """Return the same box with another start."""
+        return PoseBox(
+            start,
+            self.x_min_m,
+            self.x_max_m,
+            self.y_min_m,
+            self.y_max_m,
+            self.heading_min_rad,
+            self.heading_max_rad,
+        )
+
+    @classmethod
+    def around(cls, start: Pose2, half_m: float, half_rad: float) -> "PoseBox":
+        """Return the box that reaches so far to all sides of a pose."""
+        x_m, y_m, heading_rad = start.x_m, start.y_m, start.heading_rad
+        return cls(
+            start,
+            x_m - half_m,
+            x_m + half_m,
+            y_m - half_m,
+            y_m + half_m,
+            heading_rad - half_rad,
+            heading_rad + half_rad,
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Heads:
+    """Where the readings of a sweep end, in the robot frame, and which way they go."""
+
+    at_cells: NDArray[np.float64]
+    """``float64[hits, 2]``: x, y."""
+    is_hit: NDArray[np.bool_]
+    """``bool[m]``: which readings these are; misses have no head."""
+    beams: NDArray[np.float64]
+    """``float64[m, 4]``: x, y of the start [cells], cosine and sine of the bearing; of hits and misses."""
+
+    @classmethod
+    def of(cls, readings: NDArray[np.float64], resolution_m: float) -> "Heads":
+        """Take them from ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`."""
+        bearing_rad, range_, x, y, is_miss = columns = np.ascontiguousarray(readings.T)
+        columns[1:4] /= resolution_m
+        cosine, sine, is_hit = np.cos(bearing_rad), np.sin(bearing_rad), is_miss == 0.0
+        beams, at_cells = np.empty((len(readings), 4)), np.empty((len(readings), 2))
+        beams[:, 0], beams[:, 1], beams[:, 2], beams[:, 3] = x, y, cosine, sine
+        at_cells[:, 0], at_cells[:, 1] = x + range_ * cosine, y + range_ * sine
+        return cls(at_cells if is_hit.all() else at_cells[is_hit], is_hit, beams)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RefinedPoses:
+    """Refined poses, in the order of their boxes, and where each of ``m`` readings (hits and misses) then lies."""
+
+    poses: NDArray[np.float64]
+    """``float64[n, 3]``: x, y [m] and heading [rad, not wrapped], map frame."""
+    covariances: NDArray[np.float64]
+    """``float64[n, 3, 3]`` of x, y [m] and heading [rad]."""
+    residual_m: NDArray[np.float64]
+    """``float64[n]``: root of the weighted mean squared distance of the heads from the walls."""
+    weight: NDArray[np.float64]
+    """``float64[n]``: sum of the weights, so at most the number of hits."""
+    beyond_m: NDArray[np.float64]
+    """``float64[n, m]``: how far the head of each reading lies beyond the nearest wall, negative short of it; no more
+    than 8 cells, which is far from any. NaN for a miss."""
+
+    def pose(self, number: int) -> Pose2:
+        """Return one of the poses."""
+        x_m, y_m, heading_rad = self.poses[number].tolist()
+        return Pose2(x_m, y_m, wrap_rad(heading_rad))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExpectedRanges:
+    """What a robot should measure from ``n`` poses."""
+
+    ranges_m: NDArray[np.float64]
+    """``float64[n, m]``: from the beam's start to the side of the cell that stops it."""
+    ends: NDArray[np.bool_]
+    """``bool[n, m]``: whether that is a wall; else nobody knows what is there, or the map ends."""
+
+
+def refine(
+    field: WallField, readings: NDArray[np.float64], boxes: Sequence[PoseBox], settings: RefinementSettings
+) -> RefinedPoses:
+    """Return the best poses within boxes, for one sweep.
+
+    Args:
+        field: the map.
+        readings: ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`; misses have no head and no say.
+        boxes: where to begin, and what not to leave.
+        settings: where walls lie, and how robust.
+
+    O(n m) for each of at most 32 steps.
+    """
+    return refine_heads(field, Heads.of(readings, field.spec.resolution_m), boxes, settings)
+
+
+def refine_heads(
+    field: WallField, heads: Heads, boxes: Sequence[PoseBox], settings: RefinementSettings
+) -> RefinedPoses:
+    """Do as :func:`refine` with readings that are used more than once."""
+    spec = field.spec
+    fits = kernels.fit_poses(
+        field.codes,
+        DISTANCES[settings.walls],
+        heads.at_cells,
+        _in_cells(boxes, spec),
+        settings.outlier_m / spec.resolution_m,
+    )
+    return _in_metres(fits, heads, _Units.of(spec, settings))
+
+
+def expected_ranges(
+    field: WallField, readings: NDArray[np.float64], poses: NDArray[np.float64], blocked_by: int
+) -> ExpectedRanges:
+    """Return how far each beam goes from continuous poses, exactly, to the side of the cell that stops it.
+
+    Args:
+        field: the map.
+        readings: ``float64[m, 5]``; their ranges do not matter.
+        poses: ``float64[n, 3]``: x, y [m] and heading [rad], map frame.
+        blocked_by: how many blocking cells a beam must meet to be stopped, 1 or 2.
+    """
+    return ranges_along(field, Heads.of(readings, field.spec.resolution_m).beams, poses, blocked_by)
+
+
+def ranges_along(
+    field: WallField, beams: NDArray[np.float64], poses: NDArray[np.float64], blocked_by: int
+) -> ExpectedRanges:
+    """Do as :func:`expected_ranges` with the beams of :class:`Heads`."""
+    spec, at = field.spec, np.empty((len(poses), 4))
+    at[:, :2] = spec.positions_at(poses[:, :2])[:, ::-1]
+    np.cos(poses[:, 2], at[:, 2])
+    np.sin(poses[:, 2], at[:, 3])
+    ways, stops = kernels.cast_beams(field.skips, beams, at, blocked_by)
+    ways *= spec.resolution_m
+    return ExpectedRanges(ways, stops == ENDS)
+
+
+def _in_cells(boxes: Sequence[PoseBox], spec: GridSpec) -> NDArray[np.float64]:
+    """Return boxes as the kernel takes them, ``float64[n, 9]``."""
+    x_m, y_m, size_m = spec.origin_x_m, spec.origin_y_m, spec.resolution_m
+    rows = [
+        (
+            *((box.start.x_m - x_m) / size_m, (box.start.y_m - y_m) / size_m, box.start.heading_rad),
+            *((box.x_min_m - x_m) / size_m, (box.y_min_m - y_m) / size_m, box.heading_min_rad),
+            *((box.x_max_m - x_m) / size_m, (box.y_max_m - y_m) / size_m, box.heading_max_rad),
+        )
+        for box in boxes
+    ]
+    return np.array(rows, np.float64).reshape(-1, 9)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Units:
+    """What takes a pose in cells to one in metres, and its covariance; made once for a map."""
+
+    resolution_m: float
+    scale: NDArray[np.float64]
+    """``float64[3]``."""
+    origin: NDArray[np.float64]
+    """``float64[3]``."""
+    squared: NDArray[np.float64]
+    """``float64[3, 3]``: the scale of a covariance."""
+    map_error: NDArray[np.float64]
+    """``float64[3, 3]``: what the map adds to it."""
+
+    @staticmethod
+    @functools.lru_cache(maxsize=8)
+    def of(spec: GridSpec, settings: RefinementSettings) -> "_Units":
+        scale = np.array([spec.resolution_m, spec.resolution_m, 1.0])
+        origin = np.array([spec.origin_x_m, spec.origin_y_m, 0.0])
+        map_error = np.array([settings.map_error_m, settings.map_error_m, settings.map_error_rad])
+        return _Units(spec.resolution_m, scale, origin, scale[:, None] * scale, np.diag(map_error**2))
+
+
+def _in_metres(fits: Fits, heads: Heads, units: _Units) -> RefinedPoses:
+    beyond_m = fits.beyond * units.resolution_m
+    if len(heads.at_cells) < len(heads.is_hit):
+        of_hits, beyond_m = beyond_m, np.full((len(fits.poses), len(heads.is_hit)), math.nan)
+        beyond_m[:, heads.is_hit] = of_hits
+    return RefinedPoses(
+        poses=fits.poses * units.scale + units.origin,
+        covariances=fits.covariances * units.squared + units.map_error,
+        residual_m=np.sqrt(fits.quality[:, 1]) * units.resolution_m,
+        weight=fits.quality[:, 0],
+        beyond_m=beyond_m,
+    )
+
+
+def _distances(walls: Walls) -> NDArray[np.float64]:
+    """Return what distance each code stands for, ``float64[256]`` [cells], by ``code + 128``."""
+    codes = np.arange(-128, 128)
+    roots = np.sqrt(np.abs(codes))
+    if walls is Walls.FACES:
+        return np.where(codes > 0, roots - 0.5, 0.5 - roots)
+    return np.where(codes > 0, roots, 0.0)
+
+
+DISTANCES = {walls: _distances(walls) for walls in Walls}
+"""What distance each code of a wall field stands for, ``float64[256]`` [cells], by ``code + 128``."""

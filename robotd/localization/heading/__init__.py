@@ -1,0 +1,1 @@
+"""The heading before the position: separated orientation."""

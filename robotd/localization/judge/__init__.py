@@ -1,0 +1,1 @@
+"""Which place is it, and is that sure? The second look."""

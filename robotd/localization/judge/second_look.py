@@ -1,0 +1,215 @@
+"""A second look at the places that the count of readings left: which is it, and is that sure?
+
+Several places may explain as many readings as the right one ([BrownDonald2000]_ sec. 2.2.1: all of them are the
+answer). How well they explain them, by :mod:`.likelihood`, decides most such cases. The rest must
+be known as undecided, so every answer is weighed against all others there can be:
+
+- every other place, moved uphill from the shortlist: rivals;
+- the poses a little aside of the best one: where nothing holds it, as along a corridor, one of them is as good;
+- nowhere: the robot is not on the map, or the map is no longer true, and readings are what they are in any building.
+
+What is compared is evidence in the sense of Bayes. Readings that say the same count once (:mod:`.patches`), else
+twenty beams on one moved chair would be evidence enough against any place.
+
+Belief alone is too sure of itself where two places truly are alike: by luck the map shows one of them a little more
+sharply, and over a whole room that adds up to any belief. So a place must also stand out from each other one by its
+*contrast*: the sum of what the readings say, by its standard error. No single reading can decide, and no sum of
+differences that are as small as such luck.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.contract.estimate import PoseState
+from robotd.core.bounds import Within, refuse_outside
+from robotd.localization.judge.climbing import Hill, climb
+from robotd.localization.judge.error_model import ErrorModel
+from robotd.localization.judge.likelihood import Likelihood
+from robotd.localization.judge.patches import thinned, weights
+from robotd.localization.judge.shortlist import near, shortlist
+
+_GLANCE_STEPS = ((0.06, 0.026), (0.03, 0.012))
+_GLANCE_MOVES = 2
+_CLIMBERS_PER_PLACE = 3
+"""So many of the starts, for each place that will be looked at, are moved uphill: several may end on the same hill."""
+_LOOK_STEPS = ((0.04, 0.012), (0.02, 0.006), (0.01, 0.003))
+_ASIDE_STEPS = ((0.02, 0.006),)
+_ASIDE_MOVES = 4
+_ASIDE = 1.2
+"""What lies aside begins so much farther away than the same place ends: by the moves that it is then given."""
+_DIRECTIONS = 16
+_TOGETHER_M, _TOGETHER_RAD = 0.1, 0.03
+"""Starts that end so near to each other climbed the same hill."""
+_ELSEWHERE_M, _ELSEWHERE_RAD = 1.0, 0.35
+"""So far away, or turned by so much, a place has the readings on other walls."""
+_HOPELESS_SHARE, _HOPELESS = 0.5, 10.0
+"""A place so far behind at a glance, for each independent reading and altogether, is not looked at: a glance errs by
+far less."""
+
+
+@dataclass(frozen=True, slots=True)
+class SecondLookSettings:
+    """What counts as one place, and how sure is sure."""
+
+    patch_m: Annotated[float, Within(0.001, 5.0, "m")] = 0.2
+    """Readings that end nearer to each other than this say, by so much, the same."""
+    readings_max: Annotated[int, Within(1, 10_000)] = 120
+    """Of more readings than this so many are looked at, those that end farthest apart."""
+    glance_readings_max: Annotated[int, Within(1, 10_000)] = 40
+    """The same for the first glance, at all places of the shortlist."""
+    starts_max: Annotated[int, Within(1, 100_000)] = 200
+    """Places at which the first glance is taken, those first that explain most readings."""
+    places_max: Annotated[int, Within(1, 10_000)] = 16
+    """Places that are looked at closely, those first that looked best at a glance."""
+    same_within_m: Annotated[float, Within(0.001, 5.0, "m")] = 0.3
+    """Poses nearer than this, and with headings nearer than ``same_within_rad``, are one place."""
+    same_within_rad: Annotated[float, Within(0.001, math.pi, "rad")] = 0.0873
+    """See ``same_within_m``."""
+    off_map_share: Annotated[float, Within(1e-6, 0.49, "of 1")] = 0.1
+    """Belief, before any reading, that the robot is not on the map."""
+    doubt_max: Annotated[float, Within(1e-6, 0.49, "of 1")] = 0.05
+    """All that is not the best place may have this share of the belief if the robot is to be called localized."""
+    contrast_min: Annotated[float, Within(0.0, 100.0)] = 1.28
+    """And so many standard errors must what the readings say for the best place, rather than any other, be above 0: by
+    chance the wrong one of two places that are alike in truth reaches that once in ten times."""
+
+    def __post_init__(self) -> None:
+        """Refuse impossible values."""
+        refuse_outside(self)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SecondLook:
+    """What the second look found."""
+
+    state: PoseState
+    poses: NDArray[np.float64]
+    """``float64[k, 3]``: x, y [m] and heading [rad] of the places that were looked at closely, best first."""
+    evidence: NDArray[np.float64]
+    """``float64[k]``: how much likelier each place is than being elsewhere, logarithm of the ratio of beliefs."""
+    beliefs: NDArray[np.float64]
+    """``float64[k]``: share of each place, out of all places, what lies aside of the best, and nowhere."""
+    aside: float
+    """Share of what lies aside of the best place: near to 0.5 and above where nothing holds it."""
+    nowhere: float
+    """Share of being nowhere on the map."""
+    contrast: float
+    """Least contrast of the best place with any elsewhere on the map, in standard errors; infinite if there is none."""
+
+
+def second_look(
+    likelihood: Likelihood,
+    readings: NDArray[np.float64],
+    poses: NDArray[np.float64],
+    ranks: NDArray[np.integer],
+    settings: SecondLookSettings,
+) -> SecondLook:
+    """Look closely at the places that poses of high rank stand for.
+
+    Args:
+        likelihood: of the map.
+        readings: ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`.
+        poses: ``float64[n, 3]``: x, y [m] and heading [rad]: the best poses of the count and all that come near them.
+        ranks: ``[n]``: how many readings each explains.
+        settings: what counts as one place, and how sure is sure.
+
+    Depends on nothing but its arguments. O(starts x readings x length of a beam in cells).
+    """
+    starts = _glance(likelihood, readings, poses[shortlist(poses, ranks, 0.2, 0.07, settings.starts_max)], settings)
+    if len(starts) == 0 or len(readings) == 0:
+        return SecondLook(PoseState.LOST, np.zeros((0, 3)), np.zeros(0), np.zeros(0), 0.0, 1.0, 0.0)
+    kept = thinned(readings, settings.patch_m / 2.0, settings.readings_max)
+    hill = Hill(likelihood, likelihood.sight(kept), weights(kept, settings.patch_m))
+    found, scores = climb(hill, starts, _LOOK_STEPS)
+    apart = shortlist(found, _in_order(scores), _TOGETHER_M, _TOGETHER_RAD, len(found))
+    found, scores = found[apart], scores[apart]
+    is_rival = ~near(found, found[0], settings.same_within_m, settings.same_within_rad)
+    is_rival[0] = True
+    found, scores = found[is_rival], scores[is_rival]
+    _, aside = climb(hill, _around(found[0], settings), _ASIDE_STEPS, _ASIDE_MOVES)
+    to_beat = float((likelihood.elsewhere_logs(hill.sight) * hill.weights).sum())
+    to_beat += math.log(_places(likelihood, settings) * settings.off_map_share / (1.0 - settings.off_map_share))
+    contrast = _contrast(hill, found)
+    return _weigh(found, scores - to_beat, float(aside.max()) - to_beat, contrast, settings)
+
+
+def _glance(
+    likelihood: Likelihood, readings: NDArray[np.float64], starts: NDArray[np.float64], settings: SecondLookSettings
+) -> NDArray[np.float64]:
+    """Return the starts, moved uphill, that are worth a closer look: with half the sharpness and fewer readings."""
+    if len(starts) == 0 or len(readings) == 0:
+        return starts
+    blurred = likelihood.with_model(_blurred(likelihood.model))
+    kept = thinned(readings, settings.patch_m, settings.glance_readings_max)
+    hill = Hill(blurred, blurred.sight(kept), weights(kept, settings.patch_m))
+    highest = np.argsort(-hill.heights(starts), kind="stable")[: _CLIMBERS_PER_PLACE * settings.places_max]
+    found, scores = climb(hill, starts[highest], _GLANCE_STEPS, _GLANCE_MOVES)
+    hopeless = float(scores.max()) - _HOPELESS_SHARE * float(hill.weights.sum()) - _HOPELESS
+    found, scores = found[scores >= hopeless], scores[scores >= hopeless]
+    chosen = shortlist(found, _in_order(scores), _TOGETHER_M, _TOGETHER_RAD, settings.places_max)
+    best: NDArray[np.float64] = found[chosen]
+    return best
+
+
+def _blurred(model: ErrorModel) -> ErrorModel:
+    """Return the model for poses that are a step away from the top of their hill."""
+    return replace(model, map_sigma_m=2 * model.map_sigma_m, map_sigma_rad=2 * model.map_sigma_rad)
+
+
+def _in_order(scores: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return whole numbers that order as the scores do."""
+    order: NDArray[np.intp] = np.unique(scores, return_inverse=True)[1]
+    return order
+
+
+def _around(pose: NDArray[np.float64], settings: SecondLookSettings) -> NDArray[np.float64]:
+    """Return poses that just are not the same place any more, ``float64[n, 3]``."""
+    reach_m, reach_rad = _ASIDE * settings.same_within_m, _ASIDE * settings.same_within_rad
+    angles = np.arange(_DIRECTIONS) * (math.tau / _DIRECTIONS)
+    moved = reach_m * np.stack((np.cos(angles), np.sin(angles), np.zeros(_DIRECTIONS)), axis=1)
+    turned = np.array([[0.0, 0.0, reach_rad], [0.0, 0.0, -reach_rad]])
+    around: NDArray[np.float64] = pose + np.concatenate((moved, turned))
+    return around
+
+
+def _places(likelihood: Likelihood, settings: SecondLookSettings) -> float:
+    """Return how many places the map has room for, at least one."""
+    vacant_m2 = likelihood.vacant_m2
+    return max(1.0, vacant_m2 / settings.same_within_m**2 * math.tau / settings.same_within_rad)
+
+
+def _contrast(hill: Hill, poses: NDArray[np.float64]) -> float:
+    """Return the least contrast of the first of poses ``float64[n, 3]`` with those that are seen on other walls.
+
+    Vuong's test for which of two models is nearer to the truth (Econometrica 57, 1989), the models being two places,
+    and its standard error widened by what all readings have in common: how sharply the map shows a place.
+    A pose close by sees the same walls: what the map has wrong of them is as wrong for both, and belief is enough.
+    """
+    elsewhere = poses[~near(poses, poses[0], _ELSEWHERE_M, _ELSEWHERE_RAD)]
+    logs = hill.likelihood.logs(hill.sight, np.concatenate((poses[:1], elsewhere))) * hill.weights
+    said = logs[0] - logs[1:]
+    in_common = hill.likelihood.model.map_sharpness_sigma * float(hill.weights.sum())
+    errors = np.sqrt((said * said).sum(axis=1) + in_common**2)
+    contrasts = np.divide(said.sum(axis=1), errors, out=np.zeros(len(said)), where=errors > 0.0)
+    return float(contrasts.min(initial=math.inf))
+
+
+def _weigh(
+    poses: NDArray[np.float64],
+    evidence: NDArray[np.float64],
+    aside: float,
+    contrast: float,
+    settings: SecondLookSettings,
+) -> SecondLook:
+    """Share the belief among the places, what lies aside of the best, and nowhere, whose evidence is 0."""
+    powers = np.exp(np.append(evidence, (aside, 0.0)) - max(float(evidence[0]), 0.0))
+    shares = powers / powers.sum()
+    is_sure = float(shares[0]) >= 1.0 - settings.doubt_max and contrast >= settings.contrast_min
+    nowhere = float(shares[-1])
+    on_map = PoseState.LOCALIZED if is_sure else PoseState.AMBIGUOUS
+    state = PoseState.LOST if nowhere > 0.5 else on_map
+    return SecondLook(state, poses, evidence, shares[:-2], float(shares[-2]), nowhere, contrast)

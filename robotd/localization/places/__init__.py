@@ -1,0 +1,1 @@
+"""From poses to places: connected pieces, their shapes and circles."""

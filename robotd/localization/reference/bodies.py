@@ -1,0 +1,86 @@
+"""Readings drawn at one heading with no error, and what error would shorten their bodies to every cell of them.
+
+The cells are those of :mod:`robotd.localization.reference.probe`, for all readings at a time.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.grid_spec import GridSpec
+from robotd.grid.kernels.layout import FAR_CELLS, NO_HEAD, Bodies
+from robotd.grid.ray import ray_steps
+from robotd.localization.reference.error_map import NEVER
+
+_CENTRE = 0.5
+RANGE_CELLS_MAX = 32_000
+"""Errors of longer readings do not fit into sixteen bits with room to spare."""
+
+
+def draw_bodies(numbers: NDArray[np.float64], heading_rad: float, spec: GridSpec) -> Bodies:
+    """Draw readings.
+
+    Args:
+        numbers: ``float64[n, 5]``, as :func:`robotd.grid.readings.numbers_of` returns them.
+        heading_rad: of the robot, in the map frame.
+        spec: of the map.
+
+    Raises:
+        ValueError: a reading is longer than 32 000 cells.
+    """
+    bearing_rad, range_m, x_m, y_m, is_miss = numbers.T
+    sin, cos = np.sin(heading_rad), np.cos(heading_rad)
+    starts = np.stack((sin * x_m + cos * y_m, cos * x_m - sin * y_m), axis=1) / spec.resolution_m
+    bearings_rad, range_cells = heading_rad + bearing_rad, range_m / spec.resolution_m
+    if range_cells.max(initial=0.0) > RANGE_CELLS_MAX:
+        raise ValueError(f"a reading is {range_cells.max():.0f} cells long; at most {RANGE_CELLS_MAX}")
+    errors, counts = errors_by_samples(bearings_rad, range_cells, reach_cells(spec))
+    ends = np.cumsum(counts)
+    k = np.arange(len(errors)) - np.repeat(ends - counts, counts)
+    offsets = np.floor(_CENTRE + k[:, None] * np.repeat(ray_steps(bearings_rad), counts, axis=0))
+    ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)
+    heads = _nearest(starts + range_cells[:, None] * ahead)
+    heads[is_miss > 0.0] = NO_HEAD
+    return Bodies(
+        chains=(offsets + np.repeat(_nearest(starts), counts, axis=0)).astype(np.int32),
+        lengths=np.minimum(errors, NEVER).astype(np.uint16),
+        readings=np.column_stack((ends - counts, ends, heads)).astype(np.int32),
+    )
+
+
+def errors_by_samples(
+    bearings_rad: NDArray[np.float64], range_cells: NDArray[np.float64], reach: int
+) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Return the smallest whole eps that leaves rays no more than 0, 1, 2, ... samples; no eps leaves them none.
+
+    Args:
+        bearings_rad: ``float64[n]``.
+        range_cells: ``float64[n]``, lengths of the rays if there is no error.
+        reach: where they end at the latest.
+
+    Returns:
+        ``float64[cells]``, whole numbers and ``inf``, for every sample of ray after ray; and how many each has,
+        ``intp[n]``.
+    """
+    per_cell = np.maximum(np.abs(np.cos(bearings_rad)), np.abs(np.sin(bearings_rad)))
+    counts = np.maximum(1.0, np.ceil(np.minimum(range_cells, reach) * per_cell)).astype(np.intp)
+    left = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
+    ranges, shares = np.repeat(range_cells, counts), np.repeat(per_cell, counts)
+    sample_cells = np.repeat(np.hypot(*ray_steps(bearings_rad).T), counts)
+    # In exact arithmetic this is the answer; rounding may make it the one next to it.
+    errors: NDArray[np.float64] = np.ceil(ranges - left * sample_cells) + 1.0
+    for _ in range(2):
+        fewer = np.maximum(0.0, errors - 1.0)
+        samples = np.ceil(np.clip(ranges - fewer, 0.0, reach) * shares)
+        errors = np.where(np.maximum(1.0, samples) <= left, fewer, errors)
+    errors[left == 0] = np.inf
+    return errors, counts
+
+
+def reach_cells(spec: GridSpec) -> int:
+    """Return where bodies end at the latest: beyond the grid."""
+    return 2 * max(spec.shape)
+
+
+def _nearest(cells: NDArray[np.float64]) -> NDArray[np.float64]:
+    nearest: NDArray[np.float64] = np.floor(np.clip(cells, -FAR_CELLS, FAR_CELLS) + _CENTRE)
+    return nearest

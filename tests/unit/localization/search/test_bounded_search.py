@@ -1,0 +1,141 @@
+"""The search against the count of everything: always the same poses, whatever the map and the question."""
+
+import importlib
+import math
+from types import ModuleType
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from robotd.core.grid_spec import GridSpec
+from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.grid.footprints import dilate, disk_footprint
+from robotd.grid.kernels import twins
+from robotd.grid.readings import numbers_of
+from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.reference.feasible_poses import feasible_poses
+from robotd.localization.reference.probe import probe_of
+from robotd.localization.search import bounded_search as search
+from robotd.localization.search.bounded_search import BestPoses, Box, Disk, Prior, SearchMap, best_poses
+
+try:
+    NATIVE: ModuleType = importlib.import_module("robotd.grid.kernels.native")
+except ImportError:
+    NATIVE = twins
+both = pytest.mark.parametrize("module", {"numpy": twins, "c": NATIVE}.values(), ids=["numpy", "c or numpy"])
+
+RESOLUTION_M = 0.5
+
+
+@st.composite
+def some_obstacles(draw: st.DrawFn) -> tuple[Obstacles, float]:
+    shape = draw(st.tuples(st.integers(1, 30), st.integers(1, 70)))
+    random = np.random.default_rng(draw(st.integers(0, 2**32)))
+    radius = draw(st.sampled_from([0.0, 1.0, 1.5, 3.0, 9.0]))
+    solid = np.kron(random.random((4, 8)) < draw(st.sampled_from([0.0, 0.3])), np.ones((8, 9), np.bool_))
+    solid = solid[: shape[0], : shape[1]] | (random.random(shape) < draw(st.sampled_from([0.0, 0.03, 0.3])))
+    unknown = random.random(shape) < draw(st.sampled_from([0.0, 0.1]))
+    ends = solid if draw(st.booleans()) else solid | unknown
+    outside_ends = draw(st.booleans())
+    obstacles = Obstacles(
+        free=~solid & ~unknown,
+        blocking=solid | unknown if draw(st.booleans()) else solid,
+        grown=dilate(ends, disk_footprint(radius), outside=outside_ends),
+        outside_blocks=draw(st.booleans()),
+        outside_ends=outside_ends,
+        blocked_by=draw(st.sampled_from([1, 2])),
+    )
+    return obstacles, radius
+
+
+origins = st.sampled_from([0.0, 0.0, 0.0, 0.7, -1.2])
+readings = st.lists(
+    st.builds(
+        RangeReading,
+        st.just(0),
+        st.one_of(st.floats(-4.0, 4.0), st.integers(0, 8).map(lambda k: math.tau * k / 8)),
+        st.sampled_from([ReadingStatus.OK, ReadingStatus.OK, ReadingStatus.OK, ReadingStatus.MISS]),
+        st.one_of(st.floats(0.1, 12.0), st.sampled_from([0.5, 3.0, 3.25, 1e9])),
+        origin_x_m=origins,
+        origin_y_m=origins,
+    ),
+    min_size=1,
+    max_size=12,
+)
+headings = st.lists(st.floats(-4.0, 4.0), min_size=1, max_size=3)
+eighths = st.integers(-40, 480).map(lambda eighths: eighths / 8)
+priors = st.one_of(
+    st.none(),
+    st.none(),
+    st.builds(Disk, eighths, eighths, st.integers(0, 240).map(lambda eighths: eighths / 8)),
+    st.builds(Box, *[st.integers(-5, 70)] * 4),
+)
+
+
+def counted(
+    obstacles: Obstacles, radius: float, sweep: list[RangeReading], headings_rad: list[float]
+) -> NDArray[np.int64]:
+    """Every rank, -1 where nobody stands, ``int64[headings, rows, cols]``."""
+    ranks = np.zeros((len(headings_rad), *obstacles.free.shape), np.int64)
+    for number, heading_rad in enumerate(headings_rad):
+        for reading in sweep:
+            probe = probe_of(
+                reading, heading_rad, resolution_m=RESOLUTION_M, error_radius_cells=radius, reach_cells=400
+            )
+            ranks[number] += feasible_poses(obstacles, probe)
+        ranks[number][~obstacles.free] = -1
+    return ranks
+
+
+def asked_for(prior: Prior | None, shape: tuple[int, int]) -> NDArray[np.bool_]:
+    row, col = np.indices(shape)
+    match prior:
+        case None:
+            return np.ones(shape, np.bool_)
+        case Disk():
+            return np.asarray((row - prior.row) ** 2 + (col - prior.col) ** 2 <= prior.radius**2)
+        case Box():
+            rows = (prior.row_first <= row) & (row < prior.row_last)
+            return np.asarray(rows & (prior.col_first <= col) & (col < prior.col_last))
+
+
+def assert_is(found: BestPoses, ranks: NDArray[np.int64], slack: int, least_rank: int) -> None:
+    best = int(ranks.max(initial=0))
+    least = max(1, best - slack)
+    expected = np.argwhere(ranks >= least)
+    if best < least_rank or best < 1:
+        assert (found.best_rank, len(found.poses), len(found.ranks)) == (0, 0, 0)
+        return
+    assert (found.best_rank, found.least_rank) == (best, least)
+    assert np.array_equal(found.poses, expected)
+    assert np.array_equal(found.ranks, ranks[tuple(expected.T)])
+
+
+@both
+@settings(max_examples=150, deadline=None)
+@given(some_obstacles(), readings, headings, priors, st.integers(0, 4), st.integers(0, 8), st.booleans())
+def test_the_answer_is_that_of_counting_everything(
+    module: ModuleType,
+    drawn: tuple[Obstacles, float],
+    sweep: list[RangeReading],
+    headings_rad: list[float],
+    prior: Prior | None,
+    slack: int,
+    least_rank: int,
+    in_blocks: bool,
+) -> None:
+    obstacles, radius = drawn
+    spec = GridSpec(RESOLUTION_M, 0.0, 0.0, obstacles.free.shape)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(search, "kernels", module)
+        patch.setattr(search, "_FEW_CELLS", 0 if in_blocks else 1 << 30)
+        ready = SearchMap.of(obstacles, spec, radius)
+        found = best_poses(
+            ready, numbers_of(sweep), np.array(headings_rad), slack=slack, least_rank=least_rank, prior=prior
+        )
+    ranks = counted(obstacles, radius, sweep, headings_rad)
+    ranks[:, ~asked_for(prior, spec.shape)] = -1
+    assert_is(found, ranks, slack, least_rank)
