@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robotd.cli.quantities import positive
-from robotd.cli.terminal import complain
+from robotd.cli.show.terminal import complain
 from robotd.core.errors import RecordingError
 from robotd.logs.scan import RecordedLog
 from robotd.sim.log_file import read_log

@@ -38,13 +38,13 @@ WORDS = {
         "recordings",
         "run the daemon again on recorded bytes, and compare every result; exit code 1 if one differs",
     ),
-    "eval": ("eval.verbs", "tell how often localization is right, ambiguous, lost, or sure and wrong on real logs"),
+    "eval": ("evaluate", "tell how often localization is right, ambiguous, lost, or sure and wrong on real logs"),
     "config": ("configuration", "check and show configurations"),
     "exact": ("exact", "localize on a map of polygons by the exact combinatorial algorithm, without rounding"),
     "doctor": ("doctor", "say what this installation consists of, which kernels it uses and why, and what it can see"),
-    "demo": ("demo.verbs", "show the main job, end to end, on a robot that is not there"),
+    "demo": ("demo", "show the main job, end to end, on a simulated robot"),
 }
-"""The first words of the command line: the module with the verbs that begin so, and what they do.
+"""The first words of the command line: the module of `robotd.cli.verbs` with the verbs that begin so, and what they do.
 
 Only that module is imported: half of the verbs need simulation, maps or a configuration, and a ``stop`` must not wait
 for what it does not need.
@@ -60,7 +60,7 @@ class _Help(RawDescriptionRichHelpFormatter):
 
 def verbs_of(word: str) -> tuple[Verb, ...]:
     """Return the verbs that begin with a word: one, or a family."""
-    verbs: tuple[Verb, ...] = importlib.import_module(f"robotd.cli.{WORDS[word][0]}").VERBS
+    verbs: tuple[Verb, ...] = importlib.import_module(f"robotd.cli.verbs.{WORDS[word][0]}").VERBS
     return tuple(verb for verb in verbs if verb.name.split()[0] == word)
 
 
@@ -68,7 +68,7 @@ def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
     """Return a parser that knows every first word, and all about the one on this command line."""
     parser = argparse.ArgumentParser(
         prog="robotctl",
-        description="Talk to robotd: missions, maps, poses, recordings, and robots that are not there.",
+        description="Talk to robotd: missions, maps, poses, recordings, and simulated robots.",
         epilog="robotctl VERB --help tells more, with an example.",
         formatter_class=_Help,
     )
@@ -118,7 +118,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _complain(code: int, *lines: str) -> int:
-    from robotd.cli.terminal import complain  # noqa: PLC0415  # what starts quickly can be interrupted cleanly
+    from robotd.cli.show.terminal import complain  # noqa: PLC0415  # what starts quickly can be interrupted cleanly
 
     for line in lines:
         complain(line)

@@ -6,13 +6,13 @@ from contextlib import closing
 from typing import Protocol
 
 from robotd.cli.connection import connect
-from robotd.cli.progress import MissionBars
-from robotd.cli.terminal import complain, out, print_json
+from robotd.cli.show.progress import MissionBars
+from robotd.cli.show.terminal import complain, out, print_json
+from robotd.cli.show.wording import as_json, estimate_in_words
 from robotd.cli.verb import FAILED, INTERRUPTED, OK
-from robotd.cli.wording import as_json, estimate_in_words
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.errors import MissionError, RobotdError
-from robotd.mission.requests import Mission
+from robotd.mission.requests import Legs, Mission
 from robotd.server.client import Client
 from robotd.server.mission_run import MissionEvent
 
@@ -67,3 +67,13 @@ def _stop(client: Client) -> int:
     else:
         complain("interrupted: the robot was stopped and disarmed")
     return INTERRUPTED
+
+
+def legs_argument(parser: argparse.ArgumentParser) -> None:
+    """Let the command line choose how the robot gets from place to place."""
+    parser.add_argument(
+        "--legs",
+        choices=[legs.value for legs in Legs],
+        default=Legs.PLANNED.value,
+        help="round the obstacles on the map, or straight, as you know it to be free (default: planned)",
+    )

@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from robotd.cli.exact_pictures import box_of, fill, outline
+from robotd.cli.pictures.exact_sets import box_of, fill, outline
 from robotd.exact.beams import Beam
 from robotd.exact.feasible import PolygonMap, feasible_poses, of_rank, ranked
 from robotd.exact.planar import PlanarSet

@@ -9,7 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from robotd.cli.exact_pictures import box_of, draw_ranks
+from robotd.cli.pictures.exact_sets import box_of, draw_ranks
 from robotd.exact.feasible import PolygonMap, ranked
 from robotd.exact.rationals import rational
 from tests.exact.growth import STEP_M, Growth

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from robotd.cli.exact_pictures import fill, outline
+from robotd.cli.pictures.exact_sets import fill, outline
 from robotd.exact.arrangement import Arrangement
 from robotd.exact.planar import PlanarSet, area_within, segment
 from robotd.exact.points import Point

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from robotd.cli.eval.cases import divide
-from robotd.cli.eval.recorded import Reach, map_of, readings_of
 from robotd.core.pose import Pose2
+from robotd.evaluation.division import divide
+from robotd.evaluation.recorded import Reach, map_of, readings_of
 from robotd.grid.occupancy import GridSettings
 from robotd.grid.readings import numbers_of
 from robotd.grid.ternary import TernaryMap

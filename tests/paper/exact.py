@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from matplotlib.axes import Axes
 
-from robotd.cli.exact_pictures import fill
+from robotd.cli.pictures.exact_sets import fill
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.exact.arrangement import Arrangement
 from robotd.exact.beams import Beam, beam

@@ -10,12 +10,12 @@ from robotd.cli.demo.mission import SILENCE_S, Trial, follow, print_readings, st
 from robotd.cli.demo.rig import Rig, rig, wired
 from robotd.cli.demo.room import fresh
 from robotd.cli.demo.truth import true_pose
+from robotd.cli.emulated import odometry_argument
 from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
 from robotd.cli.outputs import DEMO, output_argument, write
-from robotd.cli.plots import require_plots
+from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import positive, whole
-from robotd.cli.simulate import odometry_argument
-from robotd.cli.terminal import bold
+from robotd.cli.show.terminal import bold
 from robotd.cli.verb import OK
 from robotd.config import Config
 from robotd.contract.estimate import PoseState
@@ -118,6 +118,6 @@ def _report(console: Console, trials: list[Trial]) -> None:
 
 
 def _draw(directory: Path, the_map: MapChanged, stops_m: tuple[tuple[float, float], ...]) -> None:
-    from robotd.cli import pictures  # noqa: PLC0415  # heavy, and only needed now
+    from robotd.cli.pictures import rooms as pictures  # noqa: PLC0415  # heavy, and only needed now
 
     pictures.draw_map(directory / "building.png", "A recorded building", the_map.spec, the_map.values, stops_m=stops_m)

@@ -9,9 +9,9 @@ from typing import Self
 from rich.console import Console
 from rich.table import Table
 
-from robotd.cli.progress import MissionBars
-from robotd.cli.terminal import plain_console
-from robotd.cli.wording import held_in_words
+from robotd.cli.show.progress import MissionBars
+from robotd.cli.show.terminal import plain_console
+from robotd.cli.show.wording import held_in_words
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import MissionError

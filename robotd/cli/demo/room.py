@@ -13,9 +13,9 @@ from robotd.cli.demo.mission import SILENCE_S, Trial, follow, print_readings, pr
 from robotd.cli.demo.rig import UNFINISHED, Rig, rig, wired
 from robotd.cli.demo.truth import true_pose
 from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
-from robotd.cli.plots import require_plots
+from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import whole
-from robotd.cli.terminal import bold, command_line
+from robotd.cli.show.terminal import bold, command_line
 from robotd.cli.verb import FAILED, OK
 from robotd.config import Config
 from robotd.core.errors import RobotdError
@@ -111,7 +111,7 @@ def _localize_at(parts: Rig, console: Console, probe_m: tuple[float, float]) -> 
 def _draw(
     directory: Path, world: World, stops_m: tuple[tuple[float, float], ...], the_map: MapChanged, last: Trial
 ) -> None:
-    from robotd.cli import pictures  # noqa: PLC0415  # heavy, and only needed now
+    from robotd.cli.pictures import rooms as pictures  # noqa: PLC0415  # heavy, and only needed now
 
     stops = ((world.start_pose.x_m, world.start_pose.y_m), *stops_m)
     walls = [np.array(wall.points_m) for wall in world.wall]

@@ -163,6 +163,6 @@ class FakeClient:
 def client(monkeypatch: pytest.MonkeyPatch) -> FakeClient:
     """Every verb meets this client in place of a daemon."""
     fake = FakeClient()
-    for verbs in ("control", "maps", "motion", "recordings", "where"):
-        monkeypatch.setattr(f"robotd.cli.{verbs}.connect", lambda arguments: fake)
+    for user in ("verbs.control", "verbs.maps", "motion", "verbs.recordings", "verbs.where"):
+        monkeypatch.setattr(f"robotd.cli.{user}.connect", lambda arguments: fake)
     return fake

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from robotd import __version__
-from robotd.cli import doctor
 from robotd.cli.main import main
+from robotd.cli.verbs import doctor
 from robotd.grid import kernels
 
 

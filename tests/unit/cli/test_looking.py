@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robotd.cli.half_blocks import coloured, plain, shrink
 from robotd.cli.main import main
+from robotd.cli.show.half_blocks import coloured, plain, shrink
 from robotd.core.pose import Pose2
 from robotd.server.feed import Gap
 
@@ -87,7 +87,7 @@ def test_a_map_is_drawn_on_the_terminal_and_into_a_file(
 def test_without_matplotlib_a_png_is_refused_with_what_to_install(
     client: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "robotd.cli.paper", None)
+    monkeypatch.setitem(__import__("sys").modules, "robotd.cli.pictures.sheet", None)
     assert main(["map", "show", "--png", "m.png"]) == 1
     assert client.asked == []
     said = capsys.readouterr().err

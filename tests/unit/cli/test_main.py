@@ -35,7 +35,7 @@ def test_every_verb_explains_itself_with_an_example_that_parses(verb: Verb, caps
 
 
 def test_every_word_says_what_its_verb_says_or_stands_for_a_family() -> None:
-    every = {verb.name for module, _ in WORDS.values() for verb in import_module(f"robotd.cli.{module}").VERBS}
+    every = {verb.name for module, _ in WORDS.values() for verb in import_module(f"robotd.cli.verbs.{module}").VERBS}
     assert every == {verb.name for verb in VERBS}
     alone = {verb.name: verb.summary for verb in VERBS if " " not in verb.name}
     assert {word: summary for word, (_, summary) in WORDS.items() if word in alone} == alone
@@ -147,7 +147,7 @@ def test_an_error_without_a_file_is_one_line_too(
     def full(document: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("robotd.cli.control.print_json", full)
+    monkeypatch.setattr("robotd.cli.verbs.control.print_json", full)
     assert main(["status", "--json"]) == 1
     assert capsys.readouterr().err == "robotctl: No space left on device\n"
 
@@ -159,7 +159,7 @@ def test_the_timeout_and_the_directory_reach_the_client(monkeypatch: pytest.Monk
         seen.append((str(arguments.runtime_dir), arguments.timeout))
         return client
 
-    monkeypatch.setattr("robotd.cli.control.connect", connect)
+    monkeypatch.setattr("robotd.cli.verbs.control.connect", connect)
     assert main(["arm", "--runtime-dir", "there", "--timeout", "1.5"]) == 0
     assert main(["arm", "--runtime-dir", "there"]) == 0  # each request has its own time, saving a map a long one
     assert seen == [("there", 1.5), ("there", None)]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from robotd.cli.paper import bar_length_m, known_box
-from robotd.cli.pictures import Mark, draw_localization, draw_map, draw_room
+from robotd.cli.pictures.rooms import Mark, draw_localization, draw_map, draw_room
+from robotd.cli.pictures.sheet import bar_length_m, known_box
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from robotd.cli.demo.mission import Trial, print_trials
 from robotd.cli.main import main
-from robotd.cli.terminal import bold, plain_console, print_pairs, print_table
+from robotd.cli.show.terminal import bold, plain_console, print_pairs, print_table
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.hardware.devices.device import DeviceStatus, LinkState

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from rich.text import Text
 
-from robotd.cli.half_blocks import plain
-from robotd.cli.progress import MissionBars
-from robotd.cli.terminal import command_line, complain, plain_console, print_pairs, print_table
+from robotd.cli.show.half_blocks import plain
+from robotd.cli.show.progress import MissionBars
+from robotd.cli.show.terminal import command_line, complain, plain_console, print_pairs, print_table
 from robotd.mission.events import MissionPhase, MissionProgress, Status
 from robotd.mission.modes import Mode
 

@@ -14,11 +14,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.image import imread
 
-from robotd.cli.eval.cases import divide
-from robotd.cli.eval.recorded import Reach, map_of, readings_of
-from robotd.cli.eval.running import Searcher
 from robotd.cli.main import main
 from robotd.core.reading import ReadingStatus
+from robotd.evaluation.division import divide
+from robotd.evaluation.recorded import Reach, map_of, readings_of
+from robotd.evaluation.running import Searcher
 from robotd.grid.occupancy import GridSettings
 from robotd.logs.carmen import parse_carmen
 from robotd.logs.scan import RecordedLog
@@ -117,8 +117,8 @@ def test_each_failure_has_its_picture(log_file: Path, tmp_path: Path, capsys: py
 def test_pictures_without_matplotlib_are_refused_before_any_work(
     log_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.delitem(sys.modules, "robotd.cli.eval.failures", raising=False)
-    monkeypatch.delitem(sys.modules, "robotd.cli.paper", raising=False)
+    monkeypatch.delitem(sys.modules, "robotd.cli.pictures.failures", raising=False)
+    monkeypatch.delitem(sys.modules, "robotd.cli.pictures.sheet", raising=False)
     monkeypatch.setitem(sys.modules, "matplotlib.axes", None)
     monkeypatch.setattr(Searcher, "cases", None)
     assert run_eval(log_file, "--pictures", tmp_path) == 1

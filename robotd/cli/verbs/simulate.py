@@ -8,9 +8,9 @@ from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
-from robotd.cli.emulated import config_text, recorded_config_text, write_config
+from robotd.cli.emulated import config_text, odometry_argument, recorded_config_text, write_config
 from robotd.cli.outputs import LINKS, MADE_CONFIG, TRUTH_LINES, output_argument
-from robotd.cli.terminal import command_line, err, out, print_json, print_pairs
+from robotd.cli.show.terminal import command_line, err, out, print_json, print_pairs
 from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.log import configure
 from robotd.recording.reader import read
@@ -122,16 +122,6 @@ def _sim_arguments(parser: argparse.ArgumentParser) -> None:
 def _fake_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, metavar="RECORDING", help="a recording (.mcap)")
     _lines_arguments(parser)
-
-
-def odometry_argument(parser: argparse.ArgumentParser) -> None:
-    """Let the command line choose what the wheels say in a recorded building."""
-    parser.add_argument(
-        "--odometry",
-        choices=[source.value for source in OdometrySource],
-        default=OdometrySource.CORRECTED.value,
-        help="in a recorded building: the log's corrected poses, or what its robot believed (default: corrected)",
-    )
 
 
 def _lines_arguments(parser: argparse.ArgumentParser) -> None:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from robotd.cli.eval.verdict import Case, Verdict
 from robotd.core.pose import Pose2
+from robotd.evaluation.verdict import Case, Verdict
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
 from robotd.logs.scan import PoseSource

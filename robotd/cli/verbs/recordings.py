@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robotd.cli.connection import connect
-from robotd.cli.terminal import complain, out, print_json, print_pairs
+from robotd.cli.show.terminal import complain, out, print_json, print_pairs
 from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.clock import NS_PER_S
 from robotd.recording.entries import BytesEntry

@@ -4,11 +4,11 @@ import argparse
 from dataclasses import asdict
 
 from robotd.cli.connection import connect
-from robotd.cli.motion import carry_out
+from robotd.cli.motion import carry_out, legs_argument
 from robotd.cli.quantities import heading_of_deg, number
-from robotd.cli.terminal import out, print_json
+from robotd.cli.show.terminal import out, print_json
+from robotd.cli.show.wording import as_json, estimate_in_words, in_words, region_in_words
 from robotd.cli.verb import OK, Verb
-from robotd.cli.wording import as_json, estimate_in_words, in_words, region_in_words
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate
 from robotd.core.errors import RequestTimeout
@@ -66,16 +66,6 @@ def _goal(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("x_m", type=number, metavar="X", help="map x [m]")
     parser.add_argument("y_m", type=number, metavar="Y", help="map y [m]")
     legs_argument(parser)
-
-
-def legs_argument(parser: argparse.ArgumentParser) -> None:
-    """Let the command line choose how the robot gets from place to place."""
-    parser.add_argument(
-        "--legs",
-        choices=[legs.value for legs in Legs],
-        default=Legs.PLANNED.value,
-        help="round the obstacles on the map, or straight, as you know it to be free (default: planned)",
-    )
 
 
 def _pose(arguments: argparse.Namespace) -> int:

@@ -7,9 +7,9 @@ from typing import Any
 from rich.table import Table
 from rich.text import Text
 
-from robotd.cli.eval.report import PERCENTILES, LogReport, percentiles
-from robotd.cli.eval.verdict import Verdict
-from robotd.cli.terminal import out, print_pairs
+from robotd.cli.show.terminal import out, print_pairs
+from robotd.evaluation.report import PERCENTILES, LogReport, percentiles
+from robotd.evaluation.verdict import Verdict
 
 _WORDS = {
     Verdict.RIGHT: "right",

@@ -5,10 +5,10 @@ import math
 from collections.abc import Callable
 
 from robotd.cli.connection import connect
-from robotd.cli.metrics import exposition
-from robotd.cli.terminal import err, out, print_json, print_pairs, print_table
+from robotd.cli.show.metrics import exposition
+from robotd.cli.show.terminal import err, out, print_json, print_pairs, print_table
+from robotd.cli.show.wording import as_json
 from robotd.cli.verb import OK, Verb
-from robotd.cli.wording import as_json
 from robotd.hardware.devices.device import DeviceStatus
 from robotd.mission.events import Status
 from robotd.server.client import Client

@@ -11,19 +11,19 @@ from typing import Any
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from robotd import __version__, config
-from robotd.cli.eval.cases import divide
-from robotd.cli.eval.recorded import Reach, map_of
-from robotd.cli.eval.report import LogReport
-from robotd.cli.eval.running import Searcher
-from robotd.cli.eval.tables import print_parameters, print_report, print_summary
-from robotd.cli.eval.verdict import RIGHT_M, RIGHT_RAD, Case
 from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
 from robotd.cli.outputs import EVAL_REPORT, PICTURES, STANDARD_OUTPUT, output_argument, write
-from robotd.cli.plots import require_plots
+from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import positive, whole, within
-from robotd.cli.terminal import err, print_json
+from robotd.cli.show.evaluation_tables import print_parameters, print_report, print_summary
+from robotd.cli.show.terminal import err, print_json
 from robotd.cli.verb import INTERRUPTED, OK, Verb
 from robotd.core.errors import RecordingError
+from robotd.evaluation.division import divide
+from robotd.evaluation.recorded import Reach, map_of
+from robotd.evaluation.report import LogReport
+from robotd.evaluation.running import Searcher
+from robotd.evaluation.verdict import RIGHT_M, RIGHT_RAD, Case
 from robotd.grid import kernels
 from robotd.grid.occupancy import GridSettings
 from robotd.localization.judge.error_model import ErrorModel
@@ -100,7 +100,7 @@ def _logs(arguments: argparse.Namespace) -> list[tuple[str, RecordedLog]]:
 
 def _drawing() -> Callable[[Path, LogReport], None]:
     require_plots("--pictures")
-    from robotd.cli.eval.failures import draw_failures  # noqa: PLC0415  # only here is the extra needed
+    from robotd.cli.pictures.failures import draw_failures  # noqa: PLC0415  # only here is the extra needed
 
     return draw_failures
 

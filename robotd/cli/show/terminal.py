@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from robotd.cli.printable_console import PrintableOnly
+from robotd.cli.show.printable_console import PrintableOnly
 
 _UNBROKEN = 10_000
 """Columns of a pipe: tables are not folded there, so that a line stays a line."""

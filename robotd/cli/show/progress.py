@@ -5,8 +5,8 @@ from typing import Self
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn
 
-from robotd.cli.terminal import err
-from robotd.cli.wording import counts_in_words, estimate_in_short, held_in_words, mission_in_words
+from robotd.cli.show.terminal import err
+from robotd.cli.show.wording import counts_in_words, estimate_in_short, held_in_words, mission_in_words
 from robotd.contract.estimate import PoseEstimate
 from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.server.topics import Published

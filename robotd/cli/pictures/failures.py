@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
-from robotd.cli.eval.report import LogReport
-from robotd.cli.eval.verdict import Case
-from robotd.cli.paper import ESTIMATE, PATH, TRUTH, Points, evidence, known_box, legend, paper, save
+from robotd.cli.pictures.sheet import ESTIMATE, PATH, TRUTH, Points, evidence, known_box, legend, paper, save
 from robotd.core.pose import Pose2
+from robotd.evaluation.report import LogReport
+from robotd.evaluation.verdict import Case
 
 _POINTER = 0.04
 """Length of what shows a heading, as a share of the picture's width."""

@@ -5,7 +5,7 @@ import dataclasses
 from pathlib import Path
 
 from robotd import config
-from robotd.cli.terminal import complain, out, print_json
+from robotd.cli.show.terminal import complain, out, print_json
 from robotd.cli.verb import BAD_CONFIG, OK, Verb
 from robotd.core.errors import ConfigError
 

@@ -4,11 +4,11 @@ import argparse
 from dataclasses import dataclass
 from pathlib import Path
 
-from robotd.cli.exact_answers import say_smallest_error, say_where, say_why
 from robotd.cli.exact_inputs import Question, question
 from robotd.cli.outputs import PNG, output_argument
-from robotd.cli.plots import require_plots
+from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import number, positive, whole
+from robotd.cli.show.exact_answers import say_smallest_error, say_where, say_why
 from robotd.cli.verb import OK, Verb
 from robotd.core.errors import RobotdError
 from robotd.exact.arrangement import Arrangement, at_least
@@ -78,7 +78,7 @@ def _slice(polygon_map: PolygonMap, beams: tuple[Beam, ...], heading_deg: float)
 
 
 def _draw(file: Path, obstacles: PlanarSet, one: _Slice, least: int) -> None:
-    from robotd.cli.exact_pictures import draw_ranks  # noqa: PLC0415  # matplotlib is an extra
+    from robotd.cli.pictures.exact_sets import draw_ranks  # noqa: PLC0415  # matplotlib is an extra
 
     draw_ranks(file, f"Where, at heading {one.heading_deg:g} deg", obstacles, one.ranks, least=least)
 

@@ -14,7 +14,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle, Polygon
 from numpy.typing import NDArray
 
-from robotd.cli.paper import (
+from robotd.cli.pictures.sheet import (
     ESTIMATE,
     FURNITURE,
     INK,

@@ -4,10 +4,10 @@ import enum
 import math
 from dataclasses import dataclass
 
-from robotd.cli.eval.cases import Query
 from robotd.contract.estimate import PoseEstimate, PoseState, Region
 from robotd.core.angles import wrap_rad
 from robotd.core.pose import Pose2
+from robotd.evaluation.division import Query
 
 RIGHT_M = 0.3
 RIGHT_RAD = math.radians(5.0)

@@ -11,15 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.cli.connection import connect
-from robotd.cli.half_blocks import can_draw_blocks, coloured, plain, shrink
-from robotd.cli.motion import carry_out
+from robotd.cli.emulated import odometry_argument
+from robotd.cli.motion import carry_out, legs_argument
 from robotd.cli.outputs import PNG, output_argument
-from robotd.cli.plots import require_plots
+from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import heading_of_deg, number, whole
-from robotd.cli.simulate import odometry_argument
-from robotd.cli.terminal import out, print_json, print_table
+from robotd.cli.show.half_blocks import can_draw_blocks, coloured, plain, shrink
+from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import OK, Verb
-from robotd.cli.where import legs_argument
 from robotd.core.clock import NS_PER_S
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.grid.occupancy import OccupancyGrid
@@ -155,7 +154,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _draw(file: Path, title: str, shown: MapChanged) -> None:
-    from robotd.cli.pictures import draw_map  # noqa: PLC0415  # only here is the extra needed
+    from robotd.cli.pictures.rooms import draw_map  # noqa: PLC0415  # only here is the extra needed
 
     draw_map(file, title, shown.spec, shown.values)
 

@@ -4,9 +4,9 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from robotd.cli.eval.cases import Query
-from robotd.cli.eval.recorded import Reach, readings_of
-from robotd.cli.eval.verdict import Case
+from robotd.evaluation.division import Query
+from robotd.evaluation.recorded import Reach, readings_of
+from robotd.evaluation.verdict import Case
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement

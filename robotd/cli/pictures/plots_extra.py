@@ -12,7 +12,7 @@ def require_plots(what: str) -> None:
         RobotdError: it is not installed; says how to.
     """
     try:
-        importlib.import_module("robotd.cli.paper")
+        importlib.import_module("robotd.cli.pictures.sheet")
     except ImportError as error:
         raise RobotdError(
             f"{what} needs matplotlib ({error}): install the extra plots,"

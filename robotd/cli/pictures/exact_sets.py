@@ -7,7 +7,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
-from robotd.cli.paper import INK, TRUTH, Box, paper, save
+from robotd.cli.pictures.sheet import INK, TRUTH, Box, paper, save
 from robotd.exact.arrangement import Arrangement
 from robotd.exact.feasible import best_rank, of_rank
 from robotd.exact.loops import outline_loops, single_lines, single_points

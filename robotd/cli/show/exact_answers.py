@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from robotd.cli.exact_inputs import Question
-from robotd.cli.terminal import print_json, print_pairs, print_table
+from robotd.cli.show.terminal import print_json, print_pairs, print_table
 from robotd.core.errors import RobotdError
 from robotd.exact.beams import Beam
 from robotd.exact.casting import Outcome, Verdict, cast

@@ -1,0 +1,1 @@
+"""Answers on the terminal, as words, tables, bars and half blocks."""
