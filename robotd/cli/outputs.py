@@ -10,7 +10,7 @@ import stat
 import tempfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path, PosixPath
 
@@ -48,7 +48,7 @@ def _is_demo(names: set[str]) -> bool:
 
 
 PNG = Kind("a PNG picture", lambda head: head.startswith(b"\x89PNG"))
-EVAL_REPORT = Kind("a JSON document of eval", lambda head: head.startswith(b'{\n "parameters":'))
+EVAL_LINES = Kind("a file of JSON lines of eval", lambda head: head.startswith(b'{"parameters":'))
 TRUTH_LINES = Kind("a file of true poses", lambda head: head.startswith(b'{"t_ns":'))
 RECORDED_BUILDING = Kind("a recorded building", _is_building)
 MADE_CONFIG = Kind("a configuration made by robotctl", lambda head: head.startswith(CONFIG_MARK.encode()))
@@ -155,6 +155,33 @@ def write(path: Path, content: bytes) -> None:
         path = path.resolve()
         path.parent.mkdir(parents=True, exist_ok=True)
         _replace(path, content)
+    except OSError as error:
+        raise RobotdError(f"cannot write {path}: {error.strerror or error}") from error
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[Callable[[bytes], None]]:
+    """Write a file piece by piece, beside the old one first and in its place at the end, whatever ends it but a kill.
+
+    Each piece is handed to the system at once, so what a killed program has written is beside it, named ``.part``.
+
+    Raises:
+        RobotdError: it cannot be written; an older one is as it was.
+    """
+    part = path.with_name(f"{path.name}.part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with part.open("wb") as file:
+
+            def piece(content: bytes) -> None:
+                file.write(content)
+                file.flush()
+
+            try:
+                yield piece
+            finally:
+                os.fsync(file.fileno())
+        part.replace(path)
     except OSError as error:
         raise RobotdError(f"cannot write {path}: {error.strerror or error}") from error
 

@@ -2,18 +2,16 @@
 
 import enum
 import math
-from dataclasses import dataclass
 
 from robotd.contract.estimate import PoseEstimate, PoseState, Region
 from robotd.core.angles import wrap_rad
 from robotd.core.pose import Pose2
-from robotd.evaluation.division import Query
 
 RIGHT_M = 0.3
 RIGHT_RAD = math.radians(5.0)
 
 
-class Verdict(enum.StrEnum):
+class CaseVerdict(enum.StrEnum):
     """What became of a case; each has one."""
 
     RIGHT = "right"
@@ -26,46 +24,16 @@ class Verdict(enum.StrEnum):
     """No answer."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Case:
-    """One scan, what was said of it, and the truth."""
+def verdict_on(estimate: PoseEstimate, truth: Pose2) -> CaseVerdict:
+    """Return what became of a case."""
+    if estimate.best is not None:
+        return CaseVerdict.RIGHT if is_near(estimate.best, truth) else CaseVerdict.WRONG_AND_SURE
+    return CaseVerdict.AMBIGUOUS if estimate.state is PoseState.AMBIGUOUS else CaseVerdict.LOST
 
-    query: Query
-    estimate: PoseEstimate
-    cpu_s: float
-    """Processor time of the answer, of all threads."""
-    wall_s: float
-    """Time until the answer was there."""
 
-    @property
-    def truth(self) -> Pose2:
-        """Where the laser was."""
-        return self.query.scan.laser_pose
-
-    @property
-    def verdict(self) -> Verdict:
-        """What became of it."""
-        best = self.estimate.best
-        if best is not None:
-            return Verdict.RIGHT if is_near(best, self.truth) else Verdict.WRONG_AND_SURE
-        return Verdict.AMBIGUOUS if self.estimate.state is PoseState.AMBIGUOUS else Verdict.LOST
-
-    @property
-    def has_truth(self) -> bool:
-        """Whether the truth is among the answers."""
-        return any(_holds(region, self.truth) for region in self.estimate.regions)
-
-    @property
-    def error_m(self) -> float | None:
-        """How far the answer is from the truth; None without one answer."""
-        best = self.estimate.best
-        return None if best is None else best.distance_m(self.truth)
-
-    @property
-    def error_rad(self) -> float | None:
-        """How far it is turned."""
-        best = self.estimate.best
-        return None if best is None else abs(wrap_rad(best.heading_rad - self.truth.heading_rad))
+def has_truth(estimate: PoseEstimate, truth: Pose2) -> bool:
+    """Whether the truth is among the answers."""
+    return any(_holds(region, truth) for region in estimate.regions)
 
 
 def is_near(pose: Pose2, truth: Pose2) -> bool:

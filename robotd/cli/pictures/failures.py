@@ -10,56 +10,55 @@ from matplotlib.axes import Axes
 
 from robotd.cli.pictures.sheet import ESTIMATE, PATH, TRUTH, Points, evidence, known_box, legend, paper, save
 from robotd.core.pose import Pose2
-from robotd.evaluation.report import LogReport
-from robotd.evaluation.verdict import Case
+from robotd.evaluation.job import Job
+from robotd.evaluation.result import Result
+from robotd.evaluation.verdict import CaseVerdict
+from robotd.logs.scan import Scan
 
 _POINTER = 0.04
 """Length of what shows a heading, as a share of the picture's width."""
 
 
-def draw_failures(directory: Path, report: LogReport) -> None:
-    """Draw each failure of a log into a file of its own, named by log, scan and verdict."""
-    name = report.log.split(".")[0]
-    for case in report.failures:
-        file = directory / f"{name}-{case.query.number:05}-{case.verdict}.png"
-        axes = _map(f"{name}, scan {case.query.number}: {case.verdict.replace('_', ' ')}", report, case)
-        _answers(axes, case)
-        save(axes, file)
+def draw_failure(directory: Path, job: Job, scan: Scan, result: Result) -> None:
+    """Draw a case into a file of its own, named by log, scan and verdict, unless it is right."""
+    if result.verdict is CaseVerdict.RIGHT:
+        return
+    name = job.log.split(".")[0]
+    axes = _map(f"{name}, scan {result.key.scan}: {result.verdict.replace('_', ' ')}", job, result)
+    _answers(axes, scan, result)
+    save(axes, directory / f"{name}-{result.key.scan:05}-{result.verdict}.png")
 
 
-def _map(title: str, report: LogReport, case: Case) -> Axes:
-    estimate, spec, cells = case.estimate, report.grid.spec, report.grid.cells
-    off = "" if case.error_m is None else f", {case.error_m:.2f} m off"
-    share = f"{estimate.best_rank or 'too few'} of {estimate.readings} readings explained"
-    note = f"{share}, {len(estimate.regions)} regions{off}"
-    axes = paper(title, known_box(spec, cells), note)
+def _map(title: str, job: Job, result: Result) -> Axes:
+    spec, cells = job.grid.spec, job.grid.cells
+    off = "" if result.error_m is None else f", {result.error_m:.2f} m off"
+    share = f"{result.best_rank or 'too few'} of {result.readings} readings explained"
+    axes = paper(title, known_box(spec, cells), f"{share}, {len(result.answers)} regions{off}")
     evidence(axes, spec, cells, opacity=0.6)
     return axes
 
 
-def _answers(axes: Axes, case: Case) -> None:
+def _answers(axes: Axes, scan: Scan, result: Result) -> None:
     """Draw the scan where it was taken and where the best answer has it, and all other answers."""
-    answers = [region.centre for region in case.estimate.regions]
-    claimed = case.estimate.best or (answers[0] if answers else None)
-    rivals = answers[1:]
-    _scan(axes, case, case.truth, TRUTH)
-    _pointer(axes, case.truth, TRUTH, "o")
+    claimed = result.best or (result.answers[0] if result.answers else None)
+    rivals = result.answers[1:]
+    _scan(axes, scan, result.truth, TRUTH)
+    _pointer(axes, result.truth, TRUTH, "o")
     if claimed is not None:
-        _scan(axes, case, claimed, ESTIMATE)
+        _scan(axes, scan, claimed, ESTIMATE)
         _pointer(axes, claimed, ESTIMATE, "x")
     for rival in rivals:
         _pointer(axes, rival, PATH, "^")
     legend(axes, [("o", "truth", TRUTH), ("x", "claimed", ESTIMATE), ("^", f"{len(rivals)} rivals", PATH)])
 
 
-def _scan(axes: Axes, case: Case, laser: Pose2, colour: str) -> None:
-    points_m = _points_m(case, laser)
+def _scan(axes: Axes, scan: Scan, laser: Pose2, colour: str) -> None:
+    points_m = _points_m(scan, laser)
     axes.plot(points_m[:, 0], points_m[:, 1], ".", markersize=2.0, color=colour)
 
 
-def _points_m(case: Case, laser: Pose2) -> Points:
+def _points_m(scan: Scan, laser: Pose2) -> Points:
     """Return where the beams that met something would have met it, map frame, ``float64[n, 2]``."""
-    scan = case.query.scan
     angles_rad = scan.angles_rad[scan.hit] + laser.heading_rad
     steps = np.stack((np.cos(angles_rad), np.sin(angles_rad)), axis=1)
     points_m: Points = np.array([laser.x_m, laser.y_m]) + scan.ranges_m[scan.hit, None] * steps

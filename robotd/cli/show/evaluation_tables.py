@@ -8,54 +8,59 @@ from rich.table import Table
 from rich.text import Text
 
 from robotd.cli.show.terminal import out, print_pairs
-from robotd.evaluation.report import PERCENTILES, LogReport, percentiles
-from robotd.evaluation.verdict import Verdict
+from robotd.evaluation.log_report import LogReport
+from robotd.evaluation.quantiles import PERCENTILES, Quantiles
+from robotd.evaluation.tally import Tally
+from robotd.evaluation.verdict import CaseVerdict
 
 _WORDS = {
-    Verdict.RIGHT: "right",
-    Verdict.WRONG_AND_SURE: "wrong and sure",
-    Verdict.AMBIGUOUS: "ambiguous",
-    Verdict.LOST: "lost",
+    CaseVerdict.RIGHT: "right",
+    CaseVerdict.WRONG_AND_SURE: "wrong and sure",
+    CaseVerdict.AMBIGUOUS: "ambiguous",
+    CaseVerdict.LOST: "lost",
 }
 
 
 def print_report(report: LogReport) -> None:
     """Print what became of the cases of one log."""
-    spec = report.grid.spec
+    spec = report.map.spec
     size = f"{spec.cols} x {spec.rows} cells of {spec.resolution_m * 1000:g} mm"
-    done = f"{len(report.cases)} cases" if not report.is_cut else _so_far(report)
+    done = f"{report.tally.cases} cases" if not report.is_cut else _so_far(report)
     title = f"{report.log}: {done}; map of {report.map_scans} of {report.scans} scans, {size}"
     out().print(Text(title, style="bold"))
     shares = Table.grid(padding=(0, 2))
-    for words, share in _shares(report):
+    for words, share in _shares(report.tally):
         shares.add_row(Text(f"  {words}"), Text(f"{100 * share:5.1f} %"))
     out().print(shares)
-    out().print(_percentile_table(report))
+    out().print(_percentile_table(report.tally))
 
 
 def _so_far(report: LogReport) -> str:
-    return f"interrupted after {len(report.cases)} of {report.asked} cases"
+    return f"interrupted after {report.tally.cases} of {report.asked} cases"
 
 
-def _shares(report: LogReport) -> list[tuple[str, float]]:
-    shares = [(words, report.share(verdict)) for verdict, words in _WORDS.items()]
-    return [*shares[:3], ("  of these with the truth among the answers", report.ambiguous_with_truth), *shares[3:]]
+def _shares(tally: Tally) -> list[tuple[str, float]]:
+    shares = [(words, tally.share(tally.verdicts[verdict])) for verdict, words in _WORDS.items()]
+    with_truth = tally.share(tally.ambiguous_with_truth)
+    return [*shares[:3], ("  of these with the truth among the answers", with_truth), *shares[3:]]
 
 
-def _percentile_table(report: LogReport) -> Table:
+def _percentile_table(tally: Tally) -> Table:
     heads = [f"{percent} %" if percent < 100 else "most" for percent in PERCENTILES]
     table = Table("", *heads, box=None, header_style="dim")
     for column in table.columns[1:]:
         column.justify = "right"
-    lines = (
-        ("position error of the right [mm]", [1000 * error for error in report.errors_m], ".0f"),
-        ("heading error of the right [deg]", [math.degrees(error) for error in report.errors_rad], ".2f"),
-        ("processor time of a case [ms]", [1000 * case.cpu_s for case in report.cases], ".0f"),
-        ("time to the answer [ms]", [1000 * case.wall_s for case in report.cases], ".0f"),
+    lines: tuple[tuple[str, Quantiles, float, str], ...] = (
+        ("position error of the right [mm]", tally.error_m, 1000.0, ".0f"),
+        ("heading error of the right [deg]", tally.error_rad, math.degrees(1.0), ".2f"),
+        ("processor time of a case [ms]", tally.cpu_s, 1000.0, ".0f"),
+        ("time to the answer [ms]", tally.wall_s, 1000.0, ".0f"),
     )
-    for name, values, form in lines:
-        found = percentiles(values)
-        table.add_row(Text(name), *(format(value, form) for value in found.values()) if found else ["-"] * len(heads))
+    for name, quantiles, scale, form in lines:
+        told = quantiles.told()
+        table.add_row(
+            Text(name), *(format(scale * value, form) for value in told.values()) if told else ["-"] * len(heads)
+        )
     return table
 
 
@@ -65,27 +70,25 @@ def print_summary(reports: list[LogReport]) -> None:
     for column in table.columns[1:]:
         column.justify = "right"
     for report in reports:
-        _add_summary(table, report.log, [report])
-    _add_summary(table, "all", reports)
+        _add_summary(table, report.log, report.tally)
+    _add_summary(table, "all", Tally.of(report.tally for report in reports))
     out().print(table)
 
 
-def _add_summary(table: Table, name: str, reports: list[LogReport]) -> None:
-    cases = sum(len(report.cases) for report in reports)
-    errors = percentiles([error for report in reports for error in report.errors_m])
-    cpu = percentiles([case.cpu_s for report in reports for case in report.cases])
+def _add_summary(table: Table, name: str, tally: Tally) -> None:
+    def share(count: int) -> str:
+        return f"{100 * tally.share(count):.1f} %" if tally.cases else "-"
 
-    def share(shares: list[float]) -> str:
-        counts = (part * len(report.cases) for part, report in zip(shares, reports, strict=True))
-        return f"{100 * sum(counts) / cases:.1f} %" if cases else "-"
+    def middle(quantiles: Quantiles, unit: str) -> str:
+        return f"{1000 * quantiles.percentile(50):.0f} {unit}" if len(quantiles) else "-"
 
     table.add_row(
         Text(name),
-        str(cases),
-        *(share([report.share(verdict) for report in reports]) for verdict in _WORDS),
-        share([report.ambiguous_with_truth for report in reports]),
-        f"{1000 * errors['p50']:.0f} mm" if errors else "-",
-        f"{1000 * cpu['p50']:.0f} ms" if cpu else "-",
+        str(tally.cases),
+        *(share(tally.verdicts[verdict]) for verdict in _WORDS),
+        share(tally.ambiguous_with_truth),
+        middle(tally.error_m, "mm"),
+        middle(tally.cpu_s, "ms"),
     )
 
 

@@ -2,8 +2,9 @@
 
 import argparse
 import json
-from collections.abc import Callable
-from contextlib import suppress
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -12,25 +13,27 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from robotd import __version__, config
 from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
-from robotd.cli.outputs import EVAL_REPORT, PICTURES, STANDARD_OUTPUT, output_argument, write
+from robotd.cli.outputs import EVAL_LINES, PICTURES, STANDARD_OUTPUT, output_argument, writing
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import positive, whole, within
 from robotd.cli.show.evaluation_tables import print_parameters, print_report, print_summary
-from robotd.cli.show.terminal import err, print_json
+from robotd.cli.show.terminal import err
 from robotd.cli.verb import INTERRUPTED, OK, Verb
 from robotd.core.errors import RecordingError
-from robotd.evaluation.division import divide
+from robotd.evaluation.division import Division, divide
+from robotd.evaluation.job import Job, JobSettings, run
+from robotd.evaluation.log_report import LogReport, MapFacts
 from robotd.evaluation.recorded import Reach, map_of
-from robotd.evaluation.report import LogReport
-from robotd.evaluation.running import Searcher
-from robotd.evaluation.verdict import RIGHT_M, RIGHT_RAD, Case
+from robotd.evaluation.result import Result
+from robotd.evaluation.tally import Tally
+from robotd.evaluation.verdict import RIGHT_M, RIGHT_RAD
 from robotd.grid import kernels
 from robotd.grid.occupancy import GridSettings
-from robotd.localization.judge.error_model import ErrorModel
-from robotd.localization.judge.judgement import Judgement
-from robotd.localization.settings import LocalizationSettings
-from robotd.logs.scan import RecordedLog
+from robotd.logs.scan import RecordedLog, Scan
 from robotd.mission.compute import cores
+
+_Draw = Callable[[Path, Job, Scan, Result], None]
+_Say = Callable[[dict[str, Any]], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,20 +42,21 @@ class _Plan:
 
     cases: int
     seed: int
-    reach: Reach
     grid: GridSettings
-    localization: LocalizationSettings
-    judgement: Judgement
-    error_model: ErrorModel
-    threads: int
+    job: JobSettings
+    commit: str
 
     def document(self) -> dict[str, Any]:
         """Return everything that the figures depend on."""
         return {
             "robotd": __version__,
+            "commit": self.commit,
             "kernels": str(kernels.IN_USE),
             "right_within": {"m": RIGHT_M, "rad": RIGHT_RAD},
-            **asdict(self),
+            "cases": self.cases,
+            "seed": self.seed,
+            "grid": asdict(self.grid),
+            **asdict(self.job),
         }
 
 
@@ -61,15 +65,16 @@ def _eval(arguments: argparse.Namespace) -> int:
     draw = _drawing() if arguments.pictures is not None else None
     logs = _logs(arguments)
     reports: list[LogReport] = []
-    with suppress(KeyboardInterrupt):
-        for name, log in logs:
-            reports.append(_evaluate(plan, name, log))
-            if reports[-1].is_cut:
-                break
-    _tell(arguments.json, plan, reports)
-    if draw is not None:
-        for report in reports:
-            draw(arguments.pictures, report)
+    with _lines(arguments.json) as say:
+        say({"parameters": plan.document()})
+        with suppress(KeyboardInterrupt):
+            for name, log in logs:
+                reports.append(_evaluate(plan, name, log, say, draw and _into(arguments.pictures, draw)))
+                say(reports[-1].document())
+                if reports[-1].is_cut:
+                    break
+    if not _is_standard_output(arguments.json):
+        _tell(plan, reports)
     return OK if len(reports) == len(logs) and not reports[-1].is_cut else INTERRUPTED
 
 
@@ -83,9 +88,16 @@ def _plan(arguments: argparse.Namespace) -> _Plan:
         lower_alpha=arguments.lower_alpha,
     )
     reach = Reach(arguments.range_max, min(arguments.clear, arguments.range_max))
-    return _Plan(
-        arguments.cases, arguments.seed, reach, grid, read.localization, read.judgement, read.error_model, cores()
-    )
+    job = JobSettings(reach, read.localization, read.judgement, read.error_model, cores())
+    return _Plan(arguments.cases, arguments.seed, grid, job, _commit())
+
+
+def _commit() -> str:
+    """Return which commit this is, as far as a clone tells; else the version."""
+    git = ["git", "-C", str(Path(__file__).parent), "describe", "--always", "--dirty", "--abbrev=12"]
+    with suppress(OSError, subprocess.SubprocessError):
+        return subprocess.run(git, capture_output=True, check=True, text=True, timeout=5.0).stdout.strip()
+    return __version__
 
 
 def _logs(arguments: argparse.Namespace) -> list[tuple[str, RecordedLog]]:
@@ -98,29 +110,63 @@ def _logs(arguments: argparse.Namespace) -> list[tuple[str, RecordedLog]]:
     return [(path.name, log) for path, log in logs]
 
 
-def _drawing() -> Callable[[Path, LogReport], None]:
+def _drawing() -> _Draw:
     require_plots("--pictures")
-    from robotd.cli.pictures.failures import draw_failures  # noqa: PLC0415  # only here is the extra needed
+    from robotd.cli.pictures.failures import draw_failure  # noqa: PLC0415  # only here is the extra needed
 
-    return draw_failures
+    return draw_failure
 
 
-def _evaluate(plan: _Plan, name: str, log: RecordedLog) -> LogReport:
+def _into(directory: Path, draw: _Draw) -> Callable[[Job, Scan, Result], None]:
+    return lambda job, scan, result: draw(directory, job, scan, result)
+
+
+@contextmanager
+def _lines(file: Path | None) -> Iterator[_Say]:
+    """Say documents as JSON lines, each as soon as it is known, to a file, to standard output, or to nobody."""
+    if file is None:
+        yield lambda _: None
+    elif _is_standard_output(file):
+        yield lambda document: print(_line(document), flush=True)
+    else:
+        with writing(file) as write:
+            yield lambda document: write(f"{_line(document)}\n".encode())
+
+
+def _line(document: dict[str, Any]) -> str:
+    return json.dumps(document, allow_nan=False)
+
+
+def _is_standard_output(file: Path | None) -> bool:
+    return str(file) == STANDARD_OUTPUT
+
+
+def _evaluate(
+    plan: _Plan, name: str, log: RecordedLog, say: _Say, draw: Callable[[Job, Scan, Result], None] | None
+) -> LogReport:
     """Make the map of a log and seek its queries; Ctrl-C keeps what was done."""
     division = divide(log, plan.cases, plan.seed)
-    try:
-        grid = map_of(division.map_scans, plan.reach, plan.grid)
-    except ValueError as error:
-        raise RecordingError(f"{name}: no map can be made of it: {error}") from error
-    cases: list[Case] = []
-    searcher = Searcher(grid, plan.localization, plan.judgement, plan.error_model, plan.reach, plan.threads)
+    job = _job(plan, name, division)
+    scans = {query.number: query.scan for query in division.queries}
+    tally = Tally()
     with _bar() as bar, suppress(KeyboardInterrupt):
         task = bar.add_task(name, total=len(division.queries))
-        for case in searcher.cases(division.queries):
-            cases.append(case)
+        for result in run(job, division.queries):
+            tally.add(result)
+            say(result.document())
+            if draw is not None:
+                draw(job, scans[result.key.scan], result)
             bar.update(task, advance=1)
     counts = len(log.scans), len(division.map_scans), len(division.queries)
-    return LogReport(name, *counts, grid, tuple(cases), log.poses, log.damaged_lines)
+    return LogReport(name, *counts, MapFacts.of(job.grid), tally, log.poses, log.damaged_lines)
+
+
+def _job(plan: _Plan, name: str, division: Division) -> Job:
+    try:
+        grid = map_of(division.map_scans, plan.job.reach, plan.grid)
+    except ValueError as error:
+        raise RecordingError(f"{name}: no map can be made of it: {error}") from error
+    return Job.of(name, grid, plan.job, seed=plan.seed, commit=plan.commit)
 
 
 def _bar() -> Progress:
@@ -128,13 +174,7 @@ def _bar() -> Progress:
     return Progress(*columns, console=err(), disable=not err().is_terminal)
 
 
-def _tell(file: Path | None, plan: _Plan, reports: list[LogReport]) -> None:
-    document = {"parameters": plan.document(), "logs": [report.document() for report in reports]}
-    if file is not None and str(file) == STANDARD_OUTPUT:
-        print_json(document)
-        return
-    if file is not None:
-        write(file, (json.dumps(document, indent=1, allow_nan=False) + "\n").encode())
+def _tell(plan: _Plan, reports: list[LogReport]) -> None:
     for report in reports:
         print_report(report)
     if len(reports) > 1:
@@ -183,8 +223,8 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         help="take the settings of localization from a configuration of robotd",
     )
     output_argument(parser, "--pictures", PICTURES, "draw each case that is not right into a file there")
-    words = "write everything to a file as JSON; without a file print it instead of the tables"
-    output_argument(parser, "--json", EVAL_REPORT, words, nargs="?", const=STANDARD_OUTPUT)
+    words = "write results to a file as they come, a JSON line each; without a file print them instead of the tables"
+    output_argument(parser, "--json", EVAL_LINES, words, nargs="?", const=STANDARD_OUTPUT)
 
 
 VERBS = (

@@ -16,7 +16,7 @@ from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.hardware.devices.device import DeviceStatus, LinkState
 from tests.unit.cli.conftest import ESTIMATE
-from tests.unit.cli.eval.conftest import drive_lines
+from tests.unit.cli.recorded_room import drive_lines
 from tests.unit.logs.room import POSES
 
 ROOT = Path(__file__).parents[3]

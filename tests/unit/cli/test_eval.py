@@ -1,4 +1,4 @@
-"""What ``robotctl eval`` promises: the protocol to the letter, shares that add up, and nothing lost to Ctrl-C."""
+"""What ``robotctl eval`` promises: shares that add up, a line for each result, and nothing lost to Ctrl-C."""
 
 import bz2
 import gzip
@@ -8,62 +8,32 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from matplotlib.image import imread
 
 from robotd.cli.main import main
-from robotd.core.reading import ReadingStatus
-from robotd.evaluation.division import divide
-from robotd.evaluation.recorded import Reach, map_of, readings_of
-from robotd.evaluation.running import Searcher
-from robotd.grid.occupancy import GridSettings
-from robotd.logs.carmen import parse_carmen
-from robotd.logs.scan import RecordedLog
+from robotd.evaluation.division import Query
+from robotd.evaluation.job import Job
+from robotd.evaluation.result import Result
+from tests.unit.cli.recorded_room import drive_lines
 
-REACH = Reach(range_max_m=4.0, clear_m=3.0)
+
+@pytest.fixture(scope="session")
+def log_text() -> str:
+    return "\n".join(drive_lines(60))
 
 
 @pytest.fixture
-def log(log_text: str) -> RecordedLog:
-    return parse_carmen(log_text.splitlines())
+def log_file(tmp_path: Path, log_text: str) -> Path:
+    file = tmp_path / "room.log"
+    file.write_text(log_text)
+    return file
 
 
-@given(scans=st.integers(1, 2600), cases=st.integers(1, 150), seed=st.integers(0, 5))
-@settings(max_examples=30, deadline=None)
-def test_a_log_is_divided_as_the_protocol_says(log_text: str, scans: int, cases: int, seed: int) -> None:
-    scan = parse_carmen(log_text.splitlines()[:1]).scans[0]
-    division = divide(RecordedLog((scan,) * scans, 80.0), cases, seed)
-    kept = list(range(scans))[:: 4 if scans > 2000 else 1]
-    odd = kept[1::2]
-    chosen: Any = np.random.default_rng(seed).choice(len(odd), min(cases, len(odd)), replace=False) if odd else []
-    assert [query.number for query in division.queries] == [odd[index] for index in chosen]
-    assert len(division.map_scans) == len(kept[::2])
-
-
-def test_what_came_back_is_a_hit_and_what_did_not_is_free_up_to_the_limit(log: RecordedLog) -> None:
-    scan = next(scan for scan in log.scans if scan.missed.any())
-    readings = readings_of(scan, REACH)
-    beyond = int((scan.hit & (scan.ranges_m > REACH.range_max_m)).sum())
-    missed = [reading for reading in readings if reading.status is ReadingStatus.MISS]
-    assert len(missed) == int(scan.missed.sum()) + beyond
-    assert {reading.range_m for reading in missed} == {REACH.clear_m}
-    hits = [reading.range_m for reading in readings if reading.status is ReadingStatus.OK]
-    assert hits == scan.ranges_m[scan.hit & (scan.ranges_m <= REACH.range_max_m)].tolist()
-
-
-def test_a_beam_of_range_zero_says_nothing() -> None:
-    [scan] = parse_carmen(["FLASER 4 0 1 1 1 0 0 0 0 0 0 1 h 1"]).scans
-    assert [reading.range_m for reading in readings_of(scan, REACH)] == [1.0, 1.0, 1.0]
-
-
-def test_the_map_holds_every_hit_where_the_log_has_it(log: RecordedLog) -> None:
-    grid = map_of(log.scans, REACH, GridSettings(rows=1, cols=1, raise_alpha=0.5, lower_alpha=0.9))
-    occupied = np.argwhere(grid.cells > 200)
-    x_m, y_m = np.array([grid.spec.centre_of(row, col) for row, col in occupied]).T
-    assert (x_m.min(), x_m.max(), y_m.min(), y_m.max()) == pytest.approx((0.0, 5.0, 0.0, 3.0), abs=0.06)
+def documents(text: str) -> tuple[Any, list[Any], list[Any]]:
+    """Return the parameters, the results and the reports of logs among JSON lines."""
+    first, *lines = [json.loads(line) for line in text.splitlines()]
+    return first["parameters"], [line for line in lines if "scan" in line], [line for line in lines if "scans" in line]
 
 
 def run_eval(*words: str | Path) -> int:
@@ -76,8 +46,7 @@ def test_shares_add_up_and_a_room_without_symmetry_is_recognized(
     file = tmp_path / "report.json"
     assert run_eval(log_file, "--cases", "6", "--json", file) == 0
     said = capsys.readouterr().out
-    document = json.loads(file.read_text())
-    [report] = document["logs"]
+    parameters, results, [report] = documents(file.read_text())
     assert (report["cases"], report["asked"], report["interrupted"], report["map_scans"]) == (6, 6, False, 30)
     shares = [report[name] for name in ("right", "wrong_and_sure", "ambiguous", "lost")]
     assert sum(shares) == pytest.approx(1.0)
@@ -87,8 +56,8 @@ def test_shares_add_up_and_a_room_without_symmetry_is_recognized(
     assert report["error_m"]["p50"] < 0.1
     assert report["cpu_s"]["p50"] > 0.0
     assert re.search(rf"right +{100 * report['right']:.1f} %", said)
-    assert document["parameters"]["grid"]["resolution_m"] == 0.05
-    assert len(report["results"]) == 6
+    assert parameters["grid"]["resolution_m"] == 0.05
+    assert len(results) == 6
 
 
 @pytest.mark.parametrize("compress", [gzip.compress, bz2.compress])
@@ -98,10 +67,9 @@ def test_the_same_cases_give_the_same_answers_whatever_the_compression(
     packed = tmp_path / "room.log.packed"
     packed.write_bytes(compress(log_file.read_bytes()))
     assert run_eval(log_file, packed, "--cases", "2", "--json") == 0
-    one, other = json.loads(capsys.readouterr().out)["logs"]
-    times = {"cpu_s", "wall_s"}
-    results = [[{k: v for k, v in case.items() if k not in times} for case in log["results"]] for log in (one, other)]
-    assert results[0] == results[1]
+    _, results, _ = documents(capsys.readouterr().out)
+    told = [{k: v for k, v in case.items() if k not in {"cpu_s", "wall_s", "log"}} for case in results]
+    assert told[:2] == told[2:]
 
 
 def test_each_failure_has_its_picture(log_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -120,7 +88,7 @@ def test_pictures_without_matplotlib_are_refused_before_any_work(
     monkeypatch.delitem(sys.modules, "robotd.cli.pictures.failures", raising=False)
     monkeypatch.delitem(sys.modules, "robotd.cli.pictures.sheet", raising=False)
     monkeypatch.setitem(sys.modules, "matplotlib.axes", None)
-    monkeypatch.setattr(Searcher, "cases", None)
+    monkeypatch.setattr(Job, "__call__", None)
     assert run_eval(log_file, "--pictures", tmp_path) == 1
     assert "--pictures needs matplotlib" in capsys.readouterr().err
 
@@ -128,24 +96,27 @@ def test_pictures_without_matplotlib_are_refused_before_any_work(
 def test_ctrl_c_keeps_what_was_done(
     log_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    whole = Searcher.cases
+    whole = Job.__call__
+    answered: list[Query] = []
 
-    def interrupted(self: Searcher, queries: Any) -> Any:
-        yield next(whole(self, queries))
-        raise KeyboardInterrupt
+    def interrupted(self: Job, query: Query) -> Result:
+        if answered:
+            raise KeyboardInterrupt
+        answered.append(query)
+        return whole(self, query)
 
-    monkeypatch.setattr(Searcher, "cases", interrupted)
+    monkeypatch.setattr(Job, "__call__", interrupted)
     file = tmp_path / "report.json"
     assert run_eval(log_file, log_file, "--cases", "5", "--json", file) == 130
     assert "interrupted after 1 of 5 cases" in capsys.readouterr().out
-    [report] = json.loads(file.read_text())["logs"]
-    assert (report["cases"], report["interrupted"]) == (1, True)
+    _, results, [report] = documents(file.read_text())
+    assert (len(results), report["cases"], report["interrupted"]) == (1, 1, True)
 
 
 def test_a_damaged_log_is_named_with_line_and_expectation_before_any_work(
     log_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(Searcher, "cases", None)
+    monkeypatch.setattr(Job, "__call__", None)
     bad = tmp_path / "bad.log"
     bad.write_text("# a log\nFLASER 3 1.0 x 1.0 0 0 0 0 0 0 1 h 1\n")
     assert run_eval(log_file, bad) == 1
@@ -158,14 +129,14 @@ def test_a_log_with_one_scan_makes_a_map_and_no_case(tmp_path: Path, capsys: pyt
     file = tmp_path / "one.log"
     file.write_text("FLASER 4 1 1 1 1 0 0 0 0 0 0 1 h 1\n")
     assert run_eval(file, "--json") == 0
-    [report] = json.loads(capsys.readouterr().out)["logs"]
+    _, _, [report] = documents(capsys.readouterr().out)
     assert (report["map_scans"], report["cases"], report["error_m"]) == (1, 0, None)
 
 
 def test_a_log_is_never_overwritten_by_the_report(log_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = log_file.read_bytes()
     assert main(["eval", str(log_file), "--json", str(log_file)]) == 1
-    assert "is not a JSON document of eval; it is left as it is" in capsys.readouterr().err
+    assert "is not a file of JSON lines of eval; it is left as it is" in capsys.readouterr().err
     assert log_file.read_bytes() == before
 
 

@@ -1,10 +1,8 @@
 """A log of a drive through a room without symmetry: a scanner of 90 beams, a scan every few centimetres."""
 
 import math
-from pathlib import Path
 
 import numpy as np
-import pytest
 
 from robotd.sim.walls import Walls, ray_cast
 
@@ -34,15 +32,3 @@ def drive_lines(scans: int) -> list[str]:
         )
         for way in ways.tolist()
     ]
-
-
-@pytest.fixture(scope="session")
-def log_text() -> str:
-    return "\n".join(drive_lines(60))
-
-
-@pytest.fixture
-def log_file(tmp_path: Path, log_text: str) -> Path:
-    file = tmp_path / "room.log"
-    file.write_text(log_text)
-    return file

@@ -1,0 +1,85 @@
+"""Seek one scan on a map, by the same localizer as the daemon's: the piece of work that a scheduler hands out.
+
+A scheduler has to offer ``map(job, queries)`` and nothing else: the built-in one, that of a pool of processes, that of
+a cluster. So a job and its queries can be pickled, and what a job makes ready is found again by the next query in the
+same process, though every batch brings a copy of its own.
+"""
+
+import hashlib
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from robotd.evaluation.division import Query
+from robotd.evaluation.recorded import Reach, readings_of
+from robotd.evaluation.result import CaseKey, Result
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.localization.judge.error_model import ErrorModel
+from robotd.localization.judge.judgement import Judgement
+from robotd.localization.localizer import Localizer
+from robotd.localization.ready_map import ReadyMap
+from robotd.localization.settings import LocalizationSettings
+
+Map = Callable[["Job", Iterable[Query]], Iterable[Result]]
+"""What a scheduler offers; in the order of the queries or in any other."""
+
+
+@dataclass(frozen=True, slots=True)
+class JobSettings:
+    """Everything that an answer depends on but the log and its map."""
+
+    reach: Reach
+    localization: LocalizationSettings
+    judgement: Judgement
+    error_model: ErrorModel
+    threads: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Job:
+    """All cases of one log: a query in, a result out."""
+
+    log: str
+    grid: OccupancyGrid
+    settings: JobSettings
+    seed: int
+    commit: str
+    digest: str
+    """Of settings and map."""
+
+    @classmethod
+    def of(cls, log: str, grid: OccupancyGrid, settings: JobSettings, *, seed: int, commit: str) -> "Job":
+        """Return the job of a log."""
+        # How many threads share the work changes no answer.
+        told = f"{settings.reach} {settings.localization} {settings.judgement} {settings.error_model} {grid.digest()}"
+        return cls(log, grid, settings, seed, commit, hashlib.sha256(told.encode()).hexdigest()[:16])
+
+    def __call__(self, query: Query) -> Result:
+        """Seek a scan, nothing known."""
+        localizer = _localizer_of(self)
+        readings = readings_of(query.scan, self.settings.reach)
+        cpu_s, wall_s = time.process_time(), time.perf_counter()
+        localizer.begin(self.settings.localization.headings_all_round())
+        localizer.add(*readings)
+        estimate = localizer.estimate(0, final=True)
+        cpu_s, wall_s = time.process_time() - cpu_s, time.perf_counter() - wall_s
+        key = CaseKey(self.log, query.number, self.seed, self.digest, self.commit)
+        return Result.of(key, estimate, query.scan.laser_pose, cpu_s=cpu_s, wall_s=wall_s)
+
+
+def run(job: Job, queries: Iterable[Query], map_: Map = map) -> Iterator[Result]:
+    """Yield the results as the scheduler hands them over; nothing of them is kept."""
+    yield from map_(job, queries)
+
+
+_ready: dict[str, Localizer] = {}
+"""The latest job's localizer by the job's digest: a map is made ready once a process, not once a batch."""
+
+
+def _localizer_of(job: Job) -> Localizer:
+    if job.digest not in _ready:
+        settings = job.settings
+        ready_map = ReadyMap.of(job.grid, settings.localization, settings.error_model)
+        _ready.clear()  # a process that works through a thousand logs keeps one map
+        _ready[job.digest] = Localizer(ready_map, "", settings.judgement, threads=settings.threads)
+    return _ready[job.digest]

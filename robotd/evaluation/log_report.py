@@ -1,0 +1,74 @@
+"""One log and what its cases come to."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from robotd.core.grid_spec import GridSpec
+from robotd.evaluation.tally import Tally
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.tables import NO_INFORMATION
+from robotd.logs.scan import PoseSource
+
+
+@dataclass(frozen=True, slots=True)
+class MapFacts:
+    """What is told of the map that the cases were sought on."""
+
+    spec: GridSpec
+    vacant_cells: int
+    occupied_cells: int
+    digest: str
+
+    @classmethod
+    def of(cls, grid: OccupancyGrid) -> "MapFacts":
+        """Count its cells."""
+        vacant, occupied = int((grid.cells < NO_INFORMATION).sum()), int((grid.cells > NO_INFORMATION).sum())
+        return cls(grid.spec, vacant, occupied, grid.digest())
+
+    def document(self) -> dict[str, Any]:
+        """Return it for programs."""
+        return {
+            "rows": self.spec.rows,
+            "cols": self.spec.cols,
+            "resolution_m": self.spec.resolution_m,
+            "vacant_cells": self.vacant_cells,
+            "occupied_cells": self.occupied_cells,
+            "digest": self.digest,
+        }
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LogReport:
+    """One log, and what became of its cases so far."""
+
+    log: str
+    scans: int
+    """Scans in the log."""
+    map_scans: int
+    asked: int
+    """Cases there should be; fewer are there if it was interrupted."""
+    map: MapFacts
+    tally: Tally
+    poses: PoseSource = PoseSource.LOG
+    """Whose poses are taken for the truth."""
+    damaged_lines: int = 0
+    """Lines of the log that were left out."""
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether it was interrupted."""
+        return self.tally.cases < self.asked
+
+    def document(self) -> dict[str, Any]:
+        """Return it for programs."""
+        return {
+            "log": self.log,
+            "scans": self.scans,
+            "poses": self.poses.value,
+            "damaged_lines": self.damaged_lines,
+            "map_scans": self.map_scans,
+            "asked": self.asked,
+            "interrupted": self.is_cut,
+            **self.tally.document(),
+            "map": self.map.document(),
+        }

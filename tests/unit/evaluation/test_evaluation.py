@@ -1,0 +1,122 @@
+"""What evaluation promises: the protocol to the letter, cases that mean the same in any process, bounded memory."""
+
+import pickle
+import subprocess
+import sys
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robotd.core.reading import ReadingStatus
+from robotd.evaluation.division import Query, divide
+from robotd.evaluation.job import Job, JobSettings, run
+from robotd.evaluation.recorded import Reach, map_of, readings_of
+from robotd.evaluation.result import Result
+from robotd.grid.occupancy import GridSettings
+from robotd.localization.judge.error_model import ErrorModel
+from robotd.localization.judge.judgement import Judgement
+from robotd.localization.settings import LocalizationSettings
+from robotd.logs.carmen import parse_carmen
+from robotd.logs.scan import RecordedLog
+from tests.unit.cli.recorded_room import drive_lines
+
+REACH = Reach(range_max_m=4.0, clear_m=3.0)
+
+
+@pytest.fixture(scope="module")
+def log_text() -> str:
+    return "\n".join(drive_lines(60))
+
+
+@pytest.fixture
+def log(log_text: str) -> RecordedLog:
+    return parse_carmen(log_text.splitlines())
+
+
+@given(scans=st.integers(1, 2600), cases=st.integers(1, 150), seed=st.integers(0, 5))
+@settings(max_examples=30, deadline=None)
+def test_a_log_is_divided_as_the_protocol_says(log_text: str, scans: int, cases: int, seed: int) -> None:
+    scan = parse_carmen(log_text.splitlines()[:1]).scans[0]
+    division = divide(RecordedLog((scan,) * scans, 80.0), cases, seed)
+    kept = list(range(scans))[:: 4 if scans > 2000 else 1]
+    odd = kept[1::2]
+    chosen: Any = np.random.default_rng(seed).choice(len(odd), min(cases, len(odd)), replace=False) if odd else []
+    assert [query.number for query in division.queries] == [odd[index] for index in chosen]
+    assert len(division.map_scans) == len(kept[::2])
+
+
+def test_what_came_back_is_a_hit_and_what_did_not_is_free_up_to_the_limit(log: RecordedLog) -> None:
+    scan = next(scan for scan in log.scans if scan.missed.any())
+    readings = readings_of(scan, REACH)
+    beyond = int((scan.hit & (scan.ranges_m > REACH.range_max_m)).sum())
+    missed = [reading for reading in readings if reading.status is ReadingStatus.MISS]
+    assert len(missed) == int(scan.missed.sum()) + beyond
+    assert {reading.range_m for reading in missed} == {REACH.clear_m}
+    hits = [reading.range_m for reading in readings if reading.status is ReadingStatus.OK]
+    assert hits == scan.ranges_m[scan.hit & (scan.ranges_m <= REACH.range_max_m)].tolist()
+
+
+def test_a_beam_of_range_zero_says_nothing() -> None:
+    [scan] = parse_carmen(["FLASER 4 0 1 1 1 0 0 0 0 0 0 1 h 1"]).scans
+    assert [reading.range_m for reading in readings_of(scan, REACH)] == [1.0, 1.0, 1.0]
+
+
+def test_the_map_holds_every_hit_where_the_log_has_it(log: RecordedLog) -> None:
+    grid = map_of(log.scans, REACH, GridSettings(rows=1, cols=1, raise_alpha=0.5, lower_alpha=0.9))
+    occupied = np.argwhere(grid.cells > 200)
+    x_m, y_m = np.array([grid.spec.centre_of(row, col) for row, col in occupied]).T
+    assert (x_m.min(), x_m.max(), y_m.min(), y_m.max()) == pytest.approx((0.0, 5.0, 0.0, 3.0), abs=0.06)
+
+
+@pytest.fixture
+def job(log: RecordedLog) -> Job:
+    grid = map_of(divide(log, 4, 0).map_scans, REACH, GridSettings(rows=1, cols=1, raise_alpha=0.5, lower_alpha=0.9))
+    judged = JobSettings(REACH, LocalizationSettings(), Judgement(), ErrorModel(), 1)
+    return Job.of("room.log", grid, judged, seed=0, commit="none")
+
+
+def timeless(result: Result) -> Result:
+    return replace(result, cpu_s=0.0, wall_s=0.0)
+
+
+def in_another_process(job: Job, queries: Iterable[Query]) -> list[Result]:
+    """Be a scheduler: send all of it out by bytes, and get it back so."""
+    code = (
+        "import pickle, sys; job, *queries = pickle.load(sys.stdin.buffer);"
+        "pickle.dump([*map(job, queries)], sys.stdout.buffer)"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", code], input=pickle.dumps((job, *queries)), capture_output=True, check=True, timeout=60.0
+    )
+    results: list[Result] = pickle.loads(found.stdout)
+    return results
+
+
+def test_cases_mean_the_same_in_processes_of_their_own(log: RecordedLog, job: Job) -> None:
+    queries = divide(log, 4, 0).queries
+    elsewhere = list(run(job, queries, in_another_process))
+    assert [timeless(result) for result in elsewhere] == [timeless(result) for result in run(job, queries)]
+    assert len({result.key for result in elsewhere}) == len(queries)
+
+
+def test_a_key_changes_with_whatever_the_answer_depends_on(job: Job) -> None:
+    settings = replace(job.settings, localization=replace(job.settings.localization, range_error_m=0.2))
+    other_map = Job.of(job.log, job.grid, job.settings, seed=0, commit="none")
+    other_map.grid.cells[0, 0] ^= 1
+    digests = {job.digest, Job.of(job.log, job.grid, settings, seed=0, commit="none").digest}
+    digests.add(Job.of(job.log, other_map.grid, job.settings, seed=0, commit="none").digest)
+    threads = Job.of(job.log, job.grid, replace(job.settings, threads=7), seed=0, commit="none")
+    assert len(digests) == 3
+    assert threads.digest in digests
+
+
+def test_a_result_is_small_and_comes_back_whole(log: RecordedLog, job: Job) -> None:
+    result = job(divide(log, 1, 0).queries[0])
+    packed = pickle.dumps(result)
+    assert len(packed) < 4096
+    assert pickle.loads(packed) == result
