@@ -18,9 +18,9 @@ from robotd.mission.causes import Causes
 from robotd.mission.compute import Compute, NotedCompute
 from robotd.mission.context import MissionContext
 from robotd.mission.control import Control
-from robotd.mission.lease import EndlessLease, Lease
 from robotd.mission.results import note_result
 from robotd.mission.robot import Robot
+from robotd.mission.safety.lease import EndlessLease, Lease
 from robotd.mission.settings import MissionSettings
 from robotd.mission.supervisor import Supervisor
 from robotd.recording.preroll import PrerollJournal

@@ -7,7 +7,7 @@ from typing import NoReturn
 from robotd.app.compose import Daemon
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.log import log_place
-from robotd.mission.hold import WELL_S, Stall
+from robotd.mission.safety.hold import WELL_S, Stall
 
 _LOOK_EVERY_S = 0.1
 

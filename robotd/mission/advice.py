@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from robotd.mission.events import Event, MissionProgress
-from robotd.mission.map_in_use import MapInUse
+from robotd.mission.whereabouts.map_in_use import MapInUse
 
 
 def with_advice(event: Event, place: MapInUse | None) -> Event:

@@ -11,7 +11,7 @@ import msgspec
 
 from robotd.core.clock import now_ns
 from robotd.core.errors import RecordingError
-from robotd.mission.hold import Stall
+from robotd.mission.safety.hold import Stall
 from robotd.mission.supervisor import Supervisor
 from robotd.recording.journal import Journal
 
@@ -33,7 +33,7 @@ class Causes:
         self._journal = journal
 
     def stalled(self, stall: Stall) -> None:
-        """Take up that the event loop stood still; see :meth:`robotd.mission.holding.Holding.stalled`."""
+        """Take up that the event loop stood still; see :meth:`robotd.mission.safety.holding.Holding.stalled`."""
         if stall.was_stopped:
             self._supervisor.robot.stop_now()
         self._journal.cause(now_ns(), STALL, msgspec.to_builtins(stall))

@@ -9,8 +9,8 @@ from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.core.text import printable
 from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepDone, SweepProgress
-from robotd.mission.hold import Hold
 from robotd.mission.robot import Robot
+from robotd.mission.safety.hold import Hold
 from robotd.mission.settings import MissionSettings
 from robotd.mission.stop_and_sweep import Sweeper
 from robotd.recording.entries import ResultEntry

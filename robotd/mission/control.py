@@ -24,11 +24,11 @@ from robotd.maps.store import MapEntry, MapStore
 from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MapChanged, Status
 from robotd.mission.keeping import Keeping
-from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Occasion
 from robotd.mission.noted import NotedMap, NotedRenewal, NotedStart, NotedStop, grid_of, mission_of, noted_as
 from robotd.mission.requests import MapMission, Mission
 from robotd.mission.supervisor import Supervisor
+from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.encoding import encoded
 from robotd.recording.entries import CommandEntry
 from robotd.recording.place import make_place

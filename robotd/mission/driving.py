@@ -9,9 +9,9 @@ from robotd.grid.latest import HIT
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import MissionPhase
-from robotd.mission.map_in_use import MapInUse
-from robotd.mission.motion import drive_leg, next_odometry
+from robotd.mission.motion.legs import drive_leg, next_odometry
 from robotd.mission.requests import DriveMission, Legs
+from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.planning.path import Path, PlanningSettings, Unreachable, plan
 
 

@@ -11,9 +11,9 @@ from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import MapError, MissionError
 from robotd.maps.store import UNSAVED, MapEntry, MapStore
 from robotd.mission.compute import Compute
-from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import UNDER_WAY
 from robotd.mission.supervisor import Supervisor
+from robotd.mission.whereabouts.map_in_use import MapInUse
 
 _LAST_S = 20.0
 """How long the end of the daemon waits for the disk; the service manager must wait longer (``TimeoutStopSec``)."""

@@ -17,11 +17,11 @@ from robotd.localization.localizer import Localizer
 from robotd.mission.compute import cores
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.events import MissionPhase
-from robotd.mission.map_in_use import MapInUse
 from robotd.mission.requests import LocalizeMission, PriorHeading
 from robotd.mission.results import result_of
 from robotd.mission.settings import MissionSettings
 from robotd.mission.stop_and_sweep import faults_text, standing
+from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.entries import ResultEntry
 
 _BATCH = 20

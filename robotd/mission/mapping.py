@@ -9,9 +9,9 @@ from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.driving import drive_to
 from robotd.mission.events import MissionPhase
 from robotd.mission.looking_again import looking_again
-from robotd.mission.map_in_use import MapInUse
 from robotd.mission.requests import MapMission
 from robotd.mission.stop_and_sweep import faults_text
+from robotd.mission.whereabouts.map_in_use import MapInUse
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,11 +12,11 @@ from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.driving import run_driving
 from robotd.mission.localizing import pose_text, run_localizing
 from robotd.mission.looking_again import looking_again
-from robotd.mission.map_in_use import MapInUse
 from robotd.mission.mapping import run_mapping
 from robotd.mission.modes import Occasion
-from robotd.mission.motion import next_odometry
+from robotd.mission.motion.legs import next_odometry
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission, Mission
+from robotd.mission.whereabouts.map_in_use import MapInUse
 
 _MARGIN_M = 3.0
 """A map reaches at least this far beyond its stops, and farther unless the stops fill it."""

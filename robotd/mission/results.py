@@ -12,7 +12,7 @@ import msgspec
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.reading import Sweep
 from robotd.mission.events import Event, MapChanged, MissionProgress, SweepDone
-from robotd.mission.map_in_use import MapInUse
+from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.encoding import encoded
 from robotd.recording.entries import ResultEntry
 from robotd.recording.journal import Journal

@@ -20,17 +20,17 @@ from robotd.core.text import printable
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
 from robotd.mission.advice import with_advice
-from robotd.mission.battery import low_battery
 from robotd.mission.context import MissionContext, Publish, Reporter
 from robotd.mission.events import Event, MissionPhase, Status
-from robotd.mission.holding import Holding
-from robotd.mission.lease import Lease
-from robotd.mission.map_in_use import MapInUse, in_place_of
 from robotd.mission.missions import KINDS, carry_out
 from robotd.mission.modes import UNDER_WAY, Mode, Occasion, next_mode
-from robotd.mission.prediction import Predictor, unlocalized
 from robotd.mission.requests import Mission
 from robotd.mission.robot import Robot
+from robotd.mission.safety.battery import low_battery
+from robotd.mission.safety.holding import Holding
+from robotd.mission.safety.lease import Lease
+from robotd.mission.whereabouts.map_in_use import MapInUse, in_place_of
+from robotd.mission.whereabouts.prediction import Predictor, unlocalized
 from robotd.recording.entries import ResultEntry
 
 _DEVICE_TIMEOUT_S = 5.0

@@ -14,9 +14,9 @@ from robotd.app.stalls import keep_going
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
 from robotd.mission.events import MissionPhase, MissionProgress
-from robotd.mission.hold import HOLDS_A_MINUTE, Stall
 from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, Legs, MapMission
+from robotd.mission.safety.hold import HOLDS_A_MINUTE, Stall
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
 from tests.integration.conftest import Live

@@ -16,9 +16,9 @@ from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.device import LinkState
 from robotd.mission.events import Event, MapChanged, MissionPhase, SweepDone, SweepProgress
-from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission, PriorHeading
+from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.world import load_world
 from tests.integration.conftest import Live

@@ -23,9 +23,9 @@ from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.entries import BytesEntry
 from robotd.recording.preroll import PrerollJournal
 from robotd.sim.body import Body

@@ -13,10 +13,10 @@ from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.hardware.devices.bought_device import BoughtDevice
 from robotd.hardware.devices.device import LinkState
 from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import UNDER_WAY, Mode
-from robotd.mission.motion import next_odometry
+from robotd.mission.motion.legs import next_odometry
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.server.topics import Topic, encode_frame, to_wire
 from robotd.sim.robot import own_board
 from tests.faults.bench import Bench

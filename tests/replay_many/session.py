@@ -14,9 +14,9 @@ from robotd.app.stall_guard import STALL_S
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.errors import RobotdError
 from robotd.mission.events import MissionProgress
-from robotd.mission.hold import Stall
 from robotd.mission.modes import Mode
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.mission.safety.hold import Stall
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.catalogue import FAULTS
 from robotd.sim.robot import DEVICES

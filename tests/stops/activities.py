@@ -6,9 +6,9 @@ from collections.abc import Awaitable, Callable
 
 from robotd.app.compose import Daemon
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.mission.map_in_use import MapInUse
-from robotd.mission.motion import next_odometry
+from robotd.mission.motion.legs import next_odometry
 from robotd.mission.requests import DriveMission, Legs, MapMission
+from robotd.mission.whereabouts.map_in_use import MapInUse
 from tests.stops.rig import Rig, start
 
 _FAST_MPS, _FAST_RADPS = 0.2, 0.3

@@ -25,8 +25,8 @@ from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.ready_map import ReadyMap
 from robotd.mission.events import MapChanged
+from robotd.mission.motion.steering import DrivingSettings
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
-from robotd.mission.steering import DrivingSettings
 from robotd.sim.world import World, load_world
 
 

@@ -22,12 +22,12 @@ from robotd.hardware.devices.rangefinder import Shot
 from robotd.mission.compute import ThreadCompute
 from robotd.mission.context import MissionContext
 from robotd.mission.events import Event, MissionPhase, MissionProgress
-from robotd.mission.map_in_use import MapInUse
 from robotd.mission.modes import Mode, Occasion
 from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.mission.robot import Robot
 from robotd.mission.settings import MissionSettings
 from robotd.mission.supervisor import Supervisor
+from robotd.mission.whereabouts.map_in_use import MapInUse
 
 TELEMETRY_S = 0.04
 GONE = {"link": LinkState.ABSENT, "armed": False, "detail": "the line was cut"}

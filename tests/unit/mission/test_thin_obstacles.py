@@ -11,7 +11,7 @@ from robotd.grid.binary import FREE_MAX
 from robotd.grid.latest import HIT, NOTHING, PASSED
 from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy
 from robotd.mission.driving import _plan
-from robotd.mission.map_in_use import MapInUse
+from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.planning.path import Path, PlanningSettings
 
 WALLS_M = 2.5

@@ -18,9 +18,9 @@ from robotd.core.pose import Pose2
 from robotd.hardware.devices.device import DeviceStatus, LinkState
 from robotd.maps.store import MapEntry
 from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.mission.lease import Lease
 from robotd.mission.modes import Mode
 from robotd.mission.requests import Mission
+from robotd.mission.safety.lease import Lease
 from robotd.server.server import Server, ServerSettings
 
 SPEC = GridSpec(0.05, -1.0, -2.0, (40, 60))

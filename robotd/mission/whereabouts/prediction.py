@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.angles import wrap_rad
 from robotd.core.pose import Odometry, Pose2
-from robotd.mission.map_in_use import MapInUse
+from robotd.mission.whereabouts.map_in_use import MapInUse
 
 _MOVED_M = 0.02
 _TURNED_RAD = 0.02

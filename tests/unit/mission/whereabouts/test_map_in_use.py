@@ -9,8 +9,8 @@ from robotd.contract.estimate import PoseState
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.mission.map_in_use import MapInUse
-from robotd.mission.prediction import Predictor, unlocalized
+from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.prediction import Predictor, unlocalized
 
 
 def place(map_from_odom: Pose2 | None = IDENTITY) -> MapInUse:

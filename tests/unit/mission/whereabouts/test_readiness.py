@@ -12,8 +12,8 @@ from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
-from robotd.mission import readiness
-from robotd.mission.map_in_use import MapInUse
+from robotd.mission.whereabouts import readiness
+from robotd.mission.whereabouts.map_in_use import MapInUse
 
 SETTINGS = LocalizationSettings()
 ERRORS = ErrorModel()

@@ -16,8 +16,8 @@ from robotd.core.errors import DeviceError, LinkTimeout
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.core.silence import within
 from robotd.hardware.devices.drive import Drive
-from robotd.mission.hold import Hold, Interrupted
-from robotd.mission.steering import DrivingSettings, distance_left_m, leg_twist, turn_rate_radps
+from robotd.mission.motion.steering import DrivingSettings, distance_left_m, leg_twist, turn_rate_radps
+from robotd.mission.safety.hold import Hold, Interrupted
 
 
 async def rotate_to(drive: Drive, heading_rad: float, settings: DrivingSettings, hold: Hold | None = None) -> Odometry:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robotd.core.pose import Pose2
-from robotd.mission.steering import DrivingSettings, distance_left_m, leg_twist, turn_rate_radps
+from robotd.mission.motion.steering import DrivingSettings, distance_left_m, leg_twist, turn_rate_radps
 
 SETTINGS = DrivingSettings()
 PERIOD_S = 0.04

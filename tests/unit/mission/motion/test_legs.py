@@ -13,8 +13,8 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2, Twist2
 from robotd.hardware.devices.drive import Drive
-from robotd.mission.motion import drive_leg, next_odometry, rotate_to, settle
-from robotd.mission.steering import DrivingSettings
+from robotd.mission.motion.legs import drive_leg, next_odometry, rotate_to, settle
+from robotd.mission.motion.steering import DrivingSettings
 
 SETTINGS = DrivingSettings()
 PERIOD_S = 0.04

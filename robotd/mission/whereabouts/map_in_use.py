@@ -12,7 +12,7 @@ from robotd.grid.latest import latest_with
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.window import CellWindow
 from robotd.mission.events import MapChanged
-from robotd.mission.readiness import Readiness
+from robotd.mission.whereabouts.readiness import Readiness
 
 _NO_CELLS: NDArray[np.intp] = np.empty(0, dtype=np.intp)
 

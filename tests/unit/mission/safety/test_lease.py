@@ -3,7 +3,7 @@
 import asyncio
 
 from robotd.core.clock import NS_PER_S, now_ns
-from robotd.mission.lease import Lease
+from robotd.mission.safety.lease import Lease
 
 
 async def test_it_runs_out_when_it_says() -> None:

@@ -11,9 +11,9 @@ from robotd.core.errors import RobotdError
 from robotd.core.silence import within
 from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
 from robotd.mission.events import Event, Status
-from robotd.mission.hold import HOLDS_A_MINUTE, Hold, Stall
 from robotd.mission.modes import UNDER_WAY, Mode, Occasion
 from robotd.mission.robot import Robot
+from robotd.mission.safety.hold import HOLDS_A_MINUTE, Hold, Stall
 
 _ARM_TIMEOUT_S = 5.0
 _DEADMAN = ("deadman",)

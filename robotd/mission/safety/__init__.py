@@ -1,0 +1,1 @@
+"""What may move and for how long: leases, holds, the battery. It knows of no map and of no mission."""
