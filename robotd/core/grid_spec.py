@@ -6,6 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+MAX_SIDE_CELLS = 8192
+"""More cells than this along one side is a mistake, not a map."""
+
 
 @dataclass(frozen=True, slots=True)
 class GridSpec:

@@ -1,7 +1,6 @@
 """The statistical occupancy grid: what the beams of all stops say about each cell ([BrownDonald2000]_ sec. 1, 3.2)."""
 
 import enum
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
@@ -10,15 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.bounds import Within, refuse_outside
-from robotd.core.grid_spec import GridSpec
+from robotd.core.grid_bytes import grid_digest
+from robotd.core.grid_spec import MAX_SIDE_CELLS, GridSpec
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid import kernels
 from robotd.grid.readings import numbers_of
 from robotd.grid.tables import NO_INFORMATION, lower_table, raise_table
-
-MAX_SIDE_CELLS = 8192
-"""More cells than this along one side is a mistake, not a map."""
 
 
 class UpdatePolicy(enum.StrEnum):
@@ -116,11 +113,7 @@ class OccupancyGrid:
 
     def digest(self) -> str:
         """Return the SHA-256 of placement and cells, in hexadecimal: equal exactly if the maps are."""
-        spec = self.spec
-        place = f"{spec.resolution_m!r} {spec.origin_x_m!r} {spec.origin_y_m!r} {spec.rows} {spec.cols}\n"
-        found = hashlib.sha256(place.encode())
-        found.update(np.ascontiguousarray(self.cells).data)  # not a copy of it: a copy keeps other threads waiting
-        return found.hexdigest()
+        return grid_digest(self.spec, self.cells)
 
     def usable(self, sweep: Sweep) -> tuple[RangeReading, ...]:
         """Return the readings of a sweep that change this grid."""

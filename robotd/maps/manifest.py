@@ -9,8 +9,7 @@ from typing import Any, Self
 import msgspec
 
 from robotd.core.errors import MapError
-from robotd.core.grid_spec import GridSpec
-from robotd.grid.occupancy import MAX_SIDE_CELLS
+from robotd.core.grid_spec import MAX_SIDE_CELLS, GridSpec
 
 SCHEMA = 1
 _FILE_MAX_BYTES = MAX_SIDE_CELLS**2 + 1024  # an image has a few words before its cells

@@ -13,9 +13,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from robotd.core.errors import MapError
+from robotd.core.grid_bytes import cell_bytes, cells_of
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.image import encode_pgm, trinary_from_cells
 from robotd.grid.map_yaml import map_yaml
@@ -252,7 +251,7 @@ def _files_of(
     name: str, version: int, grid: OccupancyGrid, metadata: dict[str, Any], created_unix_ns: int
 ) -> tuple[dict[str, Buffer], Manifest]:
     files: dict[str, Buffer] = {
-        CELLS: grid.cells.data.cast("B"),
+        CELLS: cell_bytes(grid.cells),
         IMAGE: encode_pgm(trinary_from_cells(grid.cells)),
         YAML: map_yaml(IMAGE, grid.spec).encode(),
     }
@@ -323,10 +322,11 @@ def _read(path: Path, max_bytes: int) -> bytes:
 
 
 def _grid_of(manifest: Manifest, data: bytes, settings: GridSettings | None) -> OccupancyGrid:
-    rows, cols = manifest.spec.shape
-    if len(data) != rows * cols:
-        raise MapError(f"{CELLS} has {len(data)} bytes for {rows} x {cols} cells")
-    grid = OccupancyGrid(manifest.spec, np.frombuffer(data, np.uint8).reshape(rows, cols), settings)
+    try:
+        cells = cells_of(data, manifest.spec)
+    except ValueError as error:
+        raise MapError(f"{CELLS} has {error}") from error
+    grid = OccupancyGrid(manifest.spec, cells, settings)
     if grid.digest() != manifest.digest:
         raise MapError(f"{MANIFEST} has another digest than the map")
     return grid

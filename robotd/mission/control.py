@@ -6,9 +6,7 @@ refused ten thousand times a minute must not fill the memory that recordings beg
 may, is noted.
 """
 
-import base64
 import logging
-import zlib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,7 +23,16 @@ from robotd.mission.compute import Compute
 from robotd.mission.events import Event, MapChanged, Status
 from robotd.mission.keeping import Keeping
 from robotd.mission.modes import Occasion
-from robotd.mission.noted import NotedMap, NotedRenewal, NotedStart, NotedStop, grid_of, mission_of, noted_as
+from robotd.mission.noted import (
+    NotedMap,
+    NotedRenewal,
+    NotedStart,
+    NotedStop,
+    grid_of,
+    mission_of,
+    noted_as,
+    noted_grid,
+)
 from robotd.mission.requests import MapMission, Mission
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.map_in_use import MapInUse
@@ -258,6 +265,4 @@ class Control:
 
 def _use_map(arguments: dict[str, Any], grid: OccupancyGrid) -> CommandEntry:
     """Return the journal's entry of taking a map into use, encoded: for a large one that takes a second."""
-    cells = base64.b64encode(zlib.compress(grid.cells.data)).decode()
-    packed = {"spec": msgspec.to_builtins(grid.spec), "cells": cells}
-    return encoded(CommandEntry(0, "use_map", arguments | {"grid": packed}))
+    return encoded(CommandEntry(0, "use_map", arguments | {"grid": noted_grid(grid)}))

@@ -2,16 +2,15 @@
 
 import base64
 import json
-import zlib
 from typing import Any, Literal, TypeVar
 
 import msgspec
-import numpy as np
 
 from robotd.core.errors import RecordingError
+from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.grid.occupancy import MAX_SIDE_CELLS, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.mission.requests import DriveMission, LocalizeMission, MapMission, Mission
 
 _LEASE_MAX_S = 1e9
@@ -45,7 +44,7 @@ class NotedMap(msgspec.Struct):
 class _PackedGrid(msgspec.Struct):
     spec: GridSpec
     cells: str
-    """Base64 of zlib of the cells, row by row."""
+    """Base64 of the packed cells."""
 
 
 class NotedStart(msgspec.Struct):
@@ -111,18 +110,16 @@ def grid_of(noted: NotedMap) -> OccupancyGrid:
             memory is taken than that.
     """
     spec = noted.grid.spec
-    if max(spec.shape) > MAX_SIDE_CELLS:
-        raise RecordingError(f"request 'use_map': expected at most {MAX_SIDE_CELLS} cells along a side")
-    expected = spec.rows * spec.cols
     try:
-        unpacking = zlib.decompressobj()
-        cells = unpacking.decompress(base64.b64decode(noted.grid.cells, validate=True), expected + 1)
-    except (ValueError, zlib.error) as error:
-        raise RecordingError(f"request 'use_map': its cells cannot be unpacked: {error}") from error
-    if len(cells) != expected or not unpacking.eof or unpacking.unused_data:
-        many = "more" if len(cells) > expected else "others"
-        raise RecordingError(f"request 'use_map': expected {expected} bytes of cells for {spec.shape}, got {many}")
-    return OccupancyGrid(spec, np.frombuffer(cells, dtype=np.uint8).reshape(spec.shape).copy())
+        return OccupancyGrid(spec, unpacked_cells(base64.b64decode(noted.grid.cells, validate=True), spec))
+    except ValueError as error:
+        raise RecordingError(f"request 'use_map': {error}") from error
+
+
+def noted_grid(grid: OccupancyGrid) -> dict[str, Any]:
+    """Return a grid as it is noted; for a large one that takes a second."""
+    cells = base64.b64encode(packed_cells(grid.cells)).decode()
+    return {"spec": msgspec.to_builtins(grid.spec), "cells": cells}
 
 
 def _converted(kind: type[T], name: str, value: object) -> T:

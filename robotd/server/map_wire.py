@@ -1,17 +1,15 @@
 """A map as bytes: changed cells as they are, a whole map compressed."""
 
-import zlib
-
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.errors import RemoteProtocolError
+from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.grid_spec import GridSpec
 from robotd.mission.events import MapChanged
 
 _INDEX = np.dtype("<u4")
-_QUICK = 1
 
 
 class MapPayload(msgspec.Struct, frozen=True):
@@ -27,7 +25,7 @@ class MapPayload(msgspec.Struct, frozen=True):
     rows: int
     cols: int
     cells_zlib: bytes = b""
-    """The whole grid, zlib of one byte per cell, row by row from the lower left corner; empty unless ``whole``."""
+    """The whole grid, packed as :mod:`robotd.core.grid_bytes` says; empty unless ``whole``."""
     indices_u32le: bytes = b""
     """Changed cells, ``row * cols + col`` in four bytes each, little-endian."""
     values_u8: bytes = b""
@@ -48,7 +46,7 @@ def pack_map(change: MapChanged) -> MapPayload:
         origin_y_m=float(spec.origin_y_m),
         rows=int(spec.rows),
         cols=int(spec.cols),
-        cells_zlib=zlib.compress(values.data, _QUICK) if change.whole else b"",
+        cells_zlib=packed_cells(values) if change.whole else b"",
         indices_u32le=b"" if change.whole else change.cells.astype(_INDEX).tobytes(),
         values_u8=b"" if change.whole else values.tobytes(),
     )
@@ -63,18 +61,13 @@ def unpack_map(payload: MapPayload) -> MapChanged:
     try:
         spec = GridSpec(payload.resolution_m, payload.origin_x_m, payload.origin_y_m, (payload.rows, payload.cols))
         cells, values = _unpack_whole(payload, spec) if payload.whole else _unpack_changes(payload, spec)
-    except (ValueError, zlib.error) as error:
+    except ValueError as error:
         raise RemoteProtocolError(f"map payload: {error}") from error
     return MapChanged(payload.time_ns, payload.map_id, payload.generation, spec, payload.whole, cells, values)
 
 
 def _unpack_whole(payload: MapPayload, spec: GridSpec) -> tuple[NDArray[np.intp], NDArray[np.uint8]]:
-    size = spec.rows * spec.cols
-    inflate = zlib.decompressobj()
-    data = inflate.decompress(payload.cells_zlib, size + 1)
-    if len(data) != size or not inflate.eof:
-        raise ValueError(f"expected {size} cells, got {'more' if len(data) > size else len(data)}")
-    return np.empty(0, dtype=np.intp), np.frombuffer(data, dtype=np.uint8).reshape(spec.shape)
+    return np.empty(0, dtype=np.intp), unpacked_cells(payload.cells_zlib, spec)
 
 
 def _unpack_changes(payload: MapPayload, spec: GridSpec) -> tuple[NDArray[np.intp], NDArray[np.uint8]]:

@@ -20,8 +20,8 @@ from robotd.cli.show.half_blocks import can_draw_blocks, coloured, plain, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import OK, Verb
 from robotd.core.clock import NS_PER_S
+from robotd.core.grid_bytes import grid_digest
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
 from robotd.mission.events import MapChanged
 from robotd.mission.requests import Legs, MapMission
@@ -164,7 +164,7 @@ def _facts(shown: MapChanged) -> dict[str, object]:
     return {
         "map_id": shown.map_id,
         "generation": shown.generation,
-        "digest": OccupancyGrid(shown.spec, values).digest(),
+        "digest": grid_digest(shown.spec, values),
         "spec": asdict(shown.spec),
         "free_cells": int((values < NO_INFORMATION).sum()),
         "unknown_cells": int((values == NO_INFORMATION).sum()),

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from robotd.core.errors import MapError
-from robotd.core.grid_spec import GridSpec
-from robotd.grid.occupancy import MAX_SIDE_CELLS, OccupancyGrid
+from robotd.core.grid_spec import MAX_SIDE_CELLS, GridSpec
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.maps.atomic import Buffer, publish_directory
 from robotd.maps.store import MapStore
 
