@@ -6,8 +6,8 @@ sockets are, if not in /run/robotd. Ctrl-C stops the robot first.
 
 import asyncio
 
+from robotd.client import AsyncClient
 from robotd.contract.estimate import PoseEstimate
-from robotd.server.async_client import AsyncClient
 
 
 def describe(pose: PoseEstimate) -> str:

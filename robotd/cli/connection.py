@@ -4,9 +4,9 @@ import argparse
 import os
 from pathlib import Path
 
+from robotd.client import Client
+from robotd.client.endpoints import runtime_dir_of_user
 from robotd.core.errors import TransportError
-from robotd.server.client import Client
-from robotd.server.endpoints import runtime_dir_of_user
 
 
 def connect(arguments: argparse.Namespace) -> Client:

@@ -10,11 +10,11 @@ from robotd.cli.show.progress import MissionBars
 from robotd.cli.show.terminal import complain, out, print_json
 from robotd.cli.show.wording import as_json, estimate_in_words
 from robotd.cli.verb import FAILED, INTERRUPTED, OK
+from robotd.client import Client
+from robotd.client.mission_run import MissionEvent
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.missions import Legs, Mission
 from robotd.core.errors import MissionError, RobotdError
-from robotd.mission.requests import Legs, Mission
-from robotd.server.client import Client
-from robotd.server.mission_run import MissionEvent
 
 
 class _Show(Protocol):

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from robotd.mission.events import Event, MissionProgress
+from robotd.contract.events import Event, MissionProgress
 from robotd.mission.whereabouts.map_in_use import MapInUse
 
 

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepDone, SweepProgress
 from robotd.core.clock import now_ns
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.core.text import printable
 from robotd.mission.compute import Compute
-from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepDone, SweepProgress
 from robotd.mission.robot import Robot
 from robotd.mission.safety.hold import Hold
 from robotd.mission.settings import MissionSettings

@@ -13,6 +13,8 @@ from typing import Any
 
 import msgspec
 
+from robotd.contract.events import Event, MapChanged, Status
+from robotd.contract.missions import MapMission, Mission
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import MapError, MissionError, RecordingError
@@ -20,7 +22,6 @@ from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.maps.store import MapEntry, MapStore
 from robotd.mission.compute import Compute
-from robotd.mission.events import Event, MapChanged, Status
 from robotd.mission.keeping import Keeping
 from robotd.mission.modes import Occasion
 from robotd.mission.noted import (
@@ -33,7 +34,6 @@ from robotd.mission.noted import (
     noted_as,
     noted_grid,
 )
-from robotd.mission.requests import MapMission, Mission
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.encoding import encoded

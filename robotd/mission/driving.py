@@ -3,14 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.contract.events import MissionPhase
+from robotd.contract.missions import DriveMission, Legs
 from robotd.core.errors import MissionError
 from robotd.core.pose import Odometry, Pose2
 from robotd.grid.latest import HIT
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.mission.context import MissionContext, Reporter
-from robotd.mission.events import MissionPhase
 from robotd.mission.motion.legs import drive_leg, next_odometry
-from robotd.mission.requests import DriveMission, Legs
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.planning.path import Path, PlanningSettings, Unreachable, plan
 

@@ -8,6 +8,8 @@ import asyncio
 import math
 
 from robotd.contract.estimate import PoseEstimate, PoseState, Region
+from robotd.contract.events import MissionPhase
+from robotd.contract.missions import LocalizeMission, PriorHeading
 from robotd.core.angles import wrap_rad
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
@@ -16,8 +18,6 @@ from robotd.core.reading import RangeReading
 from robotd.localization.localizer import Localizer
 from robotd.mission.compute import cores
 from robotd.mission.context import MissionContext, Reporter
-from robotd.mission.events import MissionPhase
-from robotd.mission.requests import LocalizeMission, PriorHeading
 from robotd.mission.results import result_of
 from robotd.mission.settings import MissionSettings
 from robotd.mission.stop_and_sweep import faults_text, standing

@@ -3,10 +3,10 @@
 from collections.abc import Awaitable, Callable
 from typing import TypeVar
 
+from robotd.contract.events import MissionPhase
 from robotd.core.errors import DeviceError
 from robotd.hardware.devices.pantilt import LOST_STEPS
 from robotd.mission.context import MissionContext, Reporter
-from robotd.mission.events import MissionPhase
 
 T = TypeVar("T")
 

@@ -3,13 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from robotd.contract.events import MissionPhase
+from robotd.contract.missions import MapMission
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.driving import drive_to
-from robotd.mission.events import MissionPhase
 from robotd.mission.looking_again import looking_again
-from robotd.mission.requests import MapMission
 from robotd.mission.stop_and_sweep import faults_text
 from robotd.mission.whereabouts.map_in_use import MapInUse
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from robotd.contract.estimate import PoseEstimate
+from robotd.contract.missions import DriveMission, LocalizeMission, MapMission, Mission
 from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
@@ -15,7 +16,6 @@ from robotd.mission.looking_again import looking_again
 from robotd.mission.mapping import run_mapping
 from robotd.mission.modes import Occasion
 from robotd.mission.motion.legs import next_odometry
-from robotd.mission.requests import DriveMission, LocalizeMission, MapMission, Mission
 from robotd.mission.whereabouts.map_in_use import MapInUse
 
 _MARGIN_M = 3.0

@@ -12,16 +12,7 @@ stood still, and the mission goes on by itself. Any ``STOP``, ``FAULT`` or ``DEV
 
 import enum
 
-
-class Mode(enum.StrEnum):
-    """What the robot is allowed to do."""
-
-    DISARMED = "disarmed"
-    IDLE = "idle"
-    MAPPING = "mapping"
-    LOCALIZING = "localizing"
-    DRIVING = "driving"
-    FAULT = "fault"
+from robotd.contract.modes import Mode
 
 
 class Occasion(enum.StrEnum):

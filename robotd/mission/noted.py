@@ -6,12 +6,12 @@ from typing import Any, Literal, TypeVar
 
 import msgspec
 
+from robotd.contract.missions import DriveMission, LocalizeMission, MapMission, Mission
 from robotd.core.errors import RecordingError
 from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.mission.requests import DriveMission, LocalizeMission, MapMission, Mission
 
 _LEASE_MAX_S = 1e9
 _QUOTED = 80

@@ -10,8 +10,8 @@ from typing import Any
 import msgspec
 
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import Event, MapChanged, MissionProgress, SweepDone
 from robotd.core.reading import Sweep
-from robotd.mission.events import Event, MapChanged, MissionProgress, SweepDone
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.encoding import encoded
 from robotd.recording.entries import ResultEntry

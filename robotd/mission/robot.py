@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from robotd.hardware.devices.device import Device, LinkState
+from robotd.contract.device_status import LinkState
+from robotd.hardware.devices.device import Device
 from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder

@@ -9,7 +9,11 @@ import logging
 from collections.abc import Callable
 from dataclasses import replace
 
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import Event, MissionPhase, Status
+from robotd.contract.missions import Mission
+from robotd.contract.modes import Mode
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import LinkTimeout, MissionError, RobotdError
@@ -18,13 +22,11 @@ from robotd.core.pose import Odometry
 from robotd.core.silence import within
 from robotd.core.text import printable
 from robotd.hardware.devices.credible import IMPLAUSIBLE
-from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
+from robotd.hardware.devices.device import Device
 from robotd.mission.advice import with_advice
 from robotd.mission.context import MissionContext, Publish, Reporter
-from robotd.mission.events import Event, MissionPhase, Status
 from robotd.mission.missions import KINDS, carry_out
-from robotd.mission.modes import UNDER_WAY, Mode, Occasion, next_mode
-from robotd.mission.requests import Mission
+from robotd.mission.modes import UNDER_WAY, Occasion, next_mode
 from robotd.mission.robot import Robot
 from robotd.mission.safety.battery import low_battery
 from robotd.mission.safety.holding import Holding
@@ -389,8 +391,7 @@ class Supervisor:
         self.publish(odometry)
         if self.place is None or self._mode is Mode.LOCALIZING:
             return  # while it looks for itself, what it finds is the better word
-        estimate = self._predictor.predict(odometry, self.place)
-        if estimate is not None:
+        if (estimate := self._predictor.predict(odometry, self.place)) is not None:
             self.publish(estimate)
 
     async def _repeat_status(self) -> None:

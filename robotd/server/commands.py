@@ -10,15 +10,15 @@ import asyncio
 import logging
 from typing import Any
 
+from robotd.contract.envelope import BadRequest, Request, decode_request, encode_error, encode_result, refuse_frames
+from robotd.contract.map_wire import MapPayload
+from robotd.contract.requests import Arm, Command, Done, ErrorCode, Stop
+from robotd.contract.stopping import STOPPING
 from robotd.core.errors import RobotdError, ServerError
-from robotd.server.api import Arm, Command, Done, ErrorCode, Stop
-from robotd.server.envelope import BadRequest, Request, decode_request, encode_error, encode_result, refuse_frames
 from robotd.server.handlers import Handlers, as_refusal
-from robotd.server.map_wire import MapPayload
 from robotd.server.replies import Asker, Replies
 from robotd.server.request_log import RequestLog
 from robotd.server.router import Letter, Router
-from robotd.server.stopping import STOPPING
 
 _OVERTAKEN = ServerError(ErrorCode.REFUSED, "overtaken by a stop")
 _UNREADABLE = Stop("stopped by a client, in a request that is not well made")

@@ -2,11 +2,11 @@
 
 from typing import Protocol
 
+from robotd.contract.events import Event, MapChanged, Status
+from robotd.contract.missions import Mission
 from robotd.core.broadcast import Broadcast
 from robotd.core.pose import Pose2
 from robotd.maps.store import MapEntry
-from robotd.mission.events import Event, MapChanged, Status
-from robotd.mission.requests import Mission
 
 
 class Control(Protocol):

@@ -1,10 +1,10 @@
 """Routine news at a bearable rate: odometry 20 times a second is enough for a reader; what is rare is never thinned."""
 
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import SweepProgress
+from robotd.contract.topics import Published
 from robotd.core.clock import NS_PER_S
 from robotd.core.pose import Odometry
-from robotd.mission.events import SweepProgress
-from robotd.server.topics import Published
 
 
 class Decimator:

@@ -5,13 +5,14 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from robotd import __version__
+from robotd.contract import requests as api
+from robotd.contract.events import MapChanged, Status
+from robotd.contract.map_wire import MapPayload, pack_map
+from robotd.contract.requests import Command, Done, ErrorCode, RecordingFile
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import ConfigError, MapError, RobotdError, ServerError
-from robotd.mission.events import MapChanged, Status
-from robotd.server import api
-from robotd.server.api import Command, Done, ErrorCode, RecordingFile
 from robotd.server.control import Control
-from robotd.server.map_wire import MapPayload, pack_map
+from robotd.server.map_entries import entry_info
 from robotd.server.outcomes import Outcomes
 
 _CODES: tuple[tuple[type[RobotdError], ErrorCode], ...] = (
@@ -110,7 +111,7 @@ class Handlers:
 
     async def _map_save(self, command: api.MapSave) -> api.MapEntryInfo:
         try:
-            return api.MapEntryInfo.of(await self._control.save_map(command.name))
+            return entry_info(await self._control.save_map(command.name))
         except MapError as error:
             if self._control.status.map_id is None:
                 raise
@@ -118,14 +119,14 @@ class Handlers:
 
     async def _map_load(self, command: api.MapLoad) -> api.MapEntryInfo:
         pose = command.robot_in_map.pose if command.robot_in_map else None
-        return api.MapEntryInfo.of(await self._control.load_map(command.name, command.version, pose))
+        return entry_info(await self._control.load_map(command.name, command.version, pose))
 
     async def _map_discard(self, _: api.MapDiscard) -> Done:
         self._control.discard_map()
         return Done()
 
     async def _map_list(self, _: api.ListMaps) -> api.MapList:
-        return api.MapList(tuple(api.MapEntryInfo.of(entry) for entry in await self._control.list_maps()))
+        return api.MapList(tuple(entry_info(entry) for entry in await self._control.list_maps()))
 
     async def _map_show(self, command: api.MapShow) -> MapPayload:
         return await asyncio.to_thread(pack_map, await self._map(command))

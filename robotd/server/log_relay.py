@@ -5,9 +5,9 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from robotd.contract.topics import LogEntry
 from robotd.core.clock import now_ns
 from robotd.core.text import printable_lines
-from robotd.server.topics import LogEntry
 
 _LONGEST_MESSAGE = 2000
 

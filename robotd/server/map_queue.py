@@ -3,7 +3,7 @@
 import asyncio
 from collections import deque
 
-from robotd.mission.events import MapChanged
+from robotd.contract.events import MapChanged
 
 _DEPTH = 64
 

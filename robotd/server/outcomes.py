@@ -2,8 +2,8 @@
 
 from collections import OrderedDict
 
+from robotd.contract.events import Event, MissionProgress
 from robotd.core.broadcast import Broadcast
-from robotd.mission.events import Event, MissionProgress
 
 _REMEMBERED = 16
 

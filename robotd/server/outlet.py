@@ -8,8 +8,8 @@ from typing import NoReturn
 import zmq
 import zmq.asyncio
 
+from robotd.contract.topics import EVENTS, Published, Topic, encode_frame, to_wire
 from robotd.core.log_limit import LogLimit
-from robotd.server.topics import EVENTS, Published, Topic, encode_frame, to_wire
 
 _JOIN = b"\x01"
 BETWEEN_GREETINGS_S = 0.02

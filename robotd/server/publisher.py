@@ -4,16 +4,16 @@ import asyncio
 import logging
 from typing import NoReturn
 
+from robotd.contract.events import Event, MapChanged
+from robotd.contract.topics import LogEntry, Published, Topic, to_wire
 from robotd.core.broadcast import Subscription
 from robotd.core.errors import RobotdError
 from robotd.core.log_limit import LogLimit
-from robotd.mission.events import Event, MapChanged
 from robotd.server.control import Control
 from robotd.server.decimation import Decimator
 from robotd.server.log_relay import relay_log
 from robotd.server.map_queue import MapQueue
 from robotd.server.outlet import BETWEEN_GREETINGS_S, Outlet
-from robotd.server.topics import LogEntry, Published, Topic, to_wire
 
 DEPTH = 4096
 """How many events, or lines of the log, may wait for their turn."""

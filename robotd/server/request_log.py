@@ -5,11 +5,11 @@ from typing import Any
 
 import msgspec
 
+from robotd.contract.requests import Command, MapEntryInfo, MissionStarted, RecordingFile
+from robotd.contract.stopping import STOPPING
 from robotd.core.errors import ServerError
 from robotd.core.log_limit import LogLimit
 from robotd.core.text import printable
-from robotd.server.api import Command, MapEntryInfo, MissionStarted, RecordingFile
-from robotd.server.stopping import STOPPING
 
 _BURST = 20
 
@@ -41,7 +41,7 @@ class RequestLog:
 def in_words(command: Command[Any]) -> str:
     """Return a request with what it asks beyond the defaults.
 
-    >>> from robotd.server.api import DriveTo
+    >>> from robotd.contract.requests import DriveTo
     >>> in_words(DriveTo(1.5, 2.0))
     'drive_to x_m=1.5 y_m=2.0'
     """

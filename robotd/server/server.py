@@ -11,13 +11,13 @@ from typing import Annotated
 import zmq
 import zmq.asyncio
 
+from robotd.client.endpoints import DEFAULT_RUNTIME_DIR, Endpoints
+from robotd.contract.events import Event
 from robotd.core.bounds import Within, refuse_outside
 from robotd.core.broadcast import Subscription
 from robotd.core.errors import TransportError
-from robotd.mission.events import Event
 from robotd.server.commands import Commands
 from robotd.server.control import Control
-from robotd.server.endpoints import DEFAULT_RUNTIME_DIR, Endpoints
 from robotd.server.handlers import Handlers
 from robotd.server.lock import lock_directory
 from robotd.server.outcomes import Outcomes

@@ -1,4 +1,4 @@
-"""The daemon carries nothing that only people, simulations or pictures need, and so it stays small."""
+"""What a program loads that it does not need: a daemon nothing of people's, a client nothing of the engine's."""
 
 import subprocess
 import sys
@@ -8,6 +8,9 @@ import pytest
 ROOMS_OF_OTHERS = {"robotd.sim", "robotd.cli"}
 LIBRARIES_OF_OTHERS = {"rich", "rich_argparse", "matplotlib", "PIL", "scipy", "hypothesis", "pytest"}
 LARGEST_MIB = 60.0
+ROOMS_OF_CLIENTS = {"client", "contract", "core"}
+LIBRARIES_OF_THE_ENGINE = {"cffi", "_cffi_backend", "serial", "mcap", "rich", "firmware_proto"}
+LARGEST_CLIENT_MIB = 45.0
 
 
 def tell(program: str) -> list[str]:
@@ -32,3 +35,24 @@ def test_the_daemon_imports_no_library_that_only_people_need(modules: set[str]) 
 def test_the_daemon_is_small_before_it_remembers_anything() -> None:
     pages = tell("import robotd.app.daemon; print(open('/proc/self/statm').read())")[1]
     assert int(pages) * 4096 / 2**20 < LARGEST_MIB
+
+
+def test_a_client_loads_nothing_of_the_engine() -> None:
+    """No grid, maps, hardware, localization, kernels; and it says what importing a client costs (``pytest -s``)."""
+    loaded = tell(
+        "import time; begun = time.perf_counter()\n"
+        "import robotd.client, sys; took = time.perf_counter() - begun\n"
+        "print(took, open('/proc/self/statm').read().split()[1], *sys.modules)"
+    )
+    took_s, mib, modules = float(loaded[0]), int(loaded[1]) * 4096 / 2**20, set(loaded[2:])
+    ours = {name for name in modules if name.startswith("robotd.")}
+    print(f"import robotd.client: {len(ours)} modules of robotd, {1000 * took_s:.0f} ms, {mib:.0f} MiB")
+    assert {name.split(".")[1] for name in ours} == ROOMS_OF_CLIENTS
+    assert {name.split(".")[0] for name in modules} & {
+        "_cffi_backend",
+        "cffi",
+        "serial",
+        "mcap",
+        "firmware_proto",
+    } == set()
+    assert mib < LARGEST_CLIENT_MIB

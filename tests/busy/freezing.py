@@ -9,10 +9,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from robotd.client import Client
+from robotd.contract.events import MissionPhase, MissionProgress
+from robotd.contract.topics import Topic
 from robotd.core.errors import RobotdError
-from robotd.mission.events import MissionPhase, MissionProgress
-from robotd.server.client import Client
-from robotd.server.topics import Topic
 
 _EVERY_S = 12.0
 """Fewer a minute than a mission may be held."""

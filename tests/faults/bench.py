@@ -10,15 +10,15 @@ from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
 from robotd.cli.emulated import config_text
 from robotd.config import loads
+from robotd.contract.events import Event
+from robotd.contract.missions import Mission
+from robotd.contract.modes import Mode
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.mission.compute import Compute
-from robotd.mission.events import Event
-from robotd.mission.modes import Mode
-from robotd.mission.requests import Mission
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.recording.entries import BytesEntry, Entry
 from robotd.recording.preroll import PrerollJournal

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from firmware_proto.common import BoardState
+from robotd.contract.modes import Mode
 from robotd.core.clock import NS_PER_S, now_ns, run_virtual
 from robotd.core.errors import RobotdError
-from robotd.mission.modes import Mode
 from robotd.recording.reader import read
 from robotd.sim.emulators.catalogue import OWN, Dialects
 from robotd.sim.faults.catalogue import FAULTS

@@ -5,13 +5,13 @@ from collections.abc import Awaitable, Callable
 import msgspec
 
 from firmware_proto.common import Fault
+from robotd.contract.events import Event, MissionPhase, MissionProgress, Status, SweepProgress
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.contract.modes import Mode
 from robotd.core.pose import Odometry
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.mission.control import _use_map
-from robotd.mission.events import Event, MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.mission.modes import Mode
 from robotd.mission.motion.legs import next_odometry
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.sim.robot import own_board
 from tests.faults.bench import Bench
 

@@ -8,6 +8,15 @@ from typing import Any
 
 from robotd.cli.exact_inputs import read_beams, read_map
 from robotd.config import Config, effective_text, loads
+from robotd.contract import requests as api
+from robotd.contract.envelope import (
+    BadRequest,
+    decode_reply,
+    decode_request,
+    encode_error,
+    encode_request,
+    encode_result,
+)
 from robotd.core.errors import ConfigError, MapError, RecordingError, RemoteProtocolError, RobotdError, ServerError
 from robotd.core.grid_spec import GridSpec
 from robotd.hardware.link.tap import Direction
@@ -16,8 +25,6 @@ from robotd.maps.manifest import FileSum, Manifest, decode_manifest
 from robotd.recording.entries import BytesEntry, CommandEntry, LineEntry, RecordingHeader
 from robotd.recording.reader import read
 from robotd.recording.recorder import Recorder
-from robotd.server import api
-from robotd.server.envelope import BadRequest, decode_reply, decode_request, encode_error, encode_request, encode_result
 from robotd.sim.building import RecordedBuilding, encode_recorded_building, select_stops
 from robotd.sim.log_file import read_log
 from robotd.sim.world import parse_world
@@ -119,9 +126,9 @@ def _manifest() -> list[bytes]:
 
 
 DOCUMENTS = (
-    Target("requests", _answered, _requests, ("robotd/server/envelope.py",), size_max=512),
+    Target("requests", _answered, _requests, ("robotd/contract/envelope.py",), size_max=512),
     Target(
-        "replies", decode_reply, _replies, ("robotd/server/envelope.py",), typed=(RemoteProtocolError,), size_max=512
+        "replies", decode_reply, _replies, ("robotd/contract/envelope.py",), typed=(RemoteProtocolError,), size_max=512
     ),
     Target(
         "configuration",

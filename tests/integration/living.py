@@ -9,10 +9,10 @@ from pathlib import Path
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
 from robotd.config import Config
+from robotd.contract.events import Event, MissionPhase, MissionProgress
+from robotd.contract.missions import Mission
 from robotd.core.broadcast import Subscription
 from robotd.mission.compute import Compute
-from robotd.mission.events import Event, MissionPhase, MissionProgress
-from robotd.mission.requests import Mission
 from robotd.recording.preroll import PrerollJournal
 from robotd.sim.robot import EmulatedRobot
 from robotd.sim.runtime import connectors

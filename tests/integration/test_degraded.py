@@ -10,13 +10,13 @@ from firmware_proto.rangefinder import ShotStatus
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
 from robotd.config import Config
+from robotd.contract.device_status import LinkState
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
+from robotd.contract.missions import LocalizeMission, MapMission
+from robotd.contract.modes import Mode
 from robotd.core.errors import MissionError
-from robotd.hardware.devices.device import LinkState
 from robotd.mission.compute import Compute
-from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.mission.modes import Mode
-from robotd.mission.requests import LocalizeMission, MapMission
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.sim.boards.rangefinder import RangefinderBoard
 from robotd.sim.emulators.catalogue import Dialects

@@ -5,8 +5,8 @@ import pytest
 from robotd.cli.emulated import config_text
 from robotd.config import Config, loads
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.missions import LocalizeMission, MapMission
 from robotd.hardware.devices.catalogue import MOTORLESS, SCANNERS
-from robotd.mission.requests import LocalizeMission, MapMission
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
 from robotd.sim.robot import DEVICES, SimulatedRobot
 from robotd.sim.world import load_world

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from robotd.cli.demo.rig import rig, wired
+from robotd.client import Client
 from robotd.config import Config
-from robotd.mission.requests import MapMission
-from robotd.server.client import Client
+from robotd.contract.missions import MapMission
 from robotd.sim.world import load_world
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_clock, pytest.mark.shares_descriptors]

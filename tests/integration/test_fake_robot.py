@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from robotd.config import Config
+from robotd.contract.events import SweepDone
+from robotd.contract.missions import Legs, LocalizeMission, MapMission
 from robotd.core.reading import Sweep
-from robotd.mission.events import SweepDone
-from robotd.mission.requests import Legs, LocalizeMission, MapMission
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.recording.reader import Recording, read
 from robotd.sim.fake_robot import FakeRobot

@@ -9,11 +9,11 @@ import pytest
 
 from firmware_proto.common import BoardState, Fault, Hello, HelloReply
 from firmware_proto.framing import Deframer
+from robotd.contract.device_status import LinkState
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.missions import LocalizeMission, MapMission
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.pose import Pose2
-from robotd.hardware.devices.device import LinkState
-from robotd.mission.requests import LocalizeMission, MapMission
 from robotd.sim.emulators.catalogue import Dialects, Firmware
 from robotd.sim.faults.laid import cables
 from robotd.sim.host import HostedBoard

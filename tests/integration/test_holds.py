@@ -11,11 +11,11 @@ import pytest
 from firmware_proto.common import Fault
 from robotd.app.replaying import ReplayReport, replay_recording
 from robotd.app.stalls import keep_going
+from robotd.contract.events import MissionPhase, MissionProgress
+from robotd.contract.missions import DriveMission, Legs, MapMission
+from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
-from robotd.mission.events import MissionPhase, MissionProgress
-from robotd.mission.modes import Mode
-from robotd.mission.requests import DriveMission, Legs, MapMission
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, Stall
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world

@@ -11,12 +11,12 @@ import pytest
 
 from robotd.app.replaying import replay_recording
 from robotd.config import Config
+from robotd.contract.events import MissionPhase, MissionProgress, Status
+from robotd.contract.missions import LocalizeMission, MapMission
 from robotd.core.clock import run_virtual
 from robotd.core.errors import MissionError
 from robotd.maps import atomic
 from robotd.maps.store import MapStore
-from robotd.mission.events import MissionPhase, MissionProgress, Status
-from robotd.mission.requests import LocalizeMission, MapMission
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from robotd.config import Config
+from robotd.contract.device_status import LinkState
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import Event, MapChanged, MissionPhase, SweepDone, SweepProgress
+from robotd.contract.missions import DriveMission, LocalizeMission, MapMission, PriorHeading
+from robotd.contract.modes import Mode
 from robotd.core.angles import wrap_rad
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.device import LinkState
-from robotd.mission.events import Event, MapChanged, MissionPhase, SweepDone, SweepProgress
-from robotd.mission.modes import Mode
-from robotd.mission.requests import DriveMission, LocalizeMission, MapMission, PriorHeading
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.world import load_world

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from robotd.config import Config
+from robotd.contract.events import MissionPhase, MissionProgress
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.contract.modes import Mode
 from robotd.core.errors import MapError, MissionError, RecordingError
-from robotd.mission.events import MissionPhase, MissionProgress
-from robotd.mission.modes import Mode
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.recording.entries import CommandEntry
 from robotd.sim.robot import SimulatedRobot, own_board

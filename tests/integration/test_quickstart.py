@@ -19,10 +19,10 @@ from pathlib import Path
 
 import pytest
 
-from robotd.hardware.devices.device import LinkState
-from robotd.mission.events import Status
-from robotd.server.client import Client
-from robotd.server.topics import Topic
+from robotd.client import Client
+from robotd.contract.device_status import LinkState
+from robotd.contract.events import Status
+from robotd.contract.topics import Topic
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_clock, pytest.mark.timeout(300)]
 

@@ -7,9 +7,9 @@ import pytest
 
 from robotd.config import Config
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import SweepDone
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.core.reading import ReadingStatus
-from robotd.mission.events import SweepDone
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.sim.building import RecordedBuilding, select_stops
 from robotd.sim.log_file import read_log
 from robotd.sim.recorded_building import OdometrySource, RecordedRobot

@@ -9,8 +9,8 @@ import pytest
 from robotd.app.replaying import replay_recording
 from robotd.cli.emulated import config_text
 from robotd.config import loads
+from robotd.contract.missions import LocalizeMission, MapMission
 from robotd.core.clock import run_virtual
-from robotd.mission.requests import LocalizeMission, MapMission
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.robot import DEVICES, SimulatedRobot

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from robotd.app.replaying import ReplayReport, replay_recording
-from robotd.mission.events import MissionPhase
-from robotd.mission.modes import Mode
-from robotd.mission.requests import LocalizeMission, MapMission
+from robotd.contract.events import MissionPhase
+from robotd.contract.missions import LocalizeMission, MapMission
+from robotd.contract.modes import Mode
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
 from tests.integration.conftest import Live

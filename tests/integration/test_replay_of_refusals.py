@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from robotd.contract.missions import DriveMission, LocalizeMission, MapMission
+from robotd.contract.modes import Mode
 from robotd.core.errors import MapError, MissionError, RobotdError
 from robotd.core.pose import IDENTITY
-from robotd.mission.modes import Mode
-from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
 from robotd.recording.entries import CommandEntry
 from robotd.recording.reader import read
 from robotd.sim.robot import SimulatedRobot, own_board

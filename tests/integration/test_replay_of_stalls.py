@@ -7,9 +7,9 @@ import pytest
 
 from robotd.app.replaying import replay_recording
 from robotd.app.stall_guard import STALL_S
+from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.errors import RobotdError
-from robotd.mission.modes import Mode
 from robotd.mission.safety.hold import Stall
 from robotd.recording.entries import CauseEntry
 from robotd.recording.reader import read

@@ -14,6 +14,9 @@ from firmware_proto.framing import RawFrame, encode_frame
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
 from robotd.config import Config
+from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.contract.modes import Mode
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
@@ -22,9 +25,6 @@ from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.mission.compute import Compute
-from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.mission.modes import Mode
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.entries import BytesEntry
 from robotd.recording.preroll import PrerollJournal

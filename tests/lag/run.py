@@ -11,13 +11,13 @@ from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
+from robotd.client import AsyncClient
+from robotd.contract.events import MissionProgress
+from robotd.contract.missions import LocalizeMission, MapMission, Mission, PriorHeading
+from robotd.contract.topics import Topic
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
 from robotd.maps.store import MapStore
-from robotd.mission.events import MissionProgress
-from robotd.mission.requests import LocalizeMission, MapMission, Mission, PriorHeading
-from robotd.server.async_client import AsyncClient
-from robotd.server.topics import Topic
 from tests.benchmarks.run import ROOT, commit, processor
 from tests.lag.samples import Figures, Samples
 from tests.lag.workload import LARGE_CELLS, REGIONS, large_grid

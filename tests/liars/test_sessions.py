@@ -10,10 +10,10 @@ import pytest
 from firmware_proto.common import Pong
 from firmware_proto.framing import Deframer, RawFrame, encode_frame
 from robotd.app.replaying import replay_recording
+from robotd.contract.events import Status
+from robotd.contract.modes import Mode
 from robotd.core.clock import NS_PER_S, now_ns, run_virtual
 from robotd.hardware.link.tap import Direction
-from robotd.mission.events import Status
-from robotd.mission.modes import Mode
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.fault import Fault
 from tests.faults.bench import bench

@@ -7,17 +7,18 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 
 from firmware_proto.common import Fault
+from robotd.contract.device_status import LinkState
+from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.contract.modes import Mode
+from robotd.contract.topics import Topic, encode_frame, to_wire
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.hardware.devices.bought_device import BoughtDevice
-from robotd.hardware.devices.device import LinkState
-from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.mission.modes import UNDER_WAY, Mode
+from robotd.mission.modes import UNDER_WAY
 from robotd.mission.motion.legs import next_odometry
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.mission.whereabouts.map_in_use import MapInUse
-from robotd.server.topics import Topic, encode_frame, to_wire
 from robotd.sim.robot import own_board
 from tests.faults.bench import Bench
 from tests.integration.living import until_ready

@@ -12,6 +12,8 @@ from pathlib import Path
 from firmware_proto.rangefinder import ShotStatus
 from robotd.cli.demo.room import brisk
 from robotd.config import Config
+from robotd.contract.events import SweepDone
+from robotd.contract.missions import Legs, MapMission
 from robotd.core.clock import run_virtual
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
@@ -20,8 +22,6 @@ from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
 from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Shot
-from robotd.mission.events import SweepDone
-from robotd.mission.requests import Legs, MapMission
 from robotd.sim.body import Body, BodySettings
 from robotd.sim.head import Head, HeadSettings
 from robotd.sim.laser import Laser, LaserSettings

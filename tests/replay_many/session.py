@@ -11,11 +11,11 @@ from typing import Any
 
 from robotd.app.replaying import ReplayReport, replay_recording
 from robotd.app.stall_guard import STALL_S
+from robotd.contract.events import MissionProgress
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.errors import RobotdError
-from robotd.mission.events import MissionProgress
-from robotd.mission.modes import Mode
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission
 from robotd.mission.safety.hold import Stall
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.catalogue import FAULTS

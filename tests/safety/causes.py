@@ -12,11 +12,11 @@ from pathlib import Path
 
 from firmware_proto.common import Fault
 from robotd.app.stall_guard import STALL_S
+from robotd.client import AsyncClient
+from robotd.contract.events import MissionPhase, MissionProgress
+from robotd.contract.missions import DriveMission, Legs, MapMission
+from robotd.contract.topics import Topic
 from robotd.core.clock import NS_PER_S, now_ns
-from robotd.mission.events import MissionPhase, MissionProgress
-from robotd.mission.requests import DriveMission, Legs, MapMission
-from robotd.server.async_client import AsyncClient
-from robotd.server.topics import Topic
 from tests.safety.rig import STALLING_DAEMON, Rig, armed, ms_since, until
 
 LEASE_S = 0.1

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robotd.cli.emulated import config_text
+from robotd.client import AsyncClient
+from robotd.contract.device_status import LinkState
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.board import STOP_BYTES
-from robotd.server.async_client import AsyncClient
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.fault import Fault
 from robotd.sim.faults.laid import cables_on_ptys

@@ -5,9 +5,9 @@ import math
 from collections.abc import Awaitable, Callable
 
 from robotd.app.compose import Daemon
+from robotd.contract.missions import DriveMission, Legs, MapMission
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.mission.motion.legs import next_odometry
-from robotd.mission.requests import DriveMission, Legs, MapMission
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from tests.stops.rig import Rig, start
 

@@ -7,9 +7,9 @@ import signal
 import tempfile
 from pathlib import Path
 
+from robotd.client import AsyncClient
+from robotd.contract.missions import Legs, MapMission
 from robotd.core.clock import NS_PER_S, now_ns
-from robotd.mission.requests import Legs, MapMission
-from robotd.server.async_client import AsyncClient
 from robotd.sim.emulators.catalogue import Dialects
 from tests.safety.causes import far_end
 from tests.safety.rig import DAEMON, STALLING_DAEMON, Rig, armed, rig, until

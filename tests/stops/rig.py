@@ -14,12 +14,12 @@ from robotd.app import daemon as program
 from robotd.app.compose import Daemon, compose
 from robotd.cli.emulated import config_text
 from robotd.config import Config, loads
+from robotd.contract.missions import Mission
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.mission.compute import Compute
-from robotd.mission.requests import Mission
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.recording.preroll import PrerollJournal
 from robotd.sim.emulators.catalogue import Dialects

@@ -19,10 +19,10 @@ from robotd.cli.show.terminal import bold
 from robotd.cli.verb import OK
 from robotd.config import Config
 from robotd.contract.estimate import PoseState
+from robotd.contract.events import MapChanged
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.core.errors import MissionError
-from robotd.mission.events import MapChanged
 from robotd.mission.motion.steering import DrivingSettings
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.sim.building import RecordedBuilding, encode_recorded_building, select_stops
 from robotd.sim.load import load_robot
 from robotd.sim.recorded_building import OdometrySource

@@ -12,15 +12,15 @@ from rich.table import Table
 from robotd.cli.show.progress import MissionBars
 from robotd.cli.show.terminal import plain_console
 from robotd.cli.show.wording import held_in_words
+from robotd.client import Client
+from robotd.client.mission_run import MissionEvent, final_estimate
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepDone
+from robotd.contract.missions import Mission
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
 from robotd.core.reading import ReadingStatus, Sweep
-from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepDone
-from robotd.mission.requests import Mission
-from robotd.server.client import Client
-from robotd.server.mission_run import MissionEvent, final_estimate
 
 LEASE_S = 10.0
 """Generous: a demonstration shares two cores with its simulated hardware, and with whatever else runs."""

@@ -10,10 +10,10 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from robotd.client import Client
 from robotd.config import Config, effective_text
+from robotd.contract.device_status import LinkState
 from robotd.core.errors import RequestTimeout, RobotdError
-from robotd.hardware.devices.device import LinkState
-from robotd.server.client import Client
 from robotd.sim.pace import SLOWED
 
 UNFINISHED = "unfinished"

@@ -18,15 +18,15 @@ from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import bold, command_line
 from robotd.cli.verb import FAILED, OK
 from robotd.config import Config
+from robotd.contract.events import MapChanged
+from robotd.contract.missions import DriveMission, LocalizeMission, MapMission
 from robotd.core.errors import RobotdError
 from robotd.core.reading import Sweep
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.ready_map import ReadyMap
-from robotd.mission.events import MapChanged
 from robotd.mission.motion.steering import DrivingSettings
-from robotd.mission.requests import DriveMission, LocalizeMission, MapMission
 from robotd.sim.world import World, load_world
 
 

@@ -7,9 +7,9 @@ The daemon has no network and serves no pages. Whoever watches many robots lets 
 
 from collections.abc import Callable, Iterable, Iterator
 
-from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.mission.events import Status
-from robotd.mission.modes import Mode
+from robotd.contract.device_status import DeviceStatus, LinkState
+from robotd.contract.events import Status
+from robotd.contract.modes import Mode
 
 _Sample = tuple[dict[str, str], float]
 

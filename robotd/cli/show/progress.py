@@ -8,8 +8,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextC
 from robotd.cli.show.terminal import err
 from robotd.cli.show.wording import counts_in_words, estimate_in_short, held_in_words, mission_in_words
 from robotd.contract.estimate import PoseEstimate
-from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.server.topics import Published
+from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepProgress
+from robotd.contract.topics import Published
 
 
 class MissionBars:

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 from robotd.contract.estimate import PoseEstimate, PoseState, Region
+from robotd.contract.events import MapChanged, MissionProgress, Status, SweepDone, SweepProgress
+from robotd.contract.topics import EVENTS, LogEntry, Published
 from robotd.core.pose import Odometry, Pose2
-from robotd.mission.events import MapChanged, MissionProgress, Status, SweepDone, SweepProgress
-from robotd.server.topics import EVENTS, LogEntry, Published
 
 
 def as_json(event: Published) -> dict[str, Any]:

@@ -9,9 +9,9 @@ from robotd.cli.show.metrics import exposition
 from robotd.cli.show.terminal import err, out, print_json, print_pairs, print_table
 from robotd.cli.show.wording import as_json
 from robotd.cli.verb import OK, Verb
-from robotd.hardware.devices.device import DeviceStatus
-from robotd.mission.events import Status
-from robotd.server.client import Client
+from robotd.client import Client
+from robotd.contract.device_status import DeviceStatus
+from robotd.contract.events import Status
 
 
 def _status(arguments: argparse.Namespace) -> int:

@@ -19,13 +19,13 @@ from robotd.cli.quantities import heading_of_deg, number, whole
 from robotd.cli.show.half_blocks import can_draw_blocks, coloured, plain, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import OK, Verb
+from robotd.contract.events import MapChanged
+from robotd.contract.missions import Legs, MapMission
+from robotd.contract.requests import MapEntryInfo, MapName
 from robotd.core.clock import NS_PER_S
 from robotd.core.grid_bytes import grid_digest
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.grid.tables import NO_INFORMATION
-from robotd.mission.events import MapChanged
-from robotd.mission.requests import Legs, MapMission
-from robotd.server.api import MapEntryInfo, MapName
 from robotd.sim.load import load_robot
 from robotd.sim.recorded_building import OdometrySource
 

@@ -9,12 +9,12 @@ from robotd.cli.quantities import heading_of_deg, number
 from robotd.cli.show.terminal import out, print_json
 from robotd.cli.show.wording import as_json, estimate_in_words, in_words, region_in_words
 from robotd.cli.verb import OK, Verb
+from robotd.client.feed import Gap
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, PriorHeading
+from robotd.contract.topics import Topic
 from robotd.core.errors import RequestTimeout
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, PriorHeading
-from robotd.server.feed import Gap
-from robotd.server.topics import Topic
 
 _PATIENCE_S = 3.0
 """How long to wait for what is published on joining, unless told otherwise."""

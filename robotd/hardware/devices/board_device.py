@@ -6,10 +6,11 @@ from typing import ClassVar
 
 from firmware_proto.common import Arm, BoardKind, BoardState, BoardStatus, Clear, Fault
 from firmware_proto.schema import Message
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.core.broadcast import Broadcast
 from robotd.core.errors import DeviceError, TransportError
 from robotd.hardware.devices.credible import IMPLAUSIBLE, Times
-from robotd.hardware.devices.device import PAST_LOOP_EVERY, DeviceStatus, LinkState
+from robotd.hardware.devices.device import PAST_LOOP_EVERY
 from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.rest import Rest
 from robotd.hardware.devices.settings import PortSettings

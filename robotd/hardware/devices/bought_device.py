@@ -5,10 +5,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from typing import ClassVar, Generic, NoReturn, TypeVar
 
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.core.broadcast import Broadcast
 from robotd.core.errors import DeviceError, RemoteProtocolError, TransportError
 from robotd.hardware.devices.credible import IMPLAUSIBLE
-from robotd.hardware.devices.device import PAST_LOOP_EVERY, DeviceStatus, LinkState
+from robotd.hardware.devices.device import PAST_LOOP_EVERY
 from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, DialogueCounters, Heard, Wire

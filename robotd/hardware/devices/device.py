@@ -1,38 +1,14 @@
 """What the mission may ask of any device, whatever dialect it speaks."""
 
-import enum
-from dataclasses import dataclass
 from typing import Protocol
 
+from robotd.contract.device_status import DeviceStatus
 from robotd.core.broadcast import Broadcast
 
 PAST_LOOP_S = 0.015
 """No device needs more time between two orders."""
 PAST_LOOP_EVERY = 8
 """Most devices are told again a tenth of a second later: a slow line must not fill up with stops."""
-
-
-class LinkState(enum.StrEnum):
-    """Whether there is a device to talk to. A missing device is a state, not an error."""
-
-    ABSENT = "absent"
-    CONNECTING = "connecting"
-    READY = "ready"
-
-
-@dataclass(frozen=True, slots=True)
-class DeviceStatus:
-    """Health of one device, published whenever it changes."""
-
-    name: str
-    link: LinkState
-    armed: bool
-    faults: tuple[str, ...] = ()
-    """Latched faults, in lower case; empty when there is none."""
-    detail: str = ""
-    """One line for people: why the link is absent, what the fault said."""
-    counters: tuple[tuple[str, int], ...] = ()
-    """What was counted on the line since start: frames, CRC errors, retries, reconnects."""
 
 
 class Device(Protocol):

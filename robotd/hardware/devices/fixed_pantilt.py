@@ -6,11 +6,11 @@ It has no line, so it is always there; what it can aim at is known once the scan
 import asyncio
 from typing import ClassVar
 
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, TransportError
-from robotd.hardware.devices.device import DeviceStatus, LinkState
 from robotd.hardware.devices.gaze import Fan
 from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits

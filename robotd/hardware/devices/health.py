@@ -4,10 +4,10 @@ import logging
 from collections.abc import Callable
 from dataclasses import replace
 
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.core.broadcast import Broadcast
 from robotd.core.log_limit import LogLimit
 from robotd.core.text import printable
-from robotd.hardware.devices.device import DeviceStatus, LinkState
 
 Counted = tuple[tuple[str, int], ...]
 _LONGEST_DETAIL = 300

@@ -1,6 +1,6 @@
 """When the battery is too low to go on."""
 
-from robotd.hardware.devices.device import LinkState
+from robotd.contract.device_status import LinkState
 from robotd.hardware.devices.drive import Drive
 
 

@@ -5,13 +5,15 @@ import logging
 from collections.abc import Awaitable, Callable
 from typing import Protocol
 
+from robotd.contract.device_status import DeviceStatus, LinkState
+from robotd.contract.events import Event, Status
+from robotd.contract.modes import Mode
 from robotd.core.attention import attention
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
 from robotd.core.silence import within
-from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
-from robotd.mission.events import Event, Status
-from robotd.mission.modes import UNDER_WAY, Mode, Occasion
+from robotd.hardware.devices.device import Device
+from robotd.mission.modes import UNDER_WAY, Occasion
 from robotd.mission.robot import Robot
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, Hold, Stall
 

@@ -5,13 +5,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.contract.events import MapChanged
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import Sweep
 from robotd.grid.binary import BinaryMap
 from robotd.grid.latest import latest_with
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.window import CellWindow
-from robotd.mission.events import MapChanged
 from robotd.mission.whereabouts.readiness import Readiness
 
 _NO_CELLS: NDArray[np.intp] = np.empty(0, dtype=np.intp)

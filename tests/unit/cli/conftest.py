@@ -8,18 +8,18 @@ from typing import Any, Self
 import numpy as np
 import pytest
 
+from robotd.client.feed import Gap
+from robotd.client.mission_run import MissionEvent
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
+from robotd.contract.events import MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
+from robotd.contract.missions import Mission
+from robotd.contract.modes import Mode
+from robotd.contract.requests import MapEntryInfo
+from robotd.contract.topics import Published
 from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.mission.events import MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.mission.modes import Mode
-from robotd.mission.requests import Mission
-from robotd.server.api import MapEntryInfo
-from robotd.server.feed import Gap
-from robotd.server.mission_run import MissionEvent
-from robotd.server.topics import Published
 
 STATUS = Status(
     time_ns=1,

@@ -9,8 +9,8 @@ import pytest
 
 from robotd.cli.main import main
 from robotd.cli.show.half_blocks import coloured, plain, shrink
+from robotd.client.feed import Gap
 from robotd.core.pose import Pose2
-from robotd.server.feed import Gap
 
 
 def test_a_pose_is_its_state_and_all_its_regions(client: Any, capsys: pytest.CaptureFixture[str]) -> None:

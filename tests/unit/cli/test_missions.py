@@ -10,10 +10,10 @@ import pytest
 
 from robotd.cli.main import main
 from robotd.contract.area import Area
+from robotd.contract.events import MissionPhase, MissionProgress
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, PriorHeading
 from robotd.core.errors import RequestTimeout
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.mission.events import MissionPhase, MissionProgress
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, PriorHeading
 
 
 def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:

@@ -12,9 +12,9 @@ from rich.text import Text
 from robotd.cli.demo.mission import Trial, print_trials
 from robotd.cli.main import main
 from robotd.cli.show.terminal import bold, plain_console, print_pairs, print_table
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.hardware.devices.device import DeviceStatus, LinkState
 from tests.unit.cli.conftest import ESTIMATE
 from tests.unit.cli.recorded_room import drive_lines
 from tests.unit.logs.room import POSES

@@ -14,8 +14,8 @@ from rich.text import Text
 from robotd.cli.show.half_blocks import plain
 from robotd.cli.show.progress import MissionBars
 from robotd.cli.show.terminal import command_line, complain, plain_console, print_pairs, print_table
-from robotd.mission.events import MissionPhase, MissionProgress, Status
-from robotd.mission.modes import Mode
+from robotd.contract.events import MissionPhase, MissionProgress, Status
+from robotd.contract.modes import Mode
 
 EVIL = "x\x1b[2J\x1b]0;title\x9b31m\u202e\u200b[red]y"
 SHOWN = "x\\x1b[2J\\x1b]0;title\\x9b31m\\u202e\\u200b[red]y"

@@ -2,9 +2,9 @@
 
 import pytest
 
+from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.mission.context import Reporter, SweepCounter
-from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepProgress
 
 
 def reading(status: ReadingStatus) -> RangeReading:

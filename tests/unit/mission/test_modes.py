@@ -2,7 +2,8 @@
 
 import itertools
 
-from robotd.mission.modes import TRANSITIONS, Mode, Occasion, next_mode
+from robotd.contract.modes import Mode
+from robotd.mission.modes import TRANSITIONS, Occasion, next_mode
 
 MOVING = {Mode.MAPPING, Mode.LOCALIZING, Mode.DRIVING}
 

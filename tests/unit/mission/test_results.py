@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepDone
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.mission.events import Event, MissionPhase, MissionProgress, SweepDone
 from robotd.mission.results import note_result, result_of
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.prediction import unlocalized

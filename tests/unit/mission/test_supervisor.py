@@ -8,22 +8,23 @@ from typing import Any
 
 import pytest
 
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import Event, MissionPhase, MissionProgress
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.contract.modes import Mode
 from robotd.core.broadcast import Broadcast, Subscription
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, MissionError, RobotdError, TransportError
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2, Twist2
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
-from robotd.hardware.devices.device import DeviceStatus, LinkState
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.mission.compute import ThreadCompute
 from robotd.mission.context import MissionContext
-from robotd.mission.events import Event, MissionPhase, MissionProgress
-from robotd.mission.modes import Mode, Occasion
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.mission.modes import Occasion
 from robotd.mission.robot import Robot
 from robotd.mission.settings import MissionSettings
 from robotd.mission.supervisor import Supervisor

@@ -9,17 +9,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
+from robotd.contract.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
+from robotd.contract.missions import Mission
+from robotd.contract.modes import Mode
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import MapError, MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.hardware.devices.device import DeviceStatus, LinkState
 from robotd.maps.store import MapEntry
-from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.mission.modes import Mode
-from robotd.mission.requests import Mission
 from robotd.mission.safety.lease import Lease
 from robotd.server.server import Server, ServerSettings
 

@@ -15,14 +15,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from robotd.client import AsyncClient, Client
+from robotd.client.mission_run import MissionEvent
 from robotd.contract.estimate import PoseState
+from robotd.contract.events import MissionPhase, MissionProgress
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
 from robotd.core.errors import MissionError, RequestTimeout, ServerError, TransportError
 from robotd.core.pose import Pose2
-from robotd.mission.events import MissionPhase, MissionProgress
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission
-from robotd.server.async_client import AsyncClient
-from robotd.server.client import Client
-from robotd.server.mission_run import MissionEvent
 
 pytestmark = pytest.mark.real_clock
 Serving = Callable[..., AbstractAsyncContextManager[Any]]
@@ -217,7 +216,7 @@ async def test_leaving_a_sync_mission_early_stops_the_robot(serving: Serving, tm
 async def test_ctrl_c_stops_the_robot_first(serving: Serving, tmp_path: Path) -> None:
     script = (
         "import sys\n"
-        "from robotd.server.client import Client\n"
+        "from robotd.client import Client\n"
         "with Client(sys.argv[1]) as robot:\n"
         "    robot.arm()\n"
         "    robot.localize()\n"

@@ -11,12 +11,12 @@ import msgpack
 import pytest
 import zmq
 
+from robotd.contract import requests as api
+from robotd.contract.envelope import Reply, decode_reply, encode_request
+from robotd.contract.missions import LocalizeMission
 from robotd.core.errors import MapError, ServerError
 from robotd.maps.store import MapEntry
-from robotd.mission.requests import LocalizeMission
-from robotd.server import api
 from robotd.server.commands import Commands
-from robotd.server.envelope import Reply, decode_reply, encode_request
 from robotd.server.handlers import Handlers
 from robotd.server.outcomes import Outcomes
 from robotd.server.router import Router

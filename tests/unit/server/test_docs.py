@@ -15,18 +15,17 @@ from typing import Any
 import msgspec
 import pytest
 
+from robotd.client import AsyncClient, Client
+from robotd.contract import requests as api
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseState, Region
+from robotd.contract.events import MapChanged, MissionPhase
+from robotd.contract.map_wire import MapPayload
+from robotd.contract.missions import Legs
+from robotd.contract.modes import Mode
+from robotd.contract.topics import EVENTS, Topic
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.mission.events import MapChanged, MissionPhase
-from robotd.mission.modes import Mode
-from robotd.mission.requests import Legs
-from robotd.server import api
-from robotd.server.async_client import AsyncClient
-from robotd.server.client import Client
-from robotd.server.map_wire import MapPayload
 from robotd.server.server import ServerSettings
-from robotd.server.topics import EVENTS, Topic
 
 DOCS = Path(__file__).parents[3] / "docs"
 TEXT = (DOCS / "api.md").read_text()

@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 import zmq
 
+from robotd.contract.events import MapChanged
+from robotd.contract.topics import Topic, decode_frame
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
-from robotd.mission.events import MapChanged
 from robotd.server.outlet import Outlet
 from robotd.server.publisher import Publisher
-from robotd.server.topics import Topic, decode_frame
 
 ERRORS = [errno.EAGAIN, errno.EMFILE, errno.ENOTSUP, errno.EHOSTUNREACH, errno.EINTR, errno.ENOMEM]
 

@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import Event, MapChanged, MissionPhase, MissionProgress, SweepProgress
+from robotd.contract.topics import LogEntry
 from robotd.core.broadcast import Broadcast
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
-from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, SweepProgress
 from robotd.server.decimation import Decimator
 from robotd.server.log_relay import relay_log
 from robotd.server.map_queue import MapQueue
 from robotd.server.outcomes import Outcomes
 from robotd.server.replies import Replies
-from robotd.server.topics import LogEntry
 
 MS = 1_000_000
 

@@ -19,19 +19,19 @@ import pytest
 import zmq
 import zmq.asyncio
 
+from robotd.client import AsyncClient, AsyncSubscription
+from robotd.client.endpoints import Endpoints
+from robotd.client.feed import Gap
+from robotd.contract import requests as api
+from robotd.contract.envelope import decode_reply, encode_request
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import MapChanged, MissionPhase, MissionProgress, Status
+from robotd.contract.topics import LogEntry, Topic
 from robotd.core.clock import now_ns
 from robotd.core.errors import ServerError, TransportError
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
-from robotd.mission.events import MapChanged, MissionPhase, MissionProgress, Status
-from robotd.server import api
-from robotd.server.async_client import AsyncClient, AsyncSubscription
-from robotd.server.endpoints import Endpoints
-from robotd.server.envelope import decode_reply, encode_request
-from robotd.server.feed import Gap
 from robotd.server.server import Server, ServerSettings
-from robotd.server.topics import LogEntry, Topic
 
 pytestmark = pytest.mark.real_clock
 Serving = Callable[..., AbstractAsyncContextManager[Any]]

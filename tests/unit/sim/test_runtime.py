@@ -11,6 +11,7 @@ import pytest
 
 from firmware_proto.common import Hello, HelloReply
 from firmware_proto.framing import Deframer, RawFrame, encode_frame
+from robotd.contract.device_status import LinkState
 from robotd.core.clock import run_virtual
 from robotd.core.errors import TransportError
 from robotd.core.pose import Pose2, Twist2
@@ -18,7 +19,7 @@ from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.board_drive import BoardDrive
 from robotd.hardware.devices.board_pantilt import BoardPanTilt
 from robotd.hardware.devices.board_rangefinder import BoardRangefinder
-from robotd.hardware.devices.device import Device, LinkState
+from robotd.hardware.devices.device import Device
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap

@@ -10,12 +10,13 @@ import pytest
 
 from firmware_proto.framing import RawFrame, encode_frame
 from firmware_proto.schema import Message
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.core.errors import TransportError
 from robotd.hardware.devices.board_device import BoardDevice
 from robotd.hardware.devices.board_drive import BoardDrive
 from robotd.hardware.devices.board_pantilt import BoardPanTilt
 from robotd.hardware.devices.board_rangefinder import BoardRangefinder
-from robotd.hardware.devices.device import Device, DeviceStatus, LinkState
+from robotd.hardware.devices.device import Device
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap

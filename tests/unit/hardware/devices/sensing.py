@@ -7,8 +7,8 @@ from collections.abc import AsyncIterator
 from dataclasses import dataclass, field
 
 from firmware_proto.rangefinder import ShotStatus
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.hardware.devices.catalogue import rangefinder
-from robotd.hardware.devices.device import DeviceStatus, LinkState
 from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring

@@ -12,6 +12,7 @@ import pytest
 from firmware_proto.common import Arm, BoardState, Fault
 from firmware_proto.pantilt import Aim, AimReadback, AimReport, Motion, ReadAim
 from firmware_proto.schema import REPLY
+from robotd.contract.device_status import LinkState
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
@@ -19,7 +20,6 @@ from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.hardware.devices.board_drive import BoardDrive
 from robotd.hardware.devices.board_pantilt import BoardPanTilt
 from robotd.hardware.devices.board_rangefinder import BoardRangefinder
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder

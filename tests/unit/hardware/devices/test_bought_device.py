@@ -8,9 +8,9 @@ from typing import NoReturn
 
 import pytest
 
+from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
 from robotd.hardware.devices.bought_device import BoughtDevice
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.link.tap import NoTap

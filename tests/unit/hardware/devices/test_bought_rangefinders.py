@@ -5,10 +5,10 @@ import asyncio
 import pytest
 
 from firmware_proto.rangefinder import ShotStatus
+from robotd.contract.device_status import LinkState
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.device import LinkState
 from robotd.sim.emulators import lw20, lwnx
 from robotd.sim.emulators.catalogue import RANGEFINDERS
 from robotd.sim.emulators.paced import Paced

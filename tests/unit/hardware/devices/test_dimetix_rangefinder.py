@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import pytest
 
 from firmware_proto.rangefinder import ShotStatus
+from robotd.contract.device_status import LinkState
 from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.dimetix_rangefinder import DimetixRangefinder
 from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import pytest
 
+from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.dynamixel_pantilt import DynamixelPanTilt
 from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring

@@ -4,7 +4,7 @@ import asyncio
 
 import pytest
 
-from robotd.hardware.devices.device import LinkState
+from robotd.contract.device_status import LinkState
 from robotd.hardware.devices.health import Health
 
 

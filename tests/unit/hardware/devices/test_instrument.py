@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from firmware_proto.rangefinder import ShotStatus
+from robotd.contract.device_status import LinkState
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
 from robotd.hardware.devices.catalogue import RANGEFINDERS, rangefinder
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.instrument import REACH_M, Instrument
 from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Rangefinder, Shot

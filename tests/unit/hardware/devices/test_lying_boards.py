@@ -13,12 +13,12 @@ from firmware_proto.framing import RawFrame
 from firmware_proto.pantilt import AimReport, Limits
 from firmware_proto.rangefinder import Shot
 from firmware_proto.schema import Message
+from robotd.contract.device_status import LinkState
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.board_device import BoardDevice
 from robotd.hardware.devices.credible import IMPLAUSIBLE
-from robotd.hardware.devices.device import LinkState
 from tests.unit.hardware.devices.conftest import Rig, rig
 
 Lie = Callable[[RawFrame], RawFrame]

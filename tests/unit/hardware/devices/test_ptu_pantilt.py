@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import pytest
 
+from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.pantilt import LOST_STEPS
 from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
 from robotd.hardware.devices.settings import PanTiltSettings

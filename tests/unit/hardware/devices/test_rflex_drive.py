@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 import pytest
 
+from robotd.contract.device_status import LinkState
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Twist2
-from robotd.hardware.devices.device import PAST_LOOP_S, LinkState
+from robotd.hardware.devices.device import PAST_LOOP_S
 from robotd.hardware.devices.rflex_drive import NO_WATCHDOG, RflexDrive
 from robotd.hardware.devices.settings import DriveSettings
 from robotd.hardware.devices.wiring import Wiring

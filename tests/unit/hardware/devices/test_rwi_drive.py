@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import pytest
 
+from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Twist2
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.rwi_drive import RwiDrive
 from robotd.hardware.devices.settings import DriveSettings
 from robotd.hardware.devices.wiring import Wiring

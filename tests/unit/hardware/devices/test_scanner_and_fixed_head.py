@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 import pytest
 
 from firmware_proto.rangefinder import ShotStatus
+from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError, TransportError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.fixed_pantilt import FixedPanTilt
 from robotd.hardware.devices.gaze import Fan, Gaze
 from robotd.hardware.devices.scip_rangefinder import ScipRangefinder

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
+from robotd.contract.device_status import LinkState
 from robotd.core.errors import ConfigError
 from robotd.hardware.devices import catalogue
 from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, RangefinderCalibration
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from robotd.contract.device_status import LinkState
 from robotd.hardware.devices.board_drive import BoardDrive
-from robotd.hardware.devices.device import LinkState
 from robotd.hardware.devices.settings import DriveSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap

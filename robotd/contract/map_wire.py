@@ -4,10 +4,10 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.contract.events import MapChanged
 from robotd.core.errors import RemoteProtocolError
 from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.grid_spec import GridSpec
-from robotd.mission.events import MapChanged
 
 _INDEX = np.dtype("<u4")
 

@@ -3,7 +3,7 @@
 A request is the msgpack map ``{v, id, cmd, args}``; a reply is ``{v, id, ok: true, result}`` or ``{v, id, ok: false,
 error: {code, message}}``. What comes from a client is never trusted: size, nesting, duplicate keys, types, ranges and
 finiteness are checked before anything sees it, and what fails is answered, not raised. A stop is what
-:mod:`robotd.server.stopping` takes for one, whatever else is wrong with it.
+:mod:`robotd.contract.stopping` takes for one, whatever else is wrong with it.
 """
 
 import math
@@ -15,10 +15,10 @@ import msgpack
 import msgspec
 import numpy as np
 
+from robotd.contract.requests import COMMANDS, VERSION, Command, ErrorCode, Stop
+from robotd.contract.stopping import Pairs, means_stop, unpacked
 from robotd.core.errors import RemoteProtocolError, ServerError
 from robotd.core.text import printable
-from robotd.server.api import COMMANDS, VERSION, Command, ErrorCode, Stop
-from robotd.server.stopping import Pairs, means_stop, unpacked
 
 _MAX_DEPTH = 6
 _MAX_ITEMS = 2048

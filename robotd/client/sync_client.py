@@ -18,21 +18,21 @@ from typing import Self, TypeVar
 
 import zmq
 
+from robotd.client.endpoints import Endpoints, runtime_dir_of_user
+from robotd.client.exchange import Exchanges
+from robotd.client.feed import Feed, Gap, as_topics
+from robotd.client.mission_run import MISSION_TOPICS, MissionEvent, MissionRun, final_estimate
+from robotd.client.sockets import connect_dealer, connect_subscriber
+from robotd.contract import requests as api
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate
+from robotd.contract.events import MapChanged, Status
+from robotd.contract.map_wire import unpack_map
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
+from robotd.contract.requests import Command, MapEntryInfo
+from robotd.contract.topics import Published, Topic
 from robotd.core.errors import RequestTimeout, RobotdError, ServerError
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.mission.events import MapChanged, Status
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
-from robotd.server import api
-from robotd.server.api import Command, MapEntryInfo
-from robotd.server.endpoints import Endpoints, runtime_dir_of_user
-from robotd.server.exchange import Exchanges
-from robotd.server.feed import Feed, Gap, as_topics
-from robotd.server.map_wire import unpack_map
-from robotd.server.mission_run import MISSION_TOPICS, MissionEvent, MissionRun, final_estimate
-from robotd.server.sockets import connect_dealer, connect_subscriber
-from robotd.server.topics import Published, Topic
 
 R = TypeVar("R")
 

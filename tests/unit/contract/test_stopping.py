@@ -7,10 +7,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from robotd.server import api
-from robotd.server.envelope import BadRequest, Request, decode_request, encode_request
-from robotd.server.stopping import STOPPING, means_stop
-from tests.unit.server.test_envelope import SAMPLES
+from robotd.contract import requests as api
+from robotd.contract.envelope import BadRequest, Request, decode_request, encode_request
+from robotd.contract.stopping import STOPPING, means_stop
+from tests.unit.contract.test_envelope import SAMPLES
 
 LIMIT = 65536
 STOP = encode_request(5, api.Stop("because"))

@@ -5,8 +5,8 @@ from typing import Any
 
 import zmq
 
-from robotd.server.endpoints import Endpoints
-from robotd.server.topics import Topic
+from robotd.client.endpoints import Endpoints
+from robotd.contract.topics import Topic
 
 
 def connect_dealer(socket: "zmq.Socket[Any]", endpoints: Endpoints, *, retry_s: float) -> None:

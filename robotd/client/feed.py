@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from robotd.server.topics import Published, Topic, decode_frame
+from robotd.contract.topics import Published, Topic, decode_frame
 
 
 @dataclass(frozen=True, slots=True)

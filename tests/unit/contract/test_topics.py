@@ -1,6 +1,5 @@
 """Events survive the wire whole, and a broken one is named."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, get_args
 
@@ -10,16 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
-from robotd.core.errors import RemoteProtocolError
-from robotd.core.grid_spec import GridSpec
-from robotd.core.pose import Odometry, Pose2, Twist2
-from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.hardware.devices.device import DeviceStatus, LinkState
-from robotd.mission.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
-from robotd.mission.modes import Mode
-from robotd.server.map_wire import MapPayload, pack_map, unpack_map
-from robotd.server.topics import (
+from robotd.contract.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
+from robotd.contract.map_wire import MapPayload, pack_map, unpack_map
+from robotd.contract.modes import Mode
+from robotd.contract.topics import (
     EVENTS,
     LogEntry,
     Published,
@@ -29,6 +24,11 @@ from robotd.server.topics import (
     from_wire,
     to_wire,
 )
+from robotd.core.errors import RemoteProtocolError
+from robotd.core.grid_spec import GridSpec
+from robotd.core.pose import Odometry, Pose2, Twist2
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from tests.unit.server.conftest import whole_map
 
 numbers = st.floats(-1e6, 1e6)
 times = st.integers(0, 2**62)
@@ -202,8 +202,8 @@ def test_a_missing_field_is_named() -> None:
         {"whole": False, "indices_u32le": b"\xff\xff\xff\xff", "values_u8": b"\0"},
     ],
 )
-def test_a_map_that_contradicts_itself_is_refused(make_map: Callable[..., MapChanged], broken: dict[str, Any]) -> None:
-    payload = pack_map(make_map(1))
+def test_a_map_that_contradicts_itself_is_refused(broken: dict[str, Any]) -> None:
+    payload = pack_map(whole_map(1))
     fields = {name: getattr(payload, name) for name in MapPayload.__struct_fields__}
     with pytest.raises(RemoteProtocolError, match="map payload"):
         unpack_map(MapPayload(**(fields | broken)))

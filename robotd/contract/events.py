@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.contract.device_status import DeviceStatus
 from robotd.contract.estimate import PoseEstimate
+from robotd.contract.modes import Mode
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry
 from robotd.core.reading import Sweep
-from robotd.hardware.devices.device import DeviceStatus
-from robotd.mission.modes import Mode
 
 
 @dataclass(frozen=True, slots=True)

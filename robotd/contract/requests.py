@@ -1,7 +1,7 @@
-"""The commands of the server and what they answer: one frozen struct each, checked on arrival.
+"""The commands that clients send and what they are answered: one frozen struct each, checked on arrival.
 
-The envelope is in :mod:`robotd.server.envelope`, the events in :mod:`robotd.server.topics`. ``docs/api.md`` says the
-same for people; a test holds the two together.
+The envelope is in :mod:`robotd.contract.envelope`, the events in :mod:`robotd.contract.topics`. ``docs/api.md`` says
+the same for people; a test holds the two together.
 """
 
 import enum
@@ -13,12 +13,11 @@ import msgspec
 from msgspec import Meta
 
 from robotd.contract.area import Area
+from robotd.contract.events import MissionProgress, Status
+from robotd.contract.map_wire import MapPayload
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.text import LONGEST, printable, printable_bytes
-from robotd.maps.store import MapEntry
-from robotd.mission.events import MissionProgress, Status
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
-from robotd.server.map_wire import MapPayload
 
 LONGEST_REASON = LONGEST
 """Letters of the reason for a stop that are kept."""
@@ -65,17 +64,6 @@ class MapEntryInfo:
     """Why this version cannot be read; its other numbers are then zero."""
     unsaved: bool = False
     """Whether nobody saved it: it was kept so that it is not lost."""
-
-    @classmethod
-    def of(cls, entry: MapEntry) -> "MapEntryInfo":
-        """Return what clients are told of a stored version."""
-        rows, cols = entry.spec.shape if entry.spec else (0, 0)
-        resolution_m = entry.spec.resolution_m if entry.spec else 0.0
-        created_ns = entry.created_unix_ns
-        damage = None if entry.damage is None else printable(entry.damage)
-        return cls(
-            entry.name, entry.version, entry.digest, created_ns, rows, cols, resolution_m, damage, entry.is_unsaved
-        )
 
 
 class PoseArgument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

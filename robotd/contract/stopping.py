@@ -12,7 +12,7 @@ from typing import Any
 
 import msgpack
 
-from robotd.server.api import COMMANDS, Disarm, Stop
+from robotd.contract.requests import COMMANDS, Disarm, Stop
 
 STOPPING = (Stop, Disarm)
 """The commands that stop the robot."""

@@ -19,22 +19,22 @@ from typing import Self, TypeVar
 import zmq
 import zmq.asyncio
 
+from robotd.client.endpoints import Endpoints, runtime_dir_of_user
+from robotd.client.exchange import Exchanges
+from robotd.client.feed import Feed, Gap, as_topics
+from robotd.client.mission_run import MISSION_TOPICS, MissionEvent, MissionRun, final_estimate
+from robotd.client.sockets import connect_dealer, connect_subscriber
+from robotd.contract import requests as api
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate
+from robotd.contract.events import MapChanged, Status
+from robotd.contract.map_wire import unpack_map
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
+from robotd.contract.requests import Command, MapEntryInfo
+from robotd.contract.topics import Published, Topic
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RequestTimeout, RobotdError, ServerError
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.mission.events import MapChanged, Status
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
-from robotd.server import api
-from robotd.server.api import Command, MapEntryInfo
-from robotd.server.endpoints import Endpoints, runtime_dir_of_user
-from robotd.server.exchange import Exchanges
-from robotd.server.feed import Feed, Gap, as_topics
-from robotd.server.map_wire import unpack_map
-from robotd.server.mission_run import MISSION_TOPICS, MissionEvent, MissionRun, final_estimate
-from robotd.server.sockets import connect_dealer, connect_subscriber
-from robotd.server.topics import Published, Topic
 
 R = TypeVar("R")
 
@@ -86,7 +86,7 @@ class AsyncClient:
     def __init__(
         self, runtime_dir: str | Path | None = None, *, retry_s: float = 0.5, deadline_s: float | None = None
     ) -> None:
-        """Prepare to connect; see :class:`robotd.server.client.Client`."""
+        """Prepare to connect; see :class:`robotd.client.Client`."""
         self._endpoints = Endpoints(Path(runtime_dir or runtime_dir_of_user()))
         self._exchanges = Exchanges(str(self._endpoints), retry_s=retry_s, deadline_s=deadline_s)
         self._retry_s = retry_s

@@ -4,12 +4,12 @@ Nothing is left to a single message: the end is published, and every renewal is 
 progress as well, so a reader that missed the one hears the other.
 """
 
+from robotd.client.feed import Gap
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
+from robotd.contract.requests import MissionStarted, Renewed
+from robotd.contract.topics import Published, Topic
 from robotd.core.errors import MissionError, ServerError
-from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
-from robotd.server.api import MissionStarted, Renewed
-from robotd.server.feed import Gap
-from robotd.server.topics import Published, Topic
 
 MISSION_TOPICS = (Topic.MISSION, Topic.SWEEP, Topic.POSE)
 """What a mission's client listens to."""

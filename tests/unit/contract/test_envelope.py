@@ -9,12 +9,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from robotd.contract import requests as api
 from robotd.contract.area import Area
-from robotd.core.errors import RemoteProtocolError, ServerError
-from robotd.core.pose import Pose2
-from robotd.mission.requests import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
-from robotd.server import api
-from robotd.server.envelope import (
+from robotd.contract.envelope import (
     BadRequest,
     Request,
     decode_reply,
@@ -23,6 +20,9 @@ from robotd.server.envelope import (
     encode_request,
     encode_result,
 )
+from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
+from robotd.core.errors import RemoteProtocolError, ServerError
+from robotd.core.pose import Pose2
 
 LIMIT = 65536
 

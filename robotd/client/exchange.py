@@ -9,9 +9,9 @@ from typing import Any, Generic, TypeVar
 
 import msgspec
 
+from robotd.contract.envelope import Reply, decode_reply, encode_request
+from robotd.contract.requests import Command
 from robotd.core.errors import RemoteProtocolError, RequestTimeout, ServerError
-from robotd.server.api import Command
-from robotd.server.envelope import Reply, decode_reply, encode_request
 
 R = TypeVar("R")
 

@@ -6,16 +6,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robotd.client.exchange import Exchanges
+from robotd.client.feed import Feed, Gap, as_topics
+from robotd.client.mission_run import MissionRun, final_estimate
+from robotd.contract import requests as api
+from robotd.contract.envelope import Request, decode_request, encode_error, encode_result
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepProgress
+from robotd.contract.modes import Mode
+from robotd.contract.topics import LogEntry, Topic, encode_frame, to_wire
 from robotd.core.errors import MissionError, RemoteProtocolError, RequestTimeout, ServerError
-from robotd.mission.events import MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.mission.modes import Mode
-from robotd.server import api
-from robotd.server.envelope import Request, decode_request, encode_error, encode_result
-from robotd.server.exchange import Exchanges
-from robotd.server.feed import Feed, Gap, as_topics
-from robotd.server.mission_run import MissionRun, final_estimate
-from robotd.server.topics import LogEntry, Topic, encode_frame, to_wire
 
 
 def exchanges(deadline_s: float | None = None) -> Exchanges:

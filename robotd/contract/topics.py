@@ -12,13 +12,13 @@ from typing import Any
 import msgpack
 import msgspec
 
+from robotd.contract.envelope import to_plain
 from robotd.contract.estimate import PoseEstimate
+from robotd.contract.events import Event, MapChanged, MissionProgress, Status, SweepDone, SweepProgress
+from robotd.contract.map_wire import MapPayload, pack_map, unpack_map
+from robotd.contract.requests import VERSION
 from robotd.core.errors import RemoteProtocolError
 from robotd.core.pose import Odometry
-from robotd.mission.events import Event, MapChanged, MissionProgress, Status, SweepDone, SweepProgress
-from robotd.server.api import VERSION
-from robotd.server.envelope import to_plain
-from robotd.server.map_wire import MapPayload, pack_map, unpack_map
 
 _END_OF_TOPIC = b"\0"
 

@@ -1,0 +1,21 @@
+"""What clients are told of a stored map."""
+
+from robotd.contract.requests import MapEntryInfo
+from robotd.core.text import printable
+from robotd.maps.store import MapEntry
+
+
+def entry_info(entry: MapEntry) -> MapEntryInfo:
+    """Return what clients are told of a stored version."""
+    rows, cols = entry.spec.shape if entry.spec else (0, 0)
+    return MapEntryInfo(
+        name=entry.name,
+        version=entry.version,
+        digest=entry.digest,
+        created_unix_ns=entry.created_unix_ns,
+        rows=rows,
+        cols=cols,
+        resolution_m=entry.spec.resolution_m if entry.spec else 0.0,
+        damage=None if entry.damage is None else printable(entry.damage),
+        unsaved=entry.is_unsaved,
+    )
