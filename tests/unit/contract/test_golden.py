@@ -1,0 +1,150 @@
+"""One file per message, so that renaming a field, a word or a command cannot break a client unseen.
+
+Each file in ``golden/`` is a message of wire version 1 as other languages see it, in the order of its bytes. Every
+message must be understood, and come out of us again byte for byte. What stands there is a promise: a file may be added,
+but never changed (a new optional field of a reply or an event is an addition to its file).
+"""
+
+import json
+import zlib
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+import msgpack
+import msgspec
+import pytest
+
+from robotd.contract import requests as api
+from robotd.contract.device_status import LinkState
+from robotd.contract.envelope import Request, decode_reply, decode_request, encode_error, encode_request, encode_result
+from robotd.contract.estimate import PoseState
+from robotd.contract.events import MissionPhase
+from robotd.contract.missions import Legs, PriorHeading
+from robotd.contract.modes import Mode
+from robotd.contract.topics import EVENTS, Topic, decode_frame, encode_frame, to_wire
+from robotd.core.errors import ServerError
+from robotd.core.reading import ReadingStatus
+
+GOLDEN = Path(__file__).parent / "golden"
+WORDS: list[type[StrEnum]] = [
+    PoseState,
+    MissionPhase,
+    Mode,
+    Legs,
+    PriorHeading,
+    LinkState,
+    ReadingStatus,
+    api.ErrorCode,
+    Topic,
+]
+
+
+def names(family: str) -> list[str]:
+    return sorted(path.stem for path in (GOLDEN / family).iterdir())
+
+
+def message(family: str, name: str) -> dict[str, Any]:
+    """The message of a file; what is bytes stands there as ``{"hex": ...}``."""
+    fields: dict[str, Any] = json.loads((GOLDEN / family / f"{name}.json").read_text(), object_hook=_or_bytes)
+    return fields
+
+
+def _or_bytes(fields: dict[str, Any]) -> Any:
+    return bytes.fromhex(fields["hex"]) if list(fields) == ["hex"] else fields
+
+
+def packed(fields: dict[str, Any]) -> bytes:
+    data: bytes = msgpack.packb(fields)
+    return data
+
+
+def inflated(data: bytes) -> Any:
+    """A message with its cells as they are: how they were squeezed is no promise, that they come out is."""
+    return _inflated(msgpack.unpackb(data))
+
+
+def _inflated(fields: Any) -> Any:
+    if not isinstance(fields, dict):
+        return fields
+    return {
+        key: zlib.decompress(value) if key == "cells_zlib" and value else _inflated(value)
+        for key, value in fields.items()
+    }
+
+
+def in_order(fields: Any) -> Any:
+    """A message whose maps compare by the order of their keys, too."""
+    return [(key, in_order(value)) for key, value in fields.items()] if isinstance(fields, dict) else fields
+
+
+def test_every_message_has_its_file_and_no_other() -> None:
+    assert set(names("requests")) == set(api.COMMANDS)
+    assert set(names("replies")) == {*api.COMMANDS, "error"}
+    assert set(names("events")) == {*(name for _, name in EVENTS.values()), "map_changed_whole"}
+
+
+@pytest.mark.parametrize("name", names("requests"))
+def test_a_request_is_understood_and_sent_byte_for_byte(name: str) -> None:
+    data = packed(message("requests", name))
+    request = decode_request(data, 65536)
+    assert isinstance(request, Request)
+    assert type(request.command) is api.COMMANDS[name]
+    assert encode_request(request.id, request.command) == data
+
+
+@pytest.mark.parametrize("name", names("requests"))
+def test_a_request_shows_every_argument_at_another_value_than_its_own(name: str) -> None:
+    arguments = message("requests", name)["args"]
+    fields = msgspec.structs.fields(api.COMMANDS[name])
+    assert list(arguments) == [field.name for field in fields]
+    shown = decode_request(packed(message("requests", name)), 65536)
+    assert isinstance(shown, Request)
+    at_their_own = {field.name for field in fields if getattr(shown.command, field.name) == field.default}
+    assert at_their_own <= {"heading"}  # which must be the usual one where heading_rad is given
+
+
+@pytest.mark.parametrize("name", [name for name in names("replies") if name != "error"])
+def test_a_reply_is_understood_and_given_byte_for_byte(name: str) -> None:
+    data = packed(message("replies", name))
+    reply = decode_reply(data)
+    assert reply.id is not None
+    result = msgspec.convert(reply.result, api.COMMANDS[name].result, strict=True)
+    assert in_order(inflated(encode_result(reply.id, result))) == in_order(inflated(data))
+
+
+def test_a_refusal_is_understood_and_given_byte_for_byte() -> None:
+    data = packed(message("replies", "error"))
+    reply = decode_reply(data)
+    assert isinstance(reply.result, ServerError)
+    assert encode_error(reply.id, reply.result) == data
+
+
+@pytest.mark.parametrize("name", names("events"))
+def test_an_event_is_understood_and_published_byte_for_byte(name: str) -> None:
+    fields = message("events", name)
+    (topic,) = {topic for topic, kind in EVENTS.values() if kind == fields["event"]}
+    heard = decode_frame(topic.prefix + packed(fields))
+    assert heard.event is not None
+    frame = encode_frame(topic, heard.session, heard.seq, to_wire(heard.event)[1])
+    assert frame.startswith(topic.prefix)
+    assert in_order(inflated(frame.removeprefix(topic.prefix))) == in_order(inflated(packed(fields)))
+
+
+@pytest.mark.parametrize(("family", "name"), [(f, n) for f in ("requests", "replies", "events") for n in names(f)])
+def test_nothing_in_a_file_is_left_open(family: str, name: str) -> None:
+    """A null or an empty list shows no names: what could stand there would be free to change."""
+    assert list(_open_places(message(family, name))) == []
+
+
+def _open_places(value: Any, at: str = "") -> Any:
+    if value is None or value == []:
+        yield at
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in items:
+        yield from _open_places(item, f"{at}.{key}")
+
+
+@pytest.mark.parametrize("kind", WORDS, ids=lambda kind: kind.__name__)
+def test_words_stay(kind: type[StrEnum]) -> None:
+    assert [str(word) for word in kind] == json.loads((GOLDEN / "words.json").read_text())[kind.__name__]
