@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid import kernels
-from robotd.grid.kernels.layout import NOWHERE
+from robotd.grid.kernels.distance.distance_kernel import NOWHERE
 from robotd.grid.window import CellWindow
 
 _ANY_DISTANCE = 1 << 14

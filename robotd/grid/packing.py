@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid import kernels
-from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, PackedMap, any_of_a_tile, tiles_of
+from robotd.grid.kernels.shared.packed_map import PAD_WORDS, TILE_ROWS, WORD_CELLS, PackedMap, any_of_a_tile, tiles_of
 from robotd.grid.window import CellWindow
 
 

@@ -1,6 +1,7 @@
 """What refinement needs of a map: how far it is to the nearest wall from anywhere, and how far beams go.
 
-Two bytes a cell, made once for a map and made anew only round what changed; see :mod:`robotd.grid.kernels.fitting`.
+Two bytes a cell, made once for a map and renewed only round what changed; see
+:mod:`robotd.grid.kernels.cast.cast_kernel`.
 """
 
 from dataclasses import dataclass, replace
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
 from robotd.grid import kernels
-from robotd.grid.kernels.fitting import REACH_CELLS, SKIP_MAX
+from robotd.grid.kernels.cast.cast_kernel import REACH_CELLS, SKIP_MAX
 from robotd.grid.window import CellWindow, influence
 
 

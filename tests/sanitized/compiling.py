@@ -12,7 +12,7 @@ from pathlib import Path
 from cffi import FFI
 
 ROOT = Path(__file__).parents[2]
-HERE = ROOT / "robotd" / "grid" / "kernels" / "c"
+HERE = ROOT / "robotd" / "grid" / "kernels"
 MODULE = "_native.abi3.so"
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer")
 
@@ -71,4 +71,4 @@ def _builder() -> tuple[FFI, tuple[Path, ...]]:
     assert spec.loader is not None
     found = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(found)
-    return found.builder, tuple(HERE / f"{name}.c" for name in found.KERNELS)
+    return found.builder, tuple(HERE / source for source in found.SOURCES)

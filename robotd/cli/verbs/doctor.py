@@ -91,7 +91,7 @@ def examine() -> Findings:
         numpy=np.__version__,
         pyzmq=f"{zmq.pyzmq_version()} (libzmq {zmq.zmq_version()})",
         kernels=kernels.IN_USE,
-        compiled_kernels=_compiled("robotd.grid.kernels._native", _ROOT / "robotd/grid/kernels/c"),
+        compiled_kernels=_compiled("robotd.grid.kernels._native", _ROOT / "robotd/grid/kernels"),
         compiled_boards=_compiled("robotd.sim.firmware._native", _ROOT / "firmware_proto/c"),
         plots=importlib.util.find_spec("matplotlib") is not None,
         serial_ports=tuple(sorted(f"{port.device} {port.description}" for port in list_ports.comports())),
@@ -106,7 +106,7 @@ def _compiled(module: str, source: Path) -> CompiledFound:
     if not (_ROOT / "setup.py").exists():  # a wheel: its files have the times at which they were unpacked
         return CompiledFound(module, found=True, newer_source=None)
     compiled_s = Path(spec.origin).stat().st_mtime
-    changed = [file for file in sorted(source.glob("*.[ch]")) if file.stat().st_mtime > compiled_s]
+    changed = [file for file in sorted(source.rglob("*.[ch]")) if file.stat().st_mtime > compiled_s]
     return CompiledFound(module, found=True, newer_source=str(changed[0]) if changed else None)
 
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.grid import kernels
 from robotd.grid.fans import STARTS_MAX, FanBeams, direction_keys, draw_fans, start_keys
-from robotd.grid.kernels.layout import FAR_CELLS, Words, pack
+from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS
+from robotd.grid.kernels.shared.packed_map import Words, pack
 from robotd.localization.conservative.conservative_poses import (
     ErrorBounds,
     SureObstacles,

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from robotd.core.errors import TooLarge
 from robotd.core.reading import RangeReading
 from robotd.grid import kernels
-from robotd.grid.kernels.layout import PAD_WORDS, TILE_ROWS, WORD_CELLS, BeamSettings, turned, unpack
+from robotd.grid.kernels.draw.draw_kernel import BeamSettings, turned
+from robotd.grid.kernels.shared.packed_map import PAD_WORDS, TILE_ROWS, WORD_CELLS, unpack
 from robotd.grid.readings import numbers_of
 from robotd.localization.obstacles.prepared_map import PreparedMap
 

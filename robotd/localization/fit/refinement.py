@@ -26,7 +26,8 @@ from robotd.core.bounds import Within, refuse_outside
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid import kernels
-from robotd.grid.kernels.fitting import ENDS, Fits
+from robotd.grid.kernels.cast.cast_kernel import ENDS
+from robotd.grid.kernels.fit.fit_kernel import Fits
 from robotd.grid.wall_field import WallField
 
 

@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
 from robotd.grid import kernels
-from robotd.grid.kernels.fitting import REACH_CELLS, Lattice
+from robotd.grid.kernels.cast.cast_kernel import REACH_CELLS
+from robotd.grid.kernels.fit.fit_kernel import Lattice
 from robotd.grid.wall_field import WallField
 from robotd.localization.fit.refinement import (
     DISTANCES,

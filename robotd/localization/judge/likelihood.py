@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
 from robotd.grid import kernels
-from robotd.grid.kernels.chances import IN_UNKNOWN, ChanceMap
-from robotd.grid.kernels.fitting import SKIP_MAX
+from robotd.grid.kernels.cast.cast_kernel import SKIP_MAX
+from robotd.grid.kernels.weigh.weigh_kernel import IN_UNKNOWN, ChanceMap
 from robotd.grid.tables import NO_INFORMATION, SURELY_OCCUPIED
 from robotd.grid.window import CellWindow, influence
 from robotd.localization.judge.elsewhere import elsewhere

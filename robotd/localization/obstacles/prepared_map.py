@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.binary import BinaryMap
-from robotd.grid.kernels.layout import PackedMap
+from robotd.grid.kernels.shared.packed_map import PackedMap
 from robotd.grid.packing import repacked
 from robotd.grid.window import CellWindow
 from robotd.localization.obstacles.beam_obstacles import Obstacles

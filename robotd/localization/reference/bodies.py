@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
-from robotd.grid.kernels.layout import FAR_CELLS, NO_HEAD, Bodies
+from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS, NO_HEAD
+from robotd.grid.kernels.error_radius.error_radius_kernel import Bodies
 from robotd.grid.ray import ray_steps
 from robotd.localization.reference.error_map import NEVER
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.binary import BinaryMap
 from robotd.grid.distance import distance_transform
-from robotd.grid.kernels.layout import PackedMap
+from robotd.grid.kernels.shared.packed_map import PackedMap
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 
 NEVER = int(np.iinfo(np.uint16).max)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from robotd.contract.area import Area
 from robotd.core.grid_spec import GridSpec
 from robotd.grid import kernels
-from robotd.grid.kernels.planes import Ground, Planes, Question, Window
+from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question, Window
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 
 _FEW_CELLS = 48 * 48

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from robotd.grid import kernels
 from robotd.grid.kernels import twins
-from robotd.grid.kernels.layout import BeamSettings, turned
+from robotd.grid.kernels.draw.draw_kernel import BeamSettings, turned
 from robotd.grid.readings import numbers_of
 from robotd.localization.count.rank_grid import RankGrid, even_headings
 from tests.benchmarks import workload

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.kernels.layout import pack, planes_of, tiles_of
+from robotd.grid.kernels.shared.packed_map import pack, planes_of, tiles_of
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.window import CellWindow

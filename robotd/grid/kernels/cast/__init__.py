@@ -1,0 +1,1 @@
+"""Wall fields, and how far beams go in them."""

@@ -1,0 +1,1 @@
+"""From which cells readings are feasible, counted."""

@@ -1,0 +1,97 @@
+"""Readings drawn on the grid at all headings: chains of cells, and the beams whose bodies begin them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FAR_CELLS = 1 << 28
+"""Heads that are farther away count as being so far."""
+NO_HEAD = -(1 << 30)
+"""In place of a head's row and column: the reading is a miss, and only its body counts."""
+SLOTS = 4096
+"""A mebibyte for each thread; a batch fills no more of it than differs from body to body."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BeamSettings:
+    """How readings are drawn on the grid."""
+
+    resolution_m: float
+    """Side of one cell."""
+    error_radius_cells: float
+    """The paper's eps: bodies end so much before their heads."""
+    reach_cells: int
+    """Where bodies end at the latest; more than the grid is wide and high changes nothing."""
+
+
+def turned(headings_rad: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return headings as beams are drawn at: angle, sine and cosine, ``float64[3, headings]``."""
+    return np.stack((headings_rad, np.sin(headings_rad), np.cos(headings_rad)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Beams:
+    """Readings drawn on the grid at all headings; what shares a chain of cells is together.
+
+    The body of a beam is the beginning of a chain. Chains are taken in batches, so that what is free up to the ends of
+    all bodies of a batch, one slot for each, stays in the cache.
+    """
+
+    numbers: NDArray[np.int32]
+    """All of it in one array: where each of five parts begins, where the last ends, how many slots there are; and these
+    parts: chains, groups, beams, batches, lists."""
+
+    @classmethod
+    def of(
+        cls,
+        *,
+        chains: NDArray[np.int32],
+        groups: NDArray[np.int32],
+        beams: NDArray[np.int32],
+        batches: NDArray[np.int32],
+        lists: NDArray[np.int32],
+        slots: int,
+    ) -> "Beams":
+        """Put the parts together."""
+        parts = [part.reshape(-1) for part in (chains, groups, beams, batches, lists)]
+        first = len(parts) + 2
+        bounds = np.cumsum([first, *(part.size for part in parts)])
+        return cls(np.concatenate([*(bounds, [slots]), *parts], dtype=np.int32))
+
+    @property
+    def chains(self) -> NDArray[np.int32]:
+        """``int32[cells, 3]``: ``(row, col)`` offset from the robot's cell, and the slot of the bodies that end here.
+
+        The slot is -1 if none does. Each chain begins with ``(0, 0)``.
+        """
+        return self._part(0).reshape(-1, 3)
+
+    @property
+    def groups(self) -> NDArray[np.int32]:
+        """``int32[groups + 1]``: first cell of each chain, and the end of the last."""
+        return self._part(1)
+
+    @property
+    def beams(self) -> NDArray[np.int32]:
+        """``int32[beams, 3]``: slot of the body, ``(row, col)`` of the head; ``NO_HEAD`` twice for a miss."""
+        return self._part(2).reshape(-1, 3)
+
+    @property
+    def batches(self) -> NDArray[np.int32]:
+        """``int32[batches + 1]``: first group of each batch, and the end of the last."""
+        return self._part(3)
+
+    @property
+    def lists(self) -> NDArray[np.int32]:
+        """``int32[batches * headings + 1]``: first beam of each batch and heading, and the end of the last."""
+        return self._part(4)
+
+    @property
+    def slots(self) -> int:
+        """No batch has more than so many."""
+        return int(self.numbers[6])
+
+    def _part(self, number: int) -> NDArray[np.int32]:
+        part: NDArray[np.int32] = self.numbers[self.numbers[number] : self.numbers[number + 1]]
+        return part

@@ -1,0 +1,1 @@
+"""The smallest error radius of every cell."""

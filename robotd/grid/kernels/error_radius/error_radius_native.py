@@ -1,0 +1,33 @@
+"""The smallest error radius of every cell, in C."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.grid.kernels._native import ffi, lib
+from robotd.grid.kernels.error_radius.error_radius_kernel import Bodies
+from robotd.grid.kernels.shared.buffers import ints, shorts, words
+from robotd.grid.kernels.shared.packed_map import TILE_ROWS, WORD_CELLS, PackedMap
+
+_THREADS_MAX = 16
+"""As in errors.c."""
+
+
+def share_errors(
+    the_map: PackedMap, distances: NDArray[np.uint16], outside: int, bodies: Bodies, wanted: int, *, threads: int = 1
+) -> NDArray[np.uint16]:
+    """See the twin."""
+    rows, cols = the_map.shape
+    errors = np.full(the_map.shape, np.iinfo(np.uint16).max, np.uint16)
+    threads = min(threads, _THREADS_MAX, max(1, len(the_map.tiles)))
+    needed = np.empty((threads, len(bodies.readings), TILE_ROWS * WORD_CELLS), np.uint16)
+    job = ffi.new("errors_job *")
+    job.free, job.blocking, job.blocked_by = words(the_map.free), words(the_map.blocking), the_map.blocked_by
+    job.words, job.rows = the_map.words, the_map.rows
+    job.tiles, job.tile_count = ints(the_map.tiles), len(the_map.tiles)
+    (job.origin_row, job.origin_col), job.map_rows, job.map_cols = the_map.origin, rows, cols
+    job.distances, job.outside = shorts(distances), outside
+    job.chains, job.lengths = ints(bodies.chains), shorts(bodies.lengths)
+    job.readings, job.reading_count, job.wanted = ints(bodies.readings), len(bodies.readings), wanted
+    job.needed, job.errors = shorts(needed), shorts(errors)
+    lib.share_errors(job, threads)
+    return errors

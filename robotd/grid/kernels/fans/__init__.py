@@ -1,0 +1,1 @@
+"""Poses that cannot be excluded, counted."""

@@ -1,0 +1,1 @@
+"""Poses fitted to walls."""

@@ -1,0 +1,1 @@
+"""Cells grown by a disk."""

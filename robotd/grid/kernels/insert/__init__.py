@@ -1,0 +1,1 @@
+"""A sweep into the occupancy grid."""

@@ -1,0 +1,1 @@
+"""The best poses, found by bounds that hold."""

@@ -1,0 +1,86 @@
+/* Where things lie in the planes of a search_map: shared by what fills them and what reads them. */
+#include <stddef.h>
+#include <stdint.h>
+
+#include "search/planes.h"
+
+#define WINDOW 16
+#define NEAR_MAX 63
+#define RING 16 /* offsets of a body's end from its head that have a key reach so far */
+
+enum { FREE, BLOCKING, GROWN };
+
+static inline int32_t up(int32_t value, int32_t step)
+{
+    return (value + step - 1) / step;
+}
+
+static inline int32_t floor_div(int32_t value, int32_t step) /* step is a power of two */
+{
+    return (value & -step) / step;
+}
+
+static inline int32_t clamp(int32_t value, int32_t low, int32_t high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+/* Cells: columns of 16, and rows with a window's margin on either side. */
+static inline int32_t strips(const search_map *map)
+{
+    return up(map->cols, WINDOW);
+}
+
+static inline int32_t strip_size(const search_map *map)
+{
+    return (up(map->rows, WINDOW) + 2) * WINDOW;
+}
+
+static inline uint16_t *cell_plane(const search_map *map, int32_t which)
+{
+    return map->cells + (size_t)which * (size_t)(strips(map) + 4) * (size_t)strip_size(map);
+}
+
+/* Pooled: words of 64 blocks, eight rows of blocks before the map, at least ten after it. */
+#define POOLS 4
+static const int32_t pools[POOLS] = {16, 8, 4, 2};
+#define BEYOND 8 /* outside the map, no farther away, planes may differ from what they are far away: the reach of keys */
+
+static inline int32_t block_rows(const search_map *map, int32_t pool)
+{
+    return up(up(map->rows, pool), 8) * 8;
+}
+
+static inline int32_t block_words(const search_map *map, int32_t pool)
+{
+    return up(up(map->cols, pool), 64);
+}
+
+static inline int32_t pooled_stride(const search_map *map, int32_t pool)
+{
+    return block_rows(map, pool) + 24;
+}
+
+static inline size_t phase_size(const search_map *map, int32_t pool)
+{
+    return (size_t)(block_words(map, pool) + 2) * (size_t)pooled_stride(map, pool);
+}
+
+static inline size_t pooled_size(const search_map *map, int32_t pool)
+{
+    return (size_t)(map->keys * pool * pool) * phase_size(map, pool) + 2 * (size_t)pooled_stride(map, pool);
+}
+
+static inline uint64_t *pooled_phase(const search_map *map, int32_t pool, int32_t key, int32_t row, int32_t col)
+{
+    uint64_t *first = map->pooled;
+    for (int i = 0; pools[i] != pool; i++)
+        first += pooled_size(map, pools[i]);
+    return first + (size_t)((key * pool + row) * pool + col) * phase_size(map, pool);
+}
+
+/* Whether a head far outside can be met: not if it ends nothing, or if the body has been blocked before. */
+static inline int32_t far_heads(const search_map *map, int32_t key)
+{
+    return map->outside_ends && !(map->outside_blocks && key > 0);
+}

@@ -1,0 +1,379 @@
+/* The most probable poses by bounds that hold: blocks of cells first, then their cells, then the bodies of the beams.
+ *
+ * A pose is an answer if it misses few enough readings, so everything here counts misses and stops where there are too
+ * many. (1) Per heading, the heads of all beams are looked up in the pooled planes: no cell of a block explains more
+ * readings than the block. (2) The most promising blocks give a first best rank. (3) In the blocks that can still hold
+ * an answer, heads and ends of bodies are counted cell by cell, 256 at a time; (4) for the cells that are left, the
+ * bodies are walked. Whatever the order, what is returned depends on the ranks alone.
+ */
+#include <pthread.h>
+#include <string.h>
+
+#include "search/search_masks.h"
+#include "search/search_window.h"
+
+#define THREADS_MAX 16
+#define HOPES 64 /* so many bounds are made finer before the search, and so many windows of them tried */
+#define SEEDS 16
+#define STEPS 12
+#define FEW_WINDOWS 1 /* as many windows are looked at sooner than the blocks in them are bounded */
+
+static int32_t units_of(const search_job *job)
+{
+    if (job->by_blocks)
+        return block_words(job->map, WINDOW) * (block_rows(job->map, WINDOW) / 8);
+    return up(job->area[1] - job->area[0], WINDOW) * up(job->area[3] - job->area[2], WINDOW);
+}
+
+static size_t worker_words(const search_job *job)
+{
+    return (size_t)job->reading_count * ((sizeof(beam) + POOLS * sizeof(pooled_beam) + sizeof(window)) / 8 + 1) + 8;
+}
+
+int64_t search_size(const search_job *job)
+{
+    const int64_t units = units_of(job), headings = job->heading_count;
+    return (job->by_blocks ? headings * units * job->bits * 8 : 0) + units + (headings * units + headings) / 2 + 2 +
+           headings * (int64_t)(sizeof(hope) / 4 + 1) +
+           THREADS_MAX * (int64_t)worker_words(job);
+}
+
+static void place_units(search *s)
+{
+    const search_job *job = s->job;
+    s->units = 0;
+    if (!job->by_blocks) {
+        for (int32_t row = job->area[0]; row < job->area[1]; row += WINDOW)
+            for (int32_t col = job->area[2]; col < job->area[3]; col += WINDOW) {
+                s->tiles[s->units][0] = row;
+                s->tiles[s->units++][1] = col;
+            }
+        return;
+    }
+    const int32_t high = 8 * WINDOW, wide = 64 * WINDOW;
+    for (int32_t row = job->area[0] / high; row * high < job->area[1]; row++)
+        for (int32_t word = job->area[2] / wide; word * wide < job->area[3]; word++) {
+            s->tiles[s->units][0] = word;
+            s->tiles[s->units++][1] = 8 * row;
+        }
+}
+
+/* Which blocks of a row of a tile are in the area. */
+static uint64_t within(const search_job *job, const int32_t *tile, int32_t i)
+{
+    const int32_t row = (tile[1] + i) * WINDOW, first = 64 * tile[0];
+    if (row + WINDOW <= job->area[0] || row >= job->area[1])
+        return 0;
+    const int32_t low = clamp(job->area[2] / WINDOW - first, 0, 63), high = clamp(up(job->area[3], WINDOW) - first, 0, 64);
+    return high <= low ? 0 : ~UINT64_C(0) >> (64 - high) & ~UINT64_C(0) << low;
+}
+
+static int8_t key_of(const search_map *map, const beam *b)
+{
+    const int32_t ring = 2 * RING + 1;
+    int8_t keys[2];
+    if (b->cells < map->blocked_by)
+        return 0;
+    for (int which = 0; which < 2; which++) {
+        const int32_t *end = which == 0 || map->blocked_by == 1 ? b->last : b->before;
+        const int32_t row = end[0] - b->head[0] + RING, col = end[1] - b->head[1] + RING;
+        keys[which] = row >= 0 && row < ring && col >= 0 && col < ring ? map->key_of[row * ring + col] : 0;
+    }
+    return keys[0] == keys[1] ? keys[0] : 0;
+}
+
+/* Put the heads of the hits on a grid of blocks, unless they are there; coarser grids come first. */
+static void pool_beams(worker *self, int which)
+{
+    const search_job *job = self->shared->job;
+    const int32_t pool = pools[which];
+    if (which < self->drawn)
+        return;
+    self->drawn = which + 1;
+    self->hits = 0;
+    for (int32_t i = 0; i < job->reading_count; i++) {
+        const beam *b = self->beams + i;
+        if (b->is_miss)
+            continue;
+        const int32_t row = floor_div(b->head[0], pool), col = floor_div(b->head[1], pool);
+        self->pooled[which][self->hits++] = (pooled_beam){
+            pooled_phase(job->map, pool, key_of(job->map, b), b->head[0] - row * pool, b->head[1] - col * pool),
+            floor_div(col, 64), row, (uint64_t)(col & 63)};
+    }
+}
+
+static void draw(worker *self, int32_t heading)
+{
+    const search *s = self->shared;
+    s->with->draw_heading(s->job, heading, self->beams);
+    self->drawn = 0;
+}
+
+static uint64_t *counter_of(const search *s, int32_t heading, int32_t unit)
+{
+    return s->counters + ((size_t)heading * (size_t)s->units + (size_t)unit) * (size_t)(s->job->bits * 8);
+}
+
+/* Bound the ranks of the blocks of a tile. */
+static void bound_tile(worker *self, int which, const int32_t *tile, uint64_t *counter)
+{
+    const search *s = self->shared;
+    pool_beams(self, which);
+    s->with->bound_tile(&s->grids[which], self->pooled[which], self->hits, tile, s->job->bits, counter);
+}
+
+/* Bound the ranks of all units at one heading. */
+static void bound_heading(worker *self, int32_t heading)
+{
+    search *s = self->shared;
+    uint64_t where[8];
+    draw(self, heading);
+    for (int32_t unit = 0; unit < s->units; unit++) {
+        uint64_t *counter = counter_of(s, heading, unit);
+        bound_tile(self, 0, s->tiles[unit], counter);
+        s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] =
+            greatest_of(counter, s->job->bits, where) + s->misses;
+    }
+}
+
+/* Look at the windows of a tile that can hold an answer, after bounding the finer blocks in those that are hopeful. */
+static void search_tile(worker *self, int32_t heading, int which, const int32_t *tile, const uint64_t *hopeful)
+{
+    const search *s = self->shared;
+    const int32_t pool = pools[which], times = WINDOW / pool, bits = s->job->bits;
+    uint64_t windows[8], finer[8], counter[8 * BITS_MAX];
+    if (windows_of(hopeful, times, windows) > FEW_WINDOWS && which + 1 < POOLS) {
+        for (int quarter = 0; quarter < 4; quarter++) {
+            const int right = quarter & 1, low = quarter >> 1;
+            const int32_t part[2] = {2 * tile[0] + right, 2 * tile[1] + 8 * low};
+            uint64_t any = 0;
+            for (int i = 0; i < 4; i++)
+                any |= hopeful[4 * low + i] >> (32 * right) & UINT64_C(0xffffffff);
+            if (any == 0)
+                continue;
+            bound_tile(self, which + 1, part, counter);
+            reach(counter, bits, least_of(s) - s->misses, finer);
+            for (int i = 0; i < 8; i++)
+                finer[i] &= doubled(hopeful[4 * low + i / 2], right);
+            search_tile(self, heading, which + 1, part, finer);
+        }
+        return;
+    }
+    for (int32_t i = 0; i < 8; i += times)
+        for (; windows[i]; windows[i] &= windows[i] - 1)
+            search_window(self, heading, (tile[1] + i) * pool, (64 * tile[0] + __builtin_ctzll(windows[i])) * pool);
+}
+
+/* Look at the windows of a unit that can hold an answer. */
+static void search_unit(worker *self, int32_t heading, int32_t unit)
+{
+    const search *s = self->shared;
+    const int32_t *tile = s->tiles[unit];
+    uint64_t hopeful[8];
+    if (!s->job->by_blocks) {
+        search_window(self, heading, tile[0], tile[1]);
+        return;
+    }
+    reach(counter_of(s, heading, unit), s->job->bits, least_of(s) - s->misses, hopeful);
+    for (int i = 0; i < 8; i++)
+        hopeful[i] &= within(s->job, tile, i);
+    search_tile(self, heading, 0, tile, hopeful);
+}
+
+/* Go from a unit to the smallest block in it that seems best; returns its bound, and the window that holds it. */
+static int32_t descend(worker *self, int32_t heading, int32_t unit, int32_t *place)
+{
+    const search *s = self->shared;
+    int32_t part[2] = {s->tiles[unit][0], s->tiles[unit][1]}, bound = 0;
+    uint64_t where[8], counter[8 * BITS_MAX];
+    memcpy(counter, counter_of(s, heading, unit), (size_t)(8 * s->job->bits) * sizeof *counter);
+    for (int which = 0; which < POOLS; which++) {
+        int32_t row = 0;
+        if (which > 0)
+            bound_tile(self, which, part, counter);
+        bound = greatest_of(counter, s->job->bits, where);
+        while (where[row] == 0)
+            row++;
+        place[0] = (part[1] + row) * pools[which] / WINDOW * WINDOW;
+        place[1] = (64 * part[0] + __builtin_ctzll(where[row])) * pools[which] / WINDOW * WINDOW;
+        part[0] = (64 * part[0] + __builtin_ctzll(where[row])) / 32;
+        part[1] = (part[1] + row) / 4 * 8;
+    }
+    return bound + s->misses;
+}
+
+static void *work(void *argument)
+{
+    worker *self = argument;
+    search *s = self->shared;
+    for (;;) {
+        const int32_t next = __atomic_fetch_add(&s->next, 1, __ATOMIC_RELAXED);
+        if (next >= (s->phase == BOUNDING ? s->job->heading_count : s->ordered))
+            return NULL;
+        if (s->phase == BOUNDING) {
+            bound_heading(self, next);
+            continue;
+        }
+        const int32_t heading = s->order[next];
+        int drawn = 0;
+        for (int32_t unit = 0; unit < s->units; unit++) {
+            if (s->job->by_blocks && s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] < least_of(s))
+                continue;
+            if (!drawn)
+                draw(self, heading);
+            drawn = 1;
+            search_unit(self, heading, unit);
+        }
+    }
+}
+
+static void share(search *s, worker *workers)
+{
+    pthread_t handles[THREADS_MAX];
+    int32_t started = 1;
+    s->next = 0;
+    while (started < s->job->threads && started < THREADS_MAX &&
+           pthread_create(&handles[started], NULL, work, &workers[started]) == 0)
+        started++;
+    work(&workers[0]);
+    for (int32_t i = 1; i < started; i++)
+        pthread_join(handles[i], NULL);
+}
+
+/* Bring the best of some to their beginning, in order; equal ones stay in the order of headings. */
+static void sort_best(hope *hopes, int32_t count, int32_t best)
+{
+    for (int32_t i = 0; i < best && i < count; i++) {
+        int32_t first = i;
+        for (int32_t j = i + 1; j < count; j++)
+            first = hopes[j].bound > hopes[first].bound ? j : first;
+        const hope chosen = hopes[first];
+        memmove(hopes + i + 1, hopes + i, (size_t)(first - i) * sizeof *hopes);
+        hopes[i] = chosen;
+    }
+}
+
+/* The best of all bounds, at most one for each heading. */
+static int32_t hopes_of(const search *s, hope *hopes)
+{
+    int32_t count = 0;
+    for (int32_t heading = 0; heading < s->job->heading_count; heading++) {
+        hope best = {-1, heading, 0, {0, 0}};
+        for (int32_t unit = 0; unit < s->units; unit++) {
+            const int32_t bound = s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit];
+            if (bound > best.bound)
+                best = (hope){bound, heading, unit, {s->tiles[unit][0], s->tiles[unit][1]}};
+        }
+        if (best.bound >= s->least)
+            hopes[count++] = best;
+    }
+    sort_best(hopes, count, HOPES);
+    return count;
+}
+
+/* Look at the best bounds first: some rank is reached there. Returns the best bound of all. */
+static int32_t seed(search *s, worker *first)
+{
+    const int32_t all = hopes_of(s, s->hopes), count = clamp(all, 0, HOPES), best = all ? s->hopes[0].bound : 0;
+    for (int32_t i = 0; i < all; i++)
+        s->order[i] = s->hopes[i].heading;
+    s->ordered = all;
+    for (int32_t i = 0; i < count; i++) {
+        hope *h = s->hopes + i;
+        draw(first, h->heading);
+        h->bound = descend(first, h->heading, h->unit, h->place);
+    }
+    sort_best(s->hopes, count, SEEDS);
+    for (int32_t i = 0; i < clamp(count, 0, SEEDS) && s->hopes[i].bound >= s->least; i++) {
+        const int32_t *place = s->hopes[i].place;
+        if (place[0] >= s->job->map->rows || place[1] >= s->job->map->cols || allowed_misses(s) < 0 ||
+            !open_window(s->job, place[0], place[1], &first->at))
+            continue;
+        draw(first, s->hopes[i].heading);
+        if (s->with->count_ends(s->job, first->beams, &first->at, allowed_misses(s)))
+            try_best(first);
+    }
+    return best;
+}
+
+/* All headings, those in the middle first: where only a few are asked for, one of these is the likeliest. */
+static void from_the_middle(search *s)
+{
+    const int32_t count = s->job->heading_count;
+    for (int32_t i = 0; i < count; i++)
+        s->order[i] = count / 2 + (i % 2 ? -(i + 1) / 2 : i / 2);
+    s->ordered = count;
+}
+
+/* Find the best rank, if it may be far from what was seen: ask for high ranks first, then for lower ones, since that is
+ * so much faster than asking for all that lie above a low one. */
+static void rank(search *s, worker *workers, int32_t bound)
+{
+    search_job *job = s->job;
+    const int32_t step = larger(1, job->reading_count / STEPS);
+    const int32_t low = larger(job->least_rank, larger(1, job->best_rank + 1));
+    s->phase = RANKING;
+    for (int32_t least = larger(bound - step, low);; least = larger(least - step, low)) {
+        if (job->best_rank >= job->least_rank && least <= job->best_rank + step / 2)
+            return;
+        s->least = least;
+        share(s, workers);
+        if (job->best_rank >= least || least == low)
+            return;
+    }
+}
+
+int32_t search_poses(search_job *job)
+{
+    const kernel *with = kernel_of(job->instructions);
+    if (with == NULL)
+        return 0;
+    search s = {.job = job, .with = with};
+    worker workers[THREADS_MAX];
+    uint64_t *scratch = job->scratch;
+    for (int i = 0; i < POOLS; i++)
+        s.grids[i] = (grid){pools[i], block_words(job->map, pools[i]), block_rows(job->map, pools[i]),
+                            pooled_stride(job->map, pools[i])};
+    for (int32_t i = 0; i < job->reading_count; i++)
+        s.misses += job->readings[4 * (size_t)i + 3] > 0.0;
+    s.tiles = (int32_t(*)[2])scratch;
+    scratch += units_of(job);
+    place_units(&s);
+    s.bounds = (int32_t *)scratch;
+    s.order = s.bounds + (size_t)job->heading_count * (size_t)s.units;
+    scratch += ((size_t)job->heading_count * (size_t)s.units + (size_t)job->heading_count) / 2 + 1;
+    s.hopes = (hope *)scratch;
+    scratch += (size_t)job->heading_count * (sizeof(hope) / 4 + 1);
+    for (int32_t i = 0; i < THREADS_MAX; i++) {
+        workers[i].shared = &s;
+        workers[i].beams = (beam *)scratch;
+        for (int which = 0; which < POOLS; which++)
+            workers[i].pooled[which] =
+                (pooled_beam *)(workers[i].beams + job->reading_count) + (size_t)which * (size_t)job->reading_count;
+        workers[i].at.maybe = (window *)(workers[i].pooled[POOLS - 1] + job->reading_count);
+        scratch += worker_words(job);
+    }
+    s.counters = scratch;
+    pthread_mutex_init(&s.lock, NULL);
+    job->best_rank = job->pose_count = 0;
+    s.least = larger(1, job->least_rank - job->slack);
+    if (job->by_blocks) {
+        s.phase = BOUNDING;
+        share(&s, workers);
+        rank(&s, workers, seed(&s, workers));
+    } else
+        from_the_middle(&s);
+    s.phase = COLLECTING;
+    s.least = larger(1, larger(job->least_rank, job->best_rank) - job->slack);
+    if (!job->by_blocks || job->best_rank >= job->least_rank) {
+        share(&s, workers);
+        compact(&s);
+    }
+    if (job->best_rank < job->least_rank) {
+        job->best_rank = job->pose_count = 0;
+        s.least = larger(1, job->least_rank - job->slack);
+    }
+    job->least = s.least;
+    pthread_mutex_destroy(&s.lock);
+    return 1;
+}

@@ -1,0 +1,100 @@
+"""Searching for the best poses, in C."""
+
+import functools
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.grid.kernels._native import ffi, lib
+from robotd.grid.kernels.count.count_native import INSTRUCTION_SETS
+from robotd.grid.kernels.search.endings import endings
+from robotd.grid.kernels.search.search_kernel import Found, Ground, Planes, Question, Window
+from robotd.grid.kernels.shared.buffers import floats, ints, octets, words
+
+
+def make_planes(ground: Ground) -> Planes:
+    """See the twin."""
+    key_of = endings(ground.error_radius_cells, ground.blocked_by)
+    sizes = _map_of(ground, key_of)
+    cells = np.empty(lib.search_cells_size(sizes), np.uint16)
+    pooled = np.empty(lib.search_pooled_size(sizes), np.uint64)
+    return _filled(ground, key_of, (cells, pooled, np.empty(ground.free.shape, np.uint8)), ground.everywhere)
+
+
+def renew_planes(planes: Planes, ground: Ground, window: Window) -> Planes:
+    """See the twin."""
+    return _filled(ground, planes.key_of, (planes.cells, planes.pooled, planes.near), window)
+
+
+def _filled(
+    ground: Ground,
+    key_of: NDArray[np.int8],
+    arrays: tuple[NDArray[np.uint16], NDArray[np.uint64], NDArray[np.uint8]],
+    window: Window,
+) -> Planes:
+    """Fill what depends on a window of the map."""
+    cells, pooled, near = arrays
+    c_map = _map_of(ground, key_of)
+    c_map.cells, c_map.pooled = ffi.from_buffer("uint16_t[]", cells), words(pooled)
+    c_map.near = octets(near)
+    scratch = np.empty(lib.search_scratch_size(c_map), np.uint64)
+    rows, cols = window
+    lib.search_prepare(c_map, rows.start, rows.stop, cols.start, cols.stop, words(scratch))
+    return Planes(ground, key_of, cells, pooled, near, c_map)
+
+
+def search_poses(planes: Planes, question: Question, *, threads: int = 1, instructions: str | None = None) -> Found:
+    """See the twin; ``instructions`` is one of ``INSTRUCTION_SETS``, the best one if None.
+
+    Raises:
+        ValueError: this processor lacks those instructions.
+    """
+    jumping, headings_rad = question.readings[_jumping(len(question.readings))], question.headings_rad
+    bearings_rad = headings_rad[:, None] + jumping[:, 0]
+    sines, cosines = np.sin(bearings_rad), np.cos(bearings_rad)
+    turned = np.array((np.sin(headings_rad), np.cos(headings_rad))).T.copy()
+    readings = jumping[:, 1:].copy()
+    readings[:, 0] /= question.resolution_m
+    row_first, row_last, col_first, col_last = question.area
+    limit = min(question.limit, (row_last - row_first) * (col_last - col_first) * len(headings_rad))
+    poses = np.empty((2 * limit + 256, 4), np.int32)
+    job = ffi.new("search_job *")
+    job.map = planes.handle
+    job.readings, job.headings = floats(readings), floats(turned)
+    job.sines, job.cosines = floats(sines), floats(cosines)
+    job.reading_count, job.heading_count = len(readings), len(headings_rad)
+    job.resolution_m, job.error_radius_cells = question.resolution_m, planes.ground.error_radius_cells
+    job.reach_cells = question.reach_cells
+    job.area, job.spans = question.area, ints(question.spans)
+    job.by_blocks = question.by_blocks
+    job.slack, job.least_rank, job.limit = question.slack, question.least_rank, limit
+    job.bits, job.threads = max(3, len(readings).bit_length()), threads
+    job.instructions = -1 if instructions is None else INSTRUCTION_SETS.index(instructions)
+    scratch = np.empty(lib.search_size(job), np.uint64)
+    job.scratch, job.poses = words(scratch), ints(poses)
+    if not lib.search_poses(job):
+        raise ValueError(f"this processor has no {instructions}")
+    found = poses[: job.pose_count]
+    order = np.lexsort((found[:, 2], found[:, 1], found[:, 0]))
+    return Found(job.best_rank, job.least, found[order])
+
+
+@functools.lru_cache(maxsize=8)
+def _jumping(count: int) -> NDArray[np.intp]:
+    """Return an order of readings in which neighbours look in different directions, whatever the sweep."""
+    steps = (step for step in range(int(0.618 * count), 0, -1) if math.gcd(step, count) == 1)
+    return np.arange(count) * next(steps, 1) % count
+
+
+def _map_of(ground: Ground, key_of: NDArray[np.int8]) -> Any:
+    """Return ``search_map *`` of no planes yet; it does not keep the arrays alive."""
+    c_map = ffi.new("search_map *")
+    c_map.rows, c_map.cols = ground.free.shape
+    c_map.keys = int(key_of.max()) + 1
+    c_map.outside_blocks, c_map.outside_ends = ground.outside_blocks, ground.outside_ends
+    c_map.blocked_by = ground.blocked_by
+    c_map.free, c_map.blocking = octets(ground.free.view(np.uint8)), octets(ground.blocking.view(np.uint8))
+    c_map.grown, c_map.key_of = octets(ground.grown.view(np.uint8)), ffi.from_buffer("int8_t[]", key_of)
+    return c_map

@@ -1,0 +1,178 @@
+"""Searching for the best poses, in NumPy: the twin of the kernel in C."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.grid.kernels.search.endings import endings
+from robotd.grid.kernels.search.search_kernel import Found, Ground, Planes, Question, Window
+from robotd.grid.ray import ray_steps
+
+_FAR_CELLS = float(1 << 28)
+
+
+def make_planes(ground: Ground) -> Planes:
+    """Return what the search keeps of a map; the twin reads the map itself and keeps nothing more."""
+    key_of = endings(ground.error_radius_cells, ground.blocked_by)
+    return Planes(ground, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8), None)
+
+
+def renew_planes(planes: Planes, ground: Ground, window: Window) -> Planes:  # noqa: ARG001  # nothing to renew
+    """Return the planes after cells changed, all of them in a window; the old ones are used up."""
+    return make_planes(ground)
+
+
+def search_poses(planes: Planes, question: Question, *, threads: int = 1) -> Found:  # noqa: ARG001  # one is enough
+    """Return the best poses.
+
+    Heading by heading, cells that may hold an answer are kept in a list, and dropped once they have missed too many
+    readings: first by the heads of all beams, then, only where the heads leave a chance, by their bodies.
+    """
+    ground, around = planes.ground, _Around.of(planes.ground)
+    free = np.argwhere(_asked_for(ground.free, question))
+    best, least, found = 0, max(1, question.least_rank - question.slack), [np.zeros((0, 4), np.int32)]
+    total = len(question.readings)
+    bounds = []
+    for heading in range(len(question.headings_rad)):
+        beams = _beams(ground, question, heading)
+        cells, heads = _count(around, beams, free, np.zeros(len(free), np.int64), total - least, bodies=False)
+        bounds.append((total - int(heads.min(initial=total)), heading, cells, heads))
+    for bound, heading, hopeful, heads in sorted(bounds, key=lambda bound: -bound[0]):
+        if bound < least:
+            break
+        kept = heads <= total - least
+        beams = _beams(ground, question, heading)
+        cells, misses = _count(around, beams, hopeful[kept], heads[kept], total - least, bodies=True)
+        ranks = total - misses
+        best = max(best, int(ranks.max(initial=0)))
+        least = max(least, best - question.slack if best >= question.least_rank else 0)
+        found.append(np.column_stack((np.full(len(cells), heading), cells, ranks)).astype(np.int32))
+    if best < question.least_rank:
+        return Found(0, max(1, question.least_rank - question.slack), found[0])
+    return _limited(np.concatenate(found), best, least, question.limit)
+
+
+def _limited(poses: NDArray[np.int32], best: int, least: int, limit: int) -> Found:
+    """Return the poses of a rank, or of the least higher one that leaves few enough."""
+    while (poses[:, 3] >= least).sum() > limit:
+        least += 1
+    poses = poses[poses[:, 3] >= least]
+    return Found(best, least, poses[np.lexsort((poses[:, 2], poses[:, 1], poses[:, 0]))])
+
+
+def _asked_for(free: NDArray[np.bool_], question: Question) -> NDArray[np.bool_]:
+    wanted = np.zeros_like(free)
+    cols = np.arange(free.shape[1])
+    row_first, row_last = question.area[:2]
+    wanted[row_first:row_last] = (question.spans[:, :1] <= cols) & (cols < question.spans[:, 1:])
+    return wanted & free
+
+
+Beam = tuple[NDArray[np.int64], NDArray[np.int64] | None]
+"""The cells of the body, ``int64[n, 2]``, and the head, None for a miss."""
+
+
+def _beams(ground: Ground, question: Question, heading: int) -> list[Beam]:
+    """Draw all readings at one heading, by the rules of ``localization/reference/probe.py``."""
+    heading_rad = question.headings_rad[heading]
+    bearing_rad, range_m, x_m, y_m, is_miss = question.readings.T
+    sin, cos = np.sin(heading_rad), np.cos(heading_rad)
+    positions = np.stack((sin * x_m + cos * y_m, cos * x_m - sin * y_m), axis=1) / question.resolution_m
+    bearings_rad = bearing_rad + heading_rad
+    ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)
+    range_cells = range_m / question.resolution_m
+    free_cells = np.clip(range_cells - ground.error_radius_cells, 0.0, question.reach_cells)
+    counts = np.maximum(np.ceil(free_cells * np.abs(ahead).max(axis=1)), 1.0).astype(np.int64)
+    starts, heads, steps = (
+        _nearest(positions),
+        _nearest(positions + range_cells[:, None] * ahead),
+        ray_steps(bearings_rad),
+    )
+    return [
+        (
+            start + np.floor(0.5 + np.arange(count)[:, None] * step).astype(np.int64),
+            None if missed > 0.0 else head,
+        )
+        for start, count, step, head, missed in zip(starts, counts, steps, heads, is_miss, strict=True)
+    ]
+
+
+def _nearest(cells: NDArray[np.float64]) -> NDArray[np.int64]:
+    return np.floor(np.clip(cells, -_FAR_CELLS, _FAR_CELLS) + 0.5).astype(np.int64)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Around:
+    """A map with what lies outside around it, so that looking somewhere is looking up one number."""
+
+    grown: NDArray[np.bool_]
+    blocking: NDArray[np.bool_]
+    """Both ``bool[rows * cols]`` of the padded map."""
+    margin: tuple[int, int]
+    cols: int
+    blocked_by: int
+
+    @classmethod
+    def of(cls, ground: Ground) -> "_Around":
+        rows, cols = ground.free.shape
+        margin = ((rows, rows), (cols, cols))
+        grown = np.pad(ground.grown, margin, constant_values=ground.outside_ends)
+        blocking = np.pad(ground.blocking, margin, constant_values=ground.outside_blocks)
+        return cls(grown.ravel(), blocking.ravel(), (rows, cols), 3 * cols, ground.blocked_by)
+
+    def places(self, cells: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Return where cells ``intp[n, 2]`` of the map lie, ``intp[n]``."""
+        places: NDArray[np.intp] = (cells + self.margin) @ np.array([self.cols, 1])
+        return places
+
+    def steps(self, offsets: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return how far the places at offsets ``int64[..., 2]`` lie; what is out of sight is outside."""
+        steps: NDArray[np.int64] = np.clip(offsets, np.negative(self.margin), self.margin) @ np.array([self.cols, 1])
+        return steps
+
+
+def _count(
+    around: _Around,
+    beams: list[Beam],
+    cells: NDArray[np.intp],
+    misses: NDArray[np.int64],
+    allowed: int,
+    *,
+    bodies: bool,
+) -> tuple[NDArray[np.intp], NDArray[np.int64]]:
+    """Return the cells that miss no more than is allowed, and what they missed so far.
+
+    Args:
+        around: the map.
+        beams: to be counted.
+        cells: ``intp[n, 2]``.
+        misses: ``int64[n]``, what they missed before.
+        allowed: how many each may miss.
+        bodies: whether beams count that meet their head and are blocked, or those that do not meet their head.
+    """
+    places, kept = around.places(cells), np.arange(len(cells))
+    for body, head in beams:
+        if head is None and not bodies:
+            continue
+        meets = np.ones(len(places), np.bool_) if head is None else around.grown[places + around.steps(head)]
+        misses = misses + (_blocked(around, places, body, meets) if bodies else ~meets)
+        good = misses <= allowed
+        if not good.all():
+            places, kept, misses = places[good], kept[good], misses[good]
+        if len(places) == 0:
+            break
+    return cells[kept], misses
+
+
+def _blocked(
+    around: _Around, places: NDArray[np.intp], body: NDArray[np.int64], asked: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Return from which of some places a body meets too many cells that block, ``bool[n]``."""
+    blocked = np.zeros(len(places), np.bool_)
+    some = np.flatnonzero(asked)
+    met = np.zeros(len(some), np.int64)
+    for step in around.steps(body).tolist():
+        met += around.blocking[places[some] + step]
+    blocked[some] = met >= around.blocked_by
+    return blocked

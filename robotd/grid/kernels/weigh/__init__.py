@@ -1,0 +1,1 @@
+"""Beams weighed on a map of chances."""

@@ -1,0 +1,28 @@
+"""Beams on a map of chances, in C."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.grid.kernels._native import lib
+from robotd.grid.kernels.shared.buffers import floats, octets
+from robotd.grid.kernels.weigh.weigh_kernel import ChanceMap
+
+
+def weigh_beams(the_map: ChanceMap, poses: NDArray[np.float64], beams: NDArray[np.float64]) -> NDArray[np.float64]:
+    """See the twin."""
+    chances = np.empty((len(poses), len(beams), 3))
+    if chances.size:
+        rows, cols = the_map.cells.shape
+        lib.weigh_beams(
+            octets(the_map.cells),
+            octets(the_map.skips),
+            rows,
+            cols,
+            floats(the_map.stops),
+            floats(np.ascontiguousarray(poses)),
+            len(poses),
+            floats(np.ascontiguousarray(beams)),
+            len(beams),
+            floats(chances),
+        )
+    return chances

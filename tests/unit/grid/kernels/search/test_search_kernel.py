@@ -1,0 +1,138 @@
+"""The search kernels: planes renewed in a window are planes made anew; every way to search gives the same poses."""
+
+import functools
+import importlib
+import math
+from types import ModuleType
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from robotd.grid.footprints import dilate, disk_footprint
+from robotd.grid.kernels import twins
+from robotd.grid.kernels.search.search_kernel import Found, Ground, Planes, Question
+
+try:
+    NATIVE: ModuleType = importlib.import_module("robotd.grid.kernels.native")
+except ImportError:
+    NATIVE = twins
+both = pytest.mark.parametrize("kernels", {"numpy": twins, "c": NATIVE}.values(), ids=["numpy", "c or numpy"])
+needs_native = pytest.mark.skipif(NATIVE is twins, reason="robotd was installed without a compiler")
+
+RADIUS = 1.5
+
+
+def ground_of(solid: NDArray[np.bool_], outside: bool = True, blocked_by: int = 1) -> Ground:
+    grown = dilate(solid, disk_footprint(RADIUS), outside=outside)
+    return Ground(~solid, solid, grown, outside, outside, blocked_by, RADIUS)
+
+
+def question_of(shape: tuple[int, int], seed: int, **changes: int) -> Question:
+    random = np.random.default_rng(seed)
+    readings = np.zeros((20, 5))
+    readings[:, 0], readings[:, 1] = np.arange(20) * (math.tau / 20), random.uniform(0.3, 6.0, 20)
+    readings[::7, 4] = 1.0
+    asked = {"slack": 3, "least_rank": 1, "limit": 1 << 16} | changes
+    return Question(
+        readings,
+        np.linspace(0.0, 0.5, 6),
+        resolution_m=0.2,
+        **asked,
+        area=(0, shape[0], 0, shape[1]),
+        by_blocks=True,
+        spans=np.tile(np.array((0, shape[1]), np.int32), (shape[0], 1)),
+        reach_cells=500.0,
+    )
+
+
+def building(seed: int, shape: tuple[int, int]) -> NDArray[np.bool_]:
+    random = np.random.default_rng(seed)
+    blocks = np.kron(random.random((shape[0] // 10 + 1, shape[1] // 12 + 1)) < 0.15, np.ones((10, 12), np.bool_))
+    return np.asarray(blocks[: shape[0], : shape[1]] | (random.random(shape) < 0.005))
+
+
+def assert_same(one: Found, other: Found) -> None:
+    assert (one.best_rank, one.least) == (other.best_rank, other.least)
+    assert np.array_equal(one.poses, other.poses)
+
+
+@needs_native
+@settings(max_examples=60, deadline=None)
+@given(
+    st.tuples(st.integers(1, 300), st.integers(1, 300)),
+    st.booleans(),
+    st.integers(0, 2**32),
+    st.data(),
+)
+def test_planes_renewed_in_a_window_are_planes_made_anew(
+    shape: tuple[int, int], outside: bool, seed: int, data: st.DataObject
+) -> None:
+    before = building(seed, shape)
+    rows, cols = (sorted((data.draw(st.integers(0, size)), data.draw(st.integers(0, size)))) for size in shape)
+    window = slice(*rows), slice(*cols)
+    after = before.copy()
+    after[window] = np.random.default_rng(seed).random(after[window].shape) < 0.1
+    old, new = ground_of(before, outside), ground_of(after, outside)
+    changed = np.argwhere((old.blocking != new.blocking) | (old.grown != new.grown))
+    if len(changed):
+        (row_first, col_first), (row_last, col_last) = changed.min(axis=0).tolist(), changed.max(axis=0).tolist()
+        window = slice(row_first, row_last + 1), slice(col_first, col_last + 1)
+    planes = NATIVE.renew_planes(NATIVE.make_planes(old), new, window)
+    anew: Planes = NATIVE.make_planes(new)
+    assert np.array_equal(planes.near, anew.near)
+    assert np.array_equal(planes.cells, anew.cells)
+    assert np.array_equal(planes.pooled, anew.pooled)
+
+
+@needs_native
+def test_near_is_the_chebyshev_distance_to_what_blocks() -> None:
+    solid = building(3, (150, 170))
+    for outside in (False, True):
+        near: NDArray[np.uint8] = NATIVE.make_planes(ground_of(solid, outside)).near
+        for distance in (1, 2, 5, 17, 40, 63):
+            reached = dilate(solid, np.ones((2 * distance - 1, 2 * distance - 1), np.bool_), outside=outside)
+            assert np.array_equal(near < distance, reached)
+
+
+def case(seed: int) -> tuple[Ground, Question]:
+    shape = (90 + 40 * seed, 200)
+    return ground_of(building(seed, shape), seed != 1, 1 + seed % 2), question_of(shape, seed)
+
+
+@functools.cache
+def found_by_numpy(seed: int) -> Found:
+    ground, question = case(seed)
+    return twins.search_poses(twins.make_planes(ground), question)
+
+
+@needs_native
+@pytest.mark.parametrize("threads", [1, 2, 5])
+@pytest.mark.parametrize("instructions", ["portable", "avx2", "avx512"])
+def test_every_way_to_search_finds_what_numpy_finds(threads: int, instructions: str) -> None:
+    for seed in range(3):
+        ground, question = case(seed)
+        try:
+            found = NATIVE.search_poses(
+                NATIVE.make_planes(ground), question, threads=threads, instructions=instructions
+            )
+        except ValueError:
+            pytest.skip(f"this processor has no {instructions}")
+        assert len(found.poses)
+        assert_same(found, found_by_numpy(seed))
+
+
+@both
+@pytest.mark.parametrize("limit", [0, 1, 50, 300])
+def test_more_poses_than_the_limit_are_cut_at_a_rank(kernels: ModuleType, limit: int) -> None:
+    shape = (40, 100)
+    planes = kernels.make_planes(ground_of(building(5, shape)))
+    everything = kernels.search_poses(planes, question_of(shape, 5, slack=20))
+    ranks = everything.poses[:, 3]
+    assert len(ranks) > 300
+    found = kernels.search_poses(planes, question_of(shape, 5, slack=20, limit=limit))
+    assert found.best_rank == everything.best_rank
+    assert np.array_equal(found.poses, everything.poses[ranks >= found.least])
+    assert len(found.poses) <= limit < (ranks >= found.least - 1).sum()
