@@ -19,6 +19,7 @@ from robotd.cli.quantities import heading_of_deg, number, whole
 from robotd.cli.show.half_blocks import can_draw_blocks, coloured, plain, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import OK, Verb
+from robotd.cli.verbs import map_files
 from robotd.contract.events import MapChanged
 from robotd.contract.missions import Legs, MapMission
 from robotd.contract.requests import MapEntryInfo, MapName
@@ -218,4 +219,5 @@ VERBS = (
         _show_arguments,
         asks_daemon=True,
     ),
+    *map_files.VERBS,
 )

@@ -31,6 +31,7 @@ OUTPUTS = {
     "import carmen --out",
     "exact --out",
     "map show --png",
+    "map export directory",
     "sim --truth",
     "sim --links",
     "sim --write-config",
@@ -41,7 +42,7 @@ OUTPUTS = {
     "demo room --out",
     "demo building --out",
 }
-NO_OUTPUTS = {"--runtime-dir", "--config", "log", "map", "readings", "file"}
+NO_OUTPUTS = {"--runtime-dir", "--config", "--maps", "log", "map", "readings", "file"}
 """Paths that are read; ``record start FILE`` is the daemon's to refuse, which has the file."""
 
 
@@ -81,13 +82,15 @@ def command(name: str, target: Path, directory: Path) -> list[str]:
     needed = {
         "import carmen": [str(log)],
         "exact": [str(square), str(table)],
+        "map export": ["hall"],
         "sim": ["office"],
         "fake": [str(directory / "no.mcap")],
         "eval": [str(log), "--cases", "1"],
         "demo building": [str(log)],
         "demo room": ["office"],
     }
-    return [*verb.split(), *needed.get(verb, []), option, str(target)]
+    words = [option, str(target)] if option.startswith("-") else [str(target)]
+    return [*verb.split(), *needed.get(verb, []), *words]
 
 
 @pytest.mark.parametrize("content", PRECIOUS.values(), ids=PRECIOUS)

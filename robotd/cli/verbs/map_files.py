@@ -1,0 +1,185 @@
+"""``map import`` and ``map export``: maps of other programs into the store, and out of it. They need no daemon."""
+
+import argparse
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from robotd import config
+from robotd.cli.outputs import Kind, OutputPath, check, output_argument, write
+from robotd.cli.quantities import number, positive, whole
+from robotd.cli.show.terminal import complain, out, print_json
+from robotd.cli.verb import OK, Verb
+from robotd.core.errors import ConfigError, MapError, RobotdError
+from robotd.maps.manifest import is_name
+from robotd.maps.store import MapEntry, MapStore
+
+if TYPE_CHECKING:
+    from robotd.interop.map_server import ImportedMap
+
+_MODES = ("trinary", "scale", "raw")
+_EXPORT = Kind("a directory for a map of map_server")
+_IMAGE = Kind("a PGM or PNG picture", lambda head: head.startswith((b"P5", b"\x89PNG")))
+_YAML = Kind("the yaml of a map", lambda head: head.startswith(b"image: "))
+
+
+def _import(arguments: argparse.Namespace) -> int:
+    file: Path = arguments.file
+    store = _store(arguments)
+    found = _read(arguments)
+    metadata = {"imported_from": file.name, "notes": list(found.notes)}
+    entry = store.save(arguments.name or _name_of(file), found.grid, metadata, time.time_ns())
+    for note in found.notes:
+        complain(f"{file}: {note}")
+    _tell(arguments, "imported", entry, str(entry.path), found.notes)
+    return OK
+
+
+def _read(arguments: argparse.Namespace) -> "ImportedMap":
+    map_server, map_server_yaml = _needs_extra()
+    file: Path = arguments.file
+    try:
+        if file.suffix.lower() in {".yaml", ".yml"}:
+            described = map_server_yaml.decode_map_yaml(_bytes(file, map_server_yaml.YAML_MAX_BYTES))
+            picture = file.parent / described.image
+        else:
+            described, picture = _bare(arguments, map_server_yaml.MapServerYaml), file
+        read: ImportedMap = map_server.import_map(described, _bytes(picture, map_server.IMAGE_MAX_BYTES))
+    except MapError as error:
+        raise MapError(f"{file}: {error}") from error
+    return read
+
+
+def _bare(arguments: argparse.Namespace, described: Callable[..., Any]) -> Any:
+    """Describe a picture that has no yaml by what stands on the command line."""
+    if arguments.resolution is None:
+        raise MapError("a picture says nothing of its size: give the yaml beside it, or --resolution [m per pixel]")
+    x_m, y_m = arguments.origin
+    return described(
+        image=arguments.file.name,
+        resolution_m=arguments.resolution,
+        origin_x_m=x_m,
+        origin_y_m=y_m,
+        yaw_rad=0.0,
+        occupied_thresh=0.65,
+        free_thresh=0.196,
+        negate=False,
+        mode="trinary",
+    )
+
+
+def _bytes(file: Path, most: int) -> bytes:
+    try:
+        if file.exists() and not file.is_file():
+            raise MapError(f"{file.name} is no file")
+        with file.open("rb") as opened:
+            return opened.read(most + 1)  # one more than may be: its reader says that it is too long
+    except OSError as error:
+        raise MapError(f"{file.name} cannot be read: {error.strerror or error}") from error
+
+
+def _name_of(file: Path) -> str:
+    if not is_name(file.stem):
+        raise MapError(f"{file}: {file.stem!r} cannot name a map; choose a name with --name")
+    return file.stem
+
+
+def _export(arguments: argparse.Namespace) -> int:
+    map_server, _ = _needs_extra()
+    grid, entry = _store(arguments).load(arguments.name, arguments.version)
+    files: dict[str, bytes] = map_server.export_map(grid, entry.name, arguments.mode)
+    directory: OutputPath = arguments.directory
+    for name in files:
+        check(directory / name, _YAML if name.endswith(".yaml") else _IMAGE)
+    for name, content in files.items():
+        write(directory / name, content)
+    _tell(arguments, "exported", entry, str(directory / f"{entry.name}.yaml"), ())
+    return OK
+
+
+def _tell(arguments: argparse.Namespace, what: str, entry: MapEntry, place: str, notes: tuple[str, ...]) -> None:
+    if entry.spec is None:
+        raise MapError(f"map {entry.name}: {entry.damage}")
+    rows, cols = entry.spec.shape
+    if arguments.json:
+        facts = {"name": entry.name, "version": entry.version, "digest": entry.digest, "rows": rows, "cols": cols}
+        print_json({**facts, "resolution_m": entry.spec.resolution_m, "place": place, "notes": list(notes)})
+        return
+    size = f"{cols} x {rows} cells of {entry.spec.resolution_m * 1000:g} mm"
+    out().print(f"{what} {entry.name} version {entry.version}: {size}; {place}", markup=False)
+
+
+def _store(arguments: argparse.Namespace) -> MapStore:
+    if arguments.maps is not None:
+        return MapStore(arguments.maps)
+    file = arguments.config or config.default_path()
+    try:
+        tree = config.load(file)
+    except ConfigError:
+        if arguments.config is not None or file.exists():
+            raise
+        tree = config.Config()  # nothing was configured here, so a daemon would keep its maps where the default says
+    return MapStore(Path(tree.maps.dir), tree.grid, keep=tree.maps.keep)
+
+
+def _needs_extra() -> tuple[Any, Any]:
+    try:
+        from robotd.interop import map_server, map_server_yaml  # noqa: PLC0415  # only here is the extra needed
+    except ImportError as error:
+        raise RobotdError(
+            f"maps of other programs need Pillow and PyYAML ({error}): install the extra interop,"
+            " pip install 'robotd[interop]', or pip install -e '.[interop]' in a clone"
+        ) from error
+    return map_server, map_server_yaml
+
+
+def _store_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--config", type=Path, metavar="FILE", help="a configuration of the daemon: where maps are")
+    parser.add_argument("--maps", type=Path, metavar="DIR", help="where maps are, whatever the configuration says")
+
+
+def _import_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", type=Path, metavar="FILE", help="the yaml of a map, or a picture alone (pgm, png, bmp)")
+    parser.add_argument("--name", metavar="NAME", help="what to call it (default: the name of the file)")
+    parser.add_argument("--resolution", type=positive, metavar="M", help="of a picture alone: metres per pixel")
+    parser.add_argument(
+        "--origin",
+        nargs=2,
+        type=number,
+        default=(0.0, 0.0),
+        metavar=("X", "Y"),
+        help="of a picture alone: its lower-left corner on the map [m] (default: 0 0)",
+    )
+    _store_arguments(parser)
+
+
+def _export_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", help="the map")
+    output_argument(parser, "directory", _EXPORT, "where to write NAME.yaml and its picture")
+    parser.add_argument("--version", type=whole(0), metavar="N", help="an older version of it (default: the newest)")
+    parser.add_argument(
+        "--mode",
+        choices=_MODES,
+        default="trinary",
+        help="trinary: three greys, which every program reads; scale: all 256 values; raw: 0 to 100 (default: trinary)",
+    )
+    _store_arguments(parser)
+
+
+VERBS = (
+    Verb(
+        "map import",
+        "take a map of another program into the store: a yaml of map_server and its picture, or a picture alone",
+        "robotctl map import willow.yaml --name willow",
+        _import,
+        _import_arguments,
+    ),
+    Verb(
+        "map export",
+        "write a stored map for other programs: a yaml of map_server and its picture",
+        "robotctl map export kitchen exported --mode scale",
+        _export,
+        _export_arguments,
+    ),
+)

@@ -1,0 +1,1 @@
+"""Other programs' formats: what they mean by a map, in and out."""
