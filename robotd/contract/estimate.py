@@ -3,6 +3,7 @@
 import enum
 from dataclasses import dataclass
 
+from robotd.core.angles import wrap_rad
 from robotd.core.pose import Pose2
 
 
@@ -31,6 +32,14 @@ class Extent:
     """In ``[-pi, pi)``."""
     heading_max_rad: float
     """Counter-clockwise from the least, so never less, and up to a whole turn more."""
+
+    def holds(self, pose: Pose2, *, near_m: float = 0.0, near_rad: float = 0.0) -> bool:
+        """Return whether a pose lies within, if its sides are moved outward by ``near_m`` and ``near_rad``."""
+        beside_m = max(self.x_min_m - pose.x_m, pose.x_m - self.x_max_m)
+        above_m = max(self.y_min_m - pose.y_m, pose.y_m - self.y_max_m)
+        middle_rad = (self.heading_min_rad + self.heading_max_rad) / 2
+        turned_rad = abs(wrap_rad(pose.heading_rad - middle_rad)) - (self.heading_max_rad - middle_rad)
+        return max(beside_m, above_m) <= near_m and turned_rad <= near_rad
 
 
 @dataclass(frozen=True, slots=True)

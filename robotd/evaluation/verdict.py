@@ -3,7 +3,7 @@
 import enum
 import math
 
-from robotd.contract.estimate import PoseEstimate, PoseState, Region
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.angles import wrap_rad
 from robotd.core.pose import Pose2
 
@@ -33,20 +33,10 @@ def verdict_on(estimate: PoseEstimate, truth: Pose2) -> CaseVerdict:
 
 def has_truth(estimate: PoseEstimate, truth: Pose2) -> bool:
     """Whether the truth is among the answers."""
-    return any(_holds(region, truth) for region in estimate.regions)
+    return any(region.extent.holds(truth, near_m=RIGHT_M, near_rad=RIGHT_RAD) for region in estimate.regions)
 
 
 def is_near(pose: Pose2, truth: Pose2) -> bool:
     """Whether a pose is right."""
     turned_rad = abs(wrap_rad(pose.heading_rad - truth.heading_rad))
     return pose.distance_m(truth) <= RIGHT_M and turned_rad <= RIGHT_RAD
-
-
-def _holds(region: Region, truth: Pose2) -> bool:
-    """Whether the truth lies in a region, or as near to it as a right answer must."""
-    extent = region.extent
-    beside_m = max(extent.x_min_m - truth.x_m, truth.x_m - extent.x_max_m, 0.0)
-    above_m = max(extent.y_min_m - truth.y_m, truth.y_m - extent.y_max_m, 0.0)
-    middle_rad = (extent.heading_min_rad + extent.heading_max_rad) / 2
-    turned_rad = abs(wrap_rad(middle_rad - truth.heading_rad)) - (extent.heading_max_rad - middle_rad)
-    return math.hypot(beside_m, above_m) <= RIGHT_M and turned_rad <= RIGHT_RAD

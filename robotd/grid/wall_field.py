@@ -48,9 +48,9 @@ class WallField:
         if changed.is_empty:
             return self
         codes, skips = self.codes.copy(), self.skips.copy()
-        here, there, part = influence(changed, REACH_CELLS, self.spec.shape)
+        here, there, part = (window.slices for window in influence(changed, REACH_CELLS, self.spec.shape))
         codes[here] = kernels.wall_codes(np.ascontiguousarray(walls[part]))[there]
-        here, there, part = influence(changed, SKIP_MAX, self.spec.shape)
+        here, there, part = (window.slices for window in influence(changed, SKIP_MAX, self.spec.shape))
         ends = np.ascontiguousarray(walls[part])
         skips[1:-1, 1:-1][here] = kernels.skip_codes(ends, blocking[part] & ~ends)[1:-1, 1:-1][there]
         return replace(self, codes=codes, skips=skips)

@@ -34,6 +34,17 @@ class CellWindow:
         first_row, last_row = int(cells[0]) // shape[1], int(cells[-1]) // shape[1]
         return cls(first_row, last_row + 1, int(cols.min()), int(cols.max()) + 1)
 
+    def on(self, shape: tuple[int, ...]) -> "CellWindow":
+        """Return the part of a rectangle that lies on a grid ``(rows, cols)``, empty if there is none.
+
+        >>> CellWindow(-2, 4, 5, 90).on((6, 20))
+        CellWindow(first_row=0, end_row=4, first_col=5, end_col=20)
+        """
+        first_row, end_row = max(0, self.first_row), min(shape[0], self.end_row)
+        first_col, end_col = max(0, self.first_col), min(shape[1], self.end_col)
+        inside = CellWindow(first_row, end_row, first_col, end_col)
+        return CellWindow(0, 0, 0, 0) if inside.is_empty else inside
+
     def grown(self, by_cells: int, shape: tuple[int, ...]) -> "CellWindow":
         """Return this window with so many cells more on every side, as far as the grid goes; empty stays empty.
 
@@ -75,15 +86,18 @@ class CellWindow:
         return self.end_row - self.first_row, self.end_col - self.first_col
 
     @property
+    def size(self) -> int:
+        """How many cells it has, if it is not empty."""
+        rows, cols = self.shape
+        return rows * cols
+
+    @property
     def slices(self) -> tuple[slice, slice]:
         """Return what an array of cells is indexed with."""
         return slice(self.first_row, self.end_row), slice(self.first_col, self.end_col)
 
 
-Part = tuple[slice, slice]
-
-
-def influence(changed: CellWindow, reach: int, shape: tuple[int, int]) -> tuple[Part, Part, Part]:
+def influence(changed: CellWindow, reach: int, shape: tuple[int, int]) -> tuple[CellWindow, CellWindow, CellWindow]:
     """Return what must be made anew where each cell depends on those within reach of it, and of what.
 
     Args:
@@ -98,4 +112,4 @@ def influence(changed: CellWindow, reach: int, shape: tuple[int, int]) -> tuple[
     part = influenced.grown(reach, shape)
     row, col = influenced.first_row - part.first_row, influenced.first_col - part.first_col
     rows, cols = influenced.shape
-    return influenced.slices, (slice(row, row + rows), slice(col, col + cols)), part.slices
+    return influenced, CellWindow(row, row + rows, col, col + cols), part

@@ -11,10 +11,10 @@ from robotd.contract.estimate import Covariance, Extent, Region
 from robotd.core.angles import wrap_rad
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
+from robotd.grid.pose_set import PoseSet
 from robotd.localization.count.explained import explained_at
 from robotd.localization.fit.refinement import PoseBox, RefinedPoses, RefinementSettings, refine
-from robotd.localization.places.pieces import Piece
-from robotd.localization.places.shapes import best_pose, cells_of, centre_of, circle_of, cover_of, extent_of
+from robotd.localization.places.shapes import best_pose, centre_of, circle_of, cover_of, extent_of
 from robotd.localization.ready_map import ReadyMap
 
 _NEAR_M, _NEAR_RAD = 0.15, 0.03
@@ -44,16 +44,16 @@ class Situation:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Answer:
+class JudgedRegion:
     """One region, and what the second look says of it."""
 
-    piece: Piece
+    piece: PoseSet
     belief: float = 0.0
     begin: Pose2 | None = None
     """The best place in or near to it, if the second look took it into consideration."""
 
 
-def described(answers: Sequence[Answer], situation: Situation) -> tuple[Region, ...]:
+def described(answers: Sequence[JudgedRegion], situation: Situation) -> tuple[Region, ...]:
     """Return regions as they are told, in the same order."""
     if not answers:
         return ()
@@ -87,9 +87,9 @@ class _Fit:
         return cls(refined.pose(number), (x, y, heading), float(refined.residual_m[number]))
 
 
-def _described(answer: Answer, extent: Extent, fit: _Fit, situation: Situation) -> Region:
+def _described(answer: JudgedRegion, extent: Extent, fit: _Fit, situation: Situation) -> Region:
     piece, spec, headings_rad = answer.piece, situation.spec, situation.headings_rad
-    cells = cells_of(piece.poses, spec.cols)
+    cells = piece.cells()
     heading, row, col = best_pose(piece)
     prepared = situation.the_map.prepared
     explained = explained_at(prepared, situation.readings, (row, col), headings_rad[heading])
@@ -103,21 +103,20 @@ def _described(answer: Answer, extent: Extent, fit: _Fit, situation: Situation) 
         circle=circle_of(cells, spec),
         cover=cover_of(cells, _RUNS_MAX),
         cells=len(cells),
-        poses=len(piece.poses),
-        best_rank=int(piece.ranks.max()),
+        poses=len(piece),
+        best_rank=piece.best_rank,
         explained=tuple(explained.tolist()),
     )
 
 
-def _box(answer: Answer, extent: Extent, situation: Situation) -> PoseBox:
+def _box(answer: JudgedRegion, extent: Extent, situation: Situation) -> PoseBox:
     """Return the box round a region; where a place in it is known to be the best, only what is near to that."""
     begin = answer.begin or _best_of(answer.piece, situation)
     x_m = min(max(begin.x_m, extent.x_min_m), extent.x_max_m)
     y_m = min(max(begin.y_m, extent.y_min_m), extent.y_max_m)
     heading_rad = _heading_in(extent, begin.heading_rad)
     half_m, half_rad = (math.inf, math.inf) if answer.begin is None else (_NEAR_M, _NEAR_RAD)
-    return PoseBox(
-        Pose2(x_m, y_m, heading_rad),
+    bounds = Extent(
         max(extent.x_min_m, x_m - half_m),
         min(extent.x_max_m, x_m + half_m),
         max(extent.y_min_m, y_m - half_m),
@@ -125,6 +124,7 @@ def _box(answer: Answer, extent: Extent, situation: Situation) -> PoseBox:
         max(extent.heading_min_rad, heading_rad - half_rad),
         min(extent.heading_max_rad, heading_rad + half_rad),
     )
+    return PoseBox(Pose2(x_m, y_m, heading_rad), bounds)
 
 
 def _heading_in(extent: Extent, heading_rad: float) -> float:
@@ -134,12 +134,12 @@ def _heading_in(extent: Extent, heading_rad: float) -> float:
     return min(max(near_rad, extent.heading_min_rad), extent.heading_max_rad)
 
 
-def _best_of(piece: Piece, situation: Situation) -> Pose2:
+def _best_of(piece: PoseSet, situation: Situation) -> Pose2:
     heading, row, col = best_pose(piece)
     return Pose2(*situation.spec.centre_of(row, col), situation.headings_rad[heading])
 
 
-def _box_of_cell(piece: Piece, box: PoseBox, situation: Situation) -> PoseBox:
+def _box_of_cell(piece: PoseSet, box: PoseBox, situation: Situation) -> PoseBox:
     """Return the cell of a region that is nearest to where a box begins."""
     spec = situation.spec
     half_m = spec.resolution_m / 2
@@ -147,13 +147,11 @@ def _box_of_cell(piece: Piece, box: PoseBox, situation: Situation) -> PoseBox:
     off = piece.poses[:, 1:] - place
     row, col = piece.poses[int(np.hypot(off[:, 0], off[:, 1]).argmin()), 1:].tolist()
     x_m, y_m = spec.centre_of(row, col)
-    start = Pose2(x_m, y_m, box.start.heading_rad)
-    return PoseBox(
-        start, x_m - half_m, x_m + half_m, y_m - half_m, y_m + half_m, box.heading_min_rad, box.heading_max_rad
-    )
+    headings = box.bounds.heading_min_rad, box.bounds.heading_max_rad
+    cell = Extent(x_m - half_m, x_m + half_m, y_m - half_m, y_m + half_m, *headings)
+    return PoseBox(Pose2(x_m, y_m, box.start.heading_rad), cell)
 
 
-def _holds(piece: Piece, pose: Pose2, situation: Situation) -> bool:
+def _holds(piece: PoseSet, pose: Pose2, situation: Situation) -> bool:
     """Whether the cell of a pose is one of the region's."""
-    row, col = situation.spec.cell_at(pose.x_m, pose.y_m)
-    return bool(((piece.poses[:, 1] == row) & (piece.poses[:, 2] == col)).any())
+    return piece.holds_cell(*situation.spec.cell_at(pose.x_m, pose.y_m))

@@ -15,14 +15,15 @@ from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate, PoseState, Region
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading
+from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import numbers_of
 from robotd.localization.conservative.unexcluded import Unexcluded
-from robotd.localization.describe import Answer, Situation, described
+from robotd.localization.describe import JudgedRegion, Situation, described
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.judge.second_look import SecondLook, second_look
 from robotd.localization.places.pieces import pieces_of
 from robotd.localization.ready_map import ReadyMap
-from robotd.localization.stop import NOTHING, Count, Found
+from robotd.localization.stop import Count
 
 _ALIKE_M, _ALIKE_RAD = 0.1, 0.03
 """So much aside and so much turned are as far from a place."""
@@ -79,7 +80,7 @@ class Localizer:
             final: whether the sweep is whole.
         """
         enough, numbers = len(self._count.readings) >= self._settings.readings_min, numbers_of(self._count.readings)
-        found = self._count.answers() if enough else NOTHING
+        found = self._count.answers() if enough else PoseSet.nothing()
         poses = self._in_metres(found.poses)
         look = second_look(self._map.likelihood, numbers, poses, found.ranks, self._judgement.second_look)
         state = self._state(found, look)
@@ -100,7 +101,7 @@ class Localizer:
             bearings_rad=tuple(reading.bearing_rad for reading in self._count.readings),
         )
 
-    def _state(self, found: Found, look: SecondLook) -> PoseState:
+    def _state(self, found: PoseSet, look: SecondLook) -> PoseState:
         """Return what may be claimed; in the conservative mode belief excludes nothing, only proof does."""
         if not found.is_all:
             return PoseState.AMBIGUOUS
@@ -108,14 +109,14 @@ class Localizer:
             return look.state
         if len(found.poses) == 0:
             return PoseState.LOST
-        is_one = self._is_one_place(found.poses)
+        is_one = self._is_one_place(found)
         return PoseState.LOCALIZED if is_one else PoseState.AMBIGUOUS
 
-    def _is_one_place(self, poses: NDArray[np.intp]) -> bool:
+    def _is_one_place(self, found: PoseSet) -> bool:
         """Whether poses are all connected, and no corridor or room full of them."""
-        pieces = pieces_of(poses, np.zeros(len(poses), np.uint16), self._count.headings_rad, 1)
+        pieces = pieces_of(found, self._count.headings_rad, 1)
         cells = _UNIQUE_M / self._map.ternary.spec.resolution_m
-        return pieces.left_out == 0 and float(np.hypot(*np.ptp(poses[:, 1:], axis=0))) <= cells
+        return pieces.left_out == 0 and float(np.hypot(*np.ptp(found.poses[:, 1:], axis=0))) <= cells
 
     def _in_metres(self, poses: NDArray[np.intp]) -> NDArray[np.float64]:
         """Return poses ``(heading, row, col)`` as x, y [m] and heading [rad]."""
@@ -126,7 +127,7 @@ class Localizer:
 
     def _regions(
         self,
-        found: Found,
+        found: PoseSet,
         poses: NDArray[np.float64],
         look: SecondLook,
         state: PoseState,
@@ -137,8 +138,8 @@ class Localizer:
             return (), 0
         settings, headings_rad = self._settings, self._count.headings_rad
         nearest = np.array([_nearest(poses, place) for place in look.poses], np.intp)
-        pieces = pieces_of(found.poses, found.ranks, headings_rad, settings.regions_max, nearest)
-        answers = [Answer(piece) for piece in pieces.best]
+        pieces = pieces_of(found, headings_rad, settings.regions_max, nearest)
+        answers = [JudgedRegion(piece) for piece in pieces.best]
         for place, number, belief in zip(look.poses, nearest, look.beliefs, strict=True):
             _give(answers, found.poses[number], Pose2(*place.tolist()), float(belief))
         if state is PoseState.LOCALIZED:
@@ -154,9 +155,9 @@ def _nearest(poses: NDArray[np.float64], place: NDArray[np.float64]) -> int:
     return int(np.hypot(np.hypot(off[:, 0], off[:, 1]) / _ALIKE_M, turned_rad / _ALIKE_RAD).argmin())
 
 
-def _give(answers: list[Answer], pose: NDArray[np.intp], place: Pose2, belief: float) -> None:
+def _give(answers: list[JudgedRegion], pose: NDArray[np.intp], place: Pose2, belief: float) -> None:
     """Give the region that holds a pose the belief in the place it is nearest to; the first to come is the best."""
     for number, answer in enumerate(answers):
-        if (answer.piece.poses == pose).all(axis=1).any():
-            answers[number] = Answer(answer.piece, answer.belief + belief, answer.begin or place)
+        if answer.piece.holds(pose):
+            answers[number] = JudgedRegion(answer.piece, answer.belief + belief, answer.begin or place)
             return

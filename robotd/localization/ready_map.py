@@ -60,7 +60,7 @@ class ReadyMap:
         prepared = self._prepared(ternary, self.settings.unknown, changed)
         walls = self.walls.updated(ternary.occupied, prepared.obstacles.blocking, changed)
         radius_cells = int(self.prepared.error_radius_cells)
-        searched = self.searched.updated(prepared.obstacles, changed.grown(radius_cells, ternary.spec.shape).slices)
+        searched = self.searched.updated(prepared.obstacles, changed.grown(radius_cells, ternary.spec.shape))
         likelihood = self.likelihood.updated(grid.cells, changed)
         sure = _sure(ternary, self.settings)
         return ReadyMap(ternary, self.settings, prepared, searched, walls, likelihood, sure)

@@ -7,38 +7,23 @@ gigabytes: then the readings are kept, and asking searches (:mod:`.search`).
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robotd.contract.area import Area
 from robotd.core.reading import RangeReading
+from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import numbers_of
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.ready_map import ReadyMap
-from robotd.localization.search.bounded_search import Disk, best_poses
+from robotd.localization.search.bounded_search import best_poses
+from robotd.localization.search.cell_disk import CellDisk
 
 FEW_HEADINGS = 32
 """So many are counted as the readings come: 256 x 256 cells then take 10 MB."""
 
 POSES_MAX = 1 << 15
 """More answers than this are none; a place that is one has some hundred."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Found:
-    """The poses of high rank."""
-
-    best_rank: int
-    """The greatest there is (the paper's kappa); 0 if it is less than what was asked for: that is sooner known."""
-    poses: NDArray[np.intp]
-    """``intp[n, 3]``, ``(heading, row, col)``, ascending; none if the best explains too few readings, or if there are
-    more of greatest rank than can be told."""
-    ranks: NDArray[np.uint16]
-    """``uint16[n]``."""
-    is_all: bool = True
-    """Whether these are all that were asked for; there may be too many to tell."""
 
 
 class Count:
@@ -73,29 +58,21 @@ class Count:
             numbers_of(readings)
         self.readings.extend(readings)
 
-    def answers(self) -> Found:
+    def answers(self) -> PoseSet:
         """Return the poses that explain most readings, and all that come as near to them as the settings say."""
         settings, readings = self._map.settings, len(self.readings)
         return self.best(math.ceil(settings.rival_share * readings), math.ceil(settings.localized_share * readings))
 
-    def best(self, slack: int, least_rank: int) -> Found:
+    def best(self, slack: int, least_rank: int) -> PoseSet:
         """Return the poses that explain ``slack`` readings fewer than the best, if that explains ``least_rank``."""
-        return (
-            self._searched(slack, least_rank) if self._ranks is None else self._counted(self._ranks, slack, least_rank)
-        )
+        if self._ranks is not None:
+            return self._ranks.best_poses(slack, least_rank)
+        return self._searched(slack, least_rank)
 
-    def _counted(self, ranks: RankGrid, slack: int, least_rank: int) -> Found:
-        best_rank = ranks.best_rank
-        if best_rank < max(1, least_rank):
-            return NOTHING
-        poses = ranks.cells_of_rank(max(1, best_rank - slack))
-        return Found(best_rank, poses, ranks.rank_at(poses))
-
-    def _searched(self, slack: int, least_rank: int) -> Found:
-        prior = None if self._within is None else Disk.of(self._within, self._map.ternary.spec)
+    def _searched(self, slack: int, least_rank: int) -> PoseSet:
+        prior = None if self._within is None else CellDisk.of(self._within, self._map.ternary.spec)
         numbers, headings_rad = numbers_of(self.readings), np.array(self.headings_rad)
-
-        found = best_poses(
+        return best_poses(
             self._map.searched,
             numbers,
             headings_rad,
@@ -105,11 +82,3 @@ class Count:
             limit=POSES_MAX,
             threads=self._threads,
         )
-        if found.best_rank == 0:
-            return NOTHING
-        is_all = found.least_rank <= max(1, found.best_rank - slack)
-        return Found(found.best_rank, found.poses.astype(np.intp), found.ranks, is_all)
-
-
-NOTHING = Found(0, np.zeros((0, 3), np.intp), np.zeros(0, np.uint16))
-"""No pose explains as many readings as were asked for."""

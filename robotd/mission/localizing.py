@@ -7,7 +7,7 @@ on how fast this machine happens to be.
 import asyncio
 import math
 
-from robotd.contract.estimate import PoseEstimate, PoseState, Region
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import LocalizeMission, PriorHeading
 from robotd.core.angles import wrap_rad
@@ -59,16 +59,9 @@ def _learn(place: MapInUse, in_odom: Pose2, estimate: PoseEstimate, settings: Mi
     elif place.map_from_odom is not None and (estimate.regions or estimate.state is PoseState.LOST):
         believed = place.map_from_odom @ in_odom
         near_m, near_rad = settings.judgement.second_look.same_within_m, settings.localization.heading_error_rad
-        place.is_doubted |= not any(_reaches(region, believed, near_m, near_rad) for region in estimate.regions)
-
-
-def _reaches(region: Region, pose: Pose2, near_m: float, near_rad: float) -> bool:
-    extent = region.extent
-    beside_m = max(extent.x_min_m - pose.x_m, pose.x_m - extent.x_max_m)
-    above_m = max(extent.y_min_m - pose.y_m, pose.y_m - extent.y_max_m)
-    middle_rad = (extent.heading_min_rad + extent.heading_max_rad) / 2
-    turned_rad = abs(wrap_rad(pose.heading_rad - middle_rad)) - (extent.heading_max_rad - middle_rad)
-    return max(beside_m, above_m) <= near_m and turned_rad <= near_rad
+        place.is_doubted |= not any(
+            region.extent.holds(believed, near_m=near_m, near_rad=near_rad) for region in estimate.regions
+        )
 
 
 def _headings(context: MissionContext, place: MapInUse, mission: LocalizeMission, here: Odometry) -> tuple[float, ...]:

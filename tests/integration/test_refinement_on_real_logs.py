@@ -17,7 +17,8 @@ from robotd.grid.wall_field import WallField
 from robotd.localization.fit.refinement import PoseBox, RefinementSettings, refine
 from robotd.localization.fit.tracking import Tracked, TrackingSettings, track
 from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
-from robotd.localization.search.bounded_search import Disk, SearchMap, best_poses
+from robotd.localization.search.bounded_search import SearchMap, best_poses
+from robotd.localization.search.cell_disk import CellDisk
 from robotd.sim.log_file import read_log
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_data]
@@ -52,7 +53,7 @@ class Building:
         """Return the middle of the poses that explain most readings, headings a third of a degree apart."""
         headings_rad = near.heading_rad + np.radians(np.arange(-9.0, 10.0) / 3.0)
         row, col = self.spec.cell_at(near.x_m, near.y_m)
-        found = best_poses(self.search, readings, headings_rad, slack=0, prior=Disk(row, col, 8.0)).poses
+        found = best_poses(self.search, readings, headings_rad, slack=0, prior=CellDisk(row, col, 8.0)).poses
         x_m, y_m = self.spec.centre_of(float(found[:, 1].mean()), float(found[:, 2].mean()))
         return Pose2(x_m, y_m, float(headings_rad[found[:, 0]].mean()))
 

@@ -11,9 +11,10 @@ from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import GridSettings, OccupancyGrid, OverRange, UpdatePolicy
+from robotd.grid.pose_set import PoseSet
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.obstacles.prepared_map import PreparedMap
-from robotd.localization.places.pieces import Piece, pieces_of
+from robotd.localization.places.pieces import pieces_of
 from tests.paper.robot import ROBOT_RADIUS_M
 
 ERROR_M = 0.075
@@ -84,8 +85,8 @@ def outcome_of(manner: Manner, grid: OccupancyGrid, readings: Sequence[RangeRead
     the_map = PreparedMap.of_binary(BinaryMap.from_grid(grid), ERROR_M / grid.spec.resolution_m)
     ranks = RankGrid(the_map, (truth.heading_rad,))
     ranks.add(*counted)
-    best = ranks.best_cells
-    pieces = pieces_of(best, ranks.rank_at(best), ranks.headings_rad, most=len(best)).best
+    loc = ranks.best_poses()
+    best, pieces = loc.poses, pieces_of(loc, ranks.headings_rad, most=len(loc)).best
     centres_m = tuple(_centre_m(piece, grid) for piece in pieces)
     cells_m = np.array([grid.spec.centre_of(row, col) for _, row, col in best.tolist()])
     return Outcome(
@@ -101,6 +102,6 @@ def outcome_of(manner: Manner, grid: OccupancyGrid, readings: Sequence[RangeRead
     )
 
 
-def _centre_m(piece: Piece, grid: OccupancyGrid) -> tuple[float, float]:
+def _centre_m(piece: PoseSet, grid: OccupancyGrid) -> tuple[float, float]:
     _, row, col = piece.poses.mean(axis=0).tolist()
     return grid.spec.centre_of(row, col)

@@ -6,18 +6,18 @@ be (:mod:`.conservative`): all readings but those that may break their bounds.
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from robotd.contract.area import Area
 from robotd.core.reading import RangeReading
+from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import numbers_of
 from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
 from robotd.localization.count.count_all import MEMORY_BYTES, heading_batches
-from robotd.localization.search.bounded_search import Disk
-from robotd.localization.stop import FEW_HEADINGS, NOTHING, POSES_MAX, Found
-
-_HALF_DIAGONAL = math.sqrt(0.5)
+from robotd.localization.search.cell_disk import CellDisk
+from robotd.localization.stop import FEW_HEADINGS, POSES_MAX
 
 
 class Unexcluded:
@@ -61,7 +61,7 @@ class Unexcluded:
             numbers_of(readings)
         self.readings.extend(readings)
 
-    def answers(self) -> Found:
+    def answers(self) -> PoseSet:
         """Return all poses that are not excluded.
 
         O(headings x readings x cells), and a multiple of what :class:`.RankGrid` takes.
@@ -71,13 +71,13 @@ class Unexcluded:
         for first, ranks in self._grids():
             best, count = max(best, ranks.best_rank), count + ranks.count_of_rank(least_rank)
             if count > POSES_MAX:
-                return Found(best, NOTHING.poses, NOTHING.ranks, is_all=False)
+                return replace(PoseSet.nothing(best + 1), best_rank=best, is_all=False)
             poses = ranks.cells_of_rank(least_rank)
             found.append((poses + np.array([first, 0, 0]), ranks.rank_at(poses)))
         if count == 0:
-            return NOTHING
+            return PoseSet.nothing()
         poses, counts = (np.concatenate(part) for part in zip(*found, strict=True))
-        return self._inside(Found(best, poses, counts))
+        return self._inside(PoseSet(poses, counts, best, least_rank))
 
     def _grids(self) -> Iterator[tuple[int, ConservativeRankGrid]]:
         """Yield grids that count all readings, each of some headings, and the number of its first heading."""
@@ -93,10 +93,9 @@ class Unexcluded:
     def _grid(self, headings_rad: Sequence[float]) -> ConservativeRankGrid:
         return ConservativeRankGrid(self._map, headings_rad, threads=self._threads)
 
-    def _inside(self, found: Found) -> Found:
+    def _inside(self, found: PoseSet) -> PoseSet:
         """Leave out cells of which no point is where the robot is known to be."""
         if self._within is None:
             return found
-        disk = Disk.of(self._within, self._map.spec)
-        inside = np.hypot(found.poses[:, 1] - disk.row, found.poses[:, 2] - disk.col) <= disk.radius + _HALF_DIAGONAL
-        return Found(found.best_rank, found.poses[inside], found.ranks[inside]) if inside.any() else NOTHING
+        inside = CellDisk.of(self._within, self._map.spec).touches(found.poses[:, 1:])
+        return replace(found.part(inside), best_rank=found.best_rank) if inside.any() else PoseSet.nothing()

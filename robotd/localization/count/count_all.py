@@ -7,29 +7,16 @@ gives the same answer sooner, by not counting what cannot be best.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading
+from robotd.grid.pose_set import PoseSet
 from robotd.localization.count.rank_grid import RankGrid, bits_of
 from robotd.localization.obstacles.prepared_map import PreparedMap
 
 MEMORY_BYTES = 1 << 28
 """256 MiB."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class CountedPoses:
-    """The poses of greatest rank, and those that come near them."""
-
-    best_rank: int
-    """The paper's kappa."""
-    poses: NDArray[np.intp]
-    """``intp[n, 3]``, ``(heading, row, col)``, ascending: all of at least the best rank less the slack, if not 0."""
-    ranks: NDArray[np.uint16]
-    """``uint16[n]``: how many readings each explains."""
 
 
 def count_all(
@@ -40,7 +27,7 @@ def count_all(
     slack: int = 0,
     threads: int = 1,
     memory_bytes: int = MEMORY_BYTES,
-) -> CountedPoses:
+) -> PoseSet:
     """Count all readings at every free cell and heading; the same as a rank grid would.
 
     Args:
@@ -64,8 +51,9 @@ def count_all(
         found.append((poses + np.array([first, 0, 0]), ranks.rank_at(poses)))
     poses = np.concatenate([np.empty((0, 3), np.intp), *(part for part, _ in found)])
     counts = np.concatenate([np.empty(0, np.uint16), *(part for _, part in found)])
-    near = counts >= max(1, best - slack)  # what came near the best of earlier headings may not come near the best
-    return CountedPoses(best, poses[near], counts[near])
+    least = max(1, best - slack)
+    near = counts >= least  # what came near the best of earlier headings may not come near the best
+    return PoseSet(poses[near], counts[near], best, least)
 
 
 def heading_batches(

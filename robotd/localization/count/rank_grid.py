@@ -15,6 +15,7 @@ from robotd.core.reading import RangeReading
 from robotd.grid import kernels
 from robotd.grid.kernels.draw.draw_kernel import BeamSettings, turned
 from robotd.grid.kernels.shared.packed_map import PAD_WORDS, TILE_ROWS, WORD_CELLS, unpack
+from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import numbers_of
 from robotd.localization.obstacles.prepared_map import PreparedMap
 
@@ -171,6 +172,20 @@ class RankGrid:
         bits = words >> (col % WORD_CELLS).astype(np.uint64)[:, None] & np.uint64(1)
         ranks: NDArray[np.uint16] = (bits << np.arange(bits.shape[1], dtype=np.uint64)).sum(axis=1).astype(np.uint16)
         return ranks
+
+    def best_poses(self, slack: int = 0, least_rank: int = 1) -> PoseSet:
+        """Return the poses of greatest rank (the paper's loc), and those that come near them.
+
+        Args:
+            slack: poses that explain so many readings fewer than the best are wanted, too.
+            least_rank: if no pose explains so many readings, none is returned.
+        """
+        best_rank = self.best_rank
+        if best_rank < max(1, least_rank):
+            return PoseSet.nothing()
+        least = max(1, best_rank - slack)
+        poses = self.cells_of_rank(least)
+        return PoseSet(poses, self.rank_at(poses), best_rank, least)
 
     @property
     def best_cells(self) -> NDArray[np.intp]:

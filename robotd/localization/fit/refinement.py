@@ -21,6 +21,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.contract.estimate import Extent
 from robotd.core.angles import wrap_rad
 from robotd.core.bounds import Within, refuse_outside
 from robotd.core.grid_spec import GridSpec
@@ -63,47 +64,20 @@ class PoseBox:
     """Where a pose may lie, and where to begin; headings are not wrapped, so that bounds may go round."""
 
     start: Pose2
-    x_min_m: float
-    x_max_m: float
-    y_min_m: float
-    y_max_m: float
-    heading_min_rad: float
-    heading_max_rad: float
+    bounds: Extent
 
     def __post_init__(self) -> None:
         """Refuse a box that holds nothing."""
-        if not (
-            self.x_min_m <= self.x_max_m
-            and self.y_min_m <= self.y_max_m
-            and self.heading_min_rad <= self.heading_max_rad
-        ):
-            raise ValueError(f"bounds in the wrong order: {self}")
-
-    def begun_at(self, start: Pose2) -> "PoseBox":
-        """Return the same box with another start."""
-        return PoseBox(
-            start,
-            self.x_min_m,
-            self.x_max_m,
-            self.y_min_m,
-            self.y_max_m,
-            self.heading_min_rad,
-            self.heading_max_rad,
-        )
+        it = self.bounds
+        if not (it.x_min_m <= it.x_max_m and it.y_min_m <= it.y_max_m and it.heading_min_rad <= it.heading_max_rad):
+            raise ValueError(f"bounds in the wrong order: {it}")
 
     @classmethod
     def around(cls, start: Pose2, half_m: float, half_rad: float) -> "PoseBox":
         """Return the box that reaches so far to all sides of a pose."""
         x_m, y_m, heading_rad = start.x_m, start.y_m, start.heading_rad
-        return cls(
-            start,
-            x_m - half_m,
-            x_m + half_m,
-            y_m - half_m,
-            y_m + half_m,
-            heading_rad - half_rad,
-            heading_rad + half_rad,
-        )
+        reach = (x_m - half_m, x_m + half_m, y_m - half_m, y_m + half_m, heading_rad - half_rad, heading_rad + half_rad)
+        return cls(start, Extent(*reach))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -224,11 +198,11 @@ def _in_cells(boxes: Sequence[PoseBox], spec: GridSpec) -> NDArray[np.float64]:
     x_m, y_m, size_m = spec.origin_x_m, spec.origin_y_m, spec.resolution_m
     rows = [
         (
-            *((box.start.x_m - x_m) / size_m, (box.start.y_m - y_m) / size_m, box.start.heading_rad),
-            *((box.x_min_m - x_m) / size_m, (box.y_min_m - y_m) / size_m, box.heading_min_rad),
-            *((box.x_max_m - x_m) / size_m, (box.y_max_m - y_m) / size_m, box.heading_max_rad),
+            *((start.x_m - x_m) / size_m, (start.y_m - y_m) / size_m, start.heading_rad),
+            *((bounds.x_min_m - x_m) / size_m, (bounds.y_min_m - y_m) / size_m, bounds.heading_min_rad),
+            *((bounds.x_max_m - x_m) / size_m, (bounds.y_max_m - y_m) / size_m, bounds.heading_max_rad),
         )
-        for box in boxes
+        for start, bounds in ((box.start, box.bounds) for box in boxes)
     ]
     return np.array(rows, np.float64).reshape(-1, 9)
 

@@ -13,7 +13,7 @@ poses in the same box takes 0.3 ms, and its best cell has to be refined all the 
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from operator import attrgetter
 
@@ -194,7 +194,7 @@ class _Search:
 
     def best_of(self, starts: Sequence[Pose2]) -> _Candidate:
         """Refine poses; return the one that then explains most readings, the first of equal ones."""
-        boxes = [self.prior.begun_at(start) for start in starts]
+        boxes = [replace(self.prior, start=start) for start in starts]
         poses = refine_heads(self.field, self.heads, boxes, self.refinement)
         explained = self._explained(poses)
         counts = explained.sum(axis=1)
@@ -202,12 +202,12 @@ class _Search:
         return _Candidate(poses, number, int(counts[number]) / len(self.readings), explained[number])
 
     def _lattice(self) -> Lattice:
-        spec, prior, start = self.field.spec, self.prior, self.prior.start
+        spec, bounds, start = self.field.spec, self.prior.bounds, self.prior.start
         step_m, step_rad = self.settings.step_cells * spec.resolution_m, self.settings.step_rad
         sides = (
-            *_steps(start.x_m, prior.x_min_m, prior.x_max_m, step_m),
-            *_steps(start.y_m, prior.y_min_m, prior.y_max_m, step_m),
-            *_steps(start.heading_rad, prior.heading_min_rad, prior.heading_max_rad, step_rad),
+            *_steps(start.x_m, bounds.x_min_m, bounds.x_max_m, step_m),
+            *_steps(start.y_m, bounds.y_min_m, bounds.y_max_m, step_m),
+            *_steps(start.heading_rad, bounds.heading_min_rad, bounds.heading_max_rad, step_rad),
         )
         x, y = (start.x_m - spec.origin_x_m) / spec.resolution_m, (start.y_m - spec.origin_y_m) / spec.resolution_m
         at = np.array((x, y, start.heading_rad))

@@ -91,7 +91,7 @@ class Axis:
     """Of all walls, 0 to 1."""
 
 
-class Verdict(enum.StrEnum):
+class AxisVerdict(enum.StrEnum):
     """Whether separated orientation may be used."""
 
     USABLE = "usable"
@@ -104,7 +104,7 @@ class Verdict(enum.StrEnum):
 class SeparatedOrientation:
     """The headings to try, or why there are none."""
 
-    verdict: Verdict
+    verdict: AxisVerdict
     headings_rad: tuple[float, ...]
     """Four, a quarter turn apart, in ``[-pi, pi)`` ascending; none unless usable."""
     support: float
@@ -122,16 +122,16 @@ def separated_orientation(
         settings: what counts as dominant.
     """
     if map_axis is None or map_axis.share < settings.share_min:
-        return SeparatedOrientation(Verdict.MAP_CLUTTERED, (), map_axis.share if map_axis else 0.0)
+        return SeparatedOrientation(AxisVerdict.MAP_CLUTTERED, (), map_axis.share if map_axis else 0.0)
     if wall_in_sight_m(readings) < settings.walls_min_m:
-        return SeparatedOrientation(Verdict.LITTLE_IN_SIGHT, (), 0.0)
+        return SeparatedOrientation(AxisVerdict.LITTLE_IN_SIGHT, (), 0.0)
     axis = readings_axis(readings, settings)
     support = min(map_axis.share, axis.share) if axis else 0.0
     if axis is None or axis.share < settings.share_min:
-        return SeparatedOrientation(Verdict.READINGS_CLUTTERED, (), support)
+        return SeparatedOrientation(AxisVerdict.READINGS_CLUTTERED, (), support)
     turn = map_axis.angle_rad - axis.angle_rad
     headings = sorted(wrap_rad(turn + quarter * QUARTER_TURN_RAD) for quarter in range(4))
-    return SeparatedOrientation(Verdict.USABLE, tuple(headings), support)
+    return SeparatedOrientation(AxisVerdict.USABLE, tuple(headings), support)
 
 
 def headings_from_walls(

@@ -68,7 +68,7 @@ class Likelihood:
         if changed.is_empty:
             return self
         own, skips = np.array(cells, np.uint8, order="C"), self.chances.skips.copy()
-        here, there, part = influence(changed, SKIP_MAX, self.spec.shape)
+        here, there, part = (window.slices for window in influence(changed, SKIP_MAX, self.spec.shape))
         skips[here] = skips_of(np.ascontiguousarray(own[part]))[there]
         more = _vacant(own[changed.slices]) - _vacant(self.chances.cells[changed.slices])
         chances = replace(self.chances, cells=own, skips=skips)

@@ -9,46 +9,27 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.grid.pose_set import PoseSet
+
 _NEIGHBOUR_LINES = ((0, 1), (1, -1), (1, 0), (1, 1))
 """Steps ``(heading, row)`` to half of the neighbouring lines; the other half see this one as theirs."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Piece:
-    """The poses of one region."""
-
-    poses: NDArray[np.intp]
-    """``intp[n, 3]``, ``(heading, row, col)``, ascending."""
-    ranks: NDArray[np.uint16]
-    """``uint16[n]``."""
-
-    @property
-    def best(self) -> NDArray[np.intp]:
-        """Its poses of greatest rank."""
-        best: NDArray[np.intp] = self.poses[self.ranks == self.ranks.max()]
-        return best
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pieces:
     """The best regions, and how many more there are."""
 
-    best: tuple[Piece, ...]
+    best: tuple[PoseSet, ...]
     left_out: int
 
 
 def pieces_of(
-    poses: NDArray[np.intp],
-    ranks: NDArray[np.uint16],
-    headings_rad: tuple[float, ...],
-    most: int,
-    first: NDArray[np.intp] | None = None,
+    found: PoseSet, headings_rad: tuple[float, ...], most: int, first: NDArray[np.intp] | None = None
 ) -> Pieces:
     """Part poses into connected regions.
 
     Args:
-        poses: ``intp[n, 3]``, ``(heading, row, col)``, ascending and each once.
-        ranks: their ranks, ``uint16[n]``.
+        found: the poses.
         headings_rad: the headings, ascending; the first is next to the last if they go all round.
         most: how many regions to return.
         first: ``intp[k]``, poses whose regions come before all others, in this order.
@@ -56,20 +37,20 @@ def pieces_of(
     Returns:
         Those, and those of greatest rank, then of most poses, then of the first place.
     """
-    if len(poses) == 0:
+    if len(found) == 0:
         return Pieces((), 0)
-    labels = connected_components(poses, headings=len(headings_rad), wrap=_go_round(headings_rad))
+    labels = connected_components(found.poses, headings=len(headings_rad), wrap=_go_round(headings_rad))
     sizes = np.bincount(labels)
     best_ranks = np.zeros(len(sizes), np.uint16)
-    np.maximum.at(best_ranks, labels, ranks)
-    urgency = np.full(len(sizes), len(poses))
+    np.maximum.at(best_ranks, labels, found.ranks)
+    urgency = np.full(len(sizes), len(found))
     if first is not None:
         np.minimum.at(urgency, labels[first], np.arange(len(first)))
     order = np.lexsort((np.arange(len(sizes)), -sizes, -best_ranks.astype(np.intp), urgency))
     members = np.argsort(labels, kind="stable")
     ends = np.cumsum(sizes)
     chosen = (members[ends[label] - sizes[label] : ends[label]] for label in order[:most])
-    best = tuple(Piece(poses[which], ranks[which]) for which in chosen)
+    best = tuple(found.part(which) for which in chosen)
     return Pieces(best, len(sizes) - len(best))
 
 

@@ -9,11 +9,11 @@ from robotd.contract.estimate import Circle, Cover, Extent
 from robotd.core.angles import wrap_rad
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.localization.places.pieces import Piece
+from robotd.grid.pose_set import PoseSet
 from robotd.localization.places.smallest_circle import smallest_circle
 
 
-def best_pose(piece: Piece) -> tuple[int, int, int]:
+def best_pose(piece: PoseSet) -> tuple[int, int, int]:
     """Return ``(heading, row, col)``: of the poses of greatest rank the one nearest to the mean of their cells."""
     best = piece.best
     off = best[:, 1:] - best[:, 1:].mean(axis=0)
@@ -36,13 +36,7 @@ def cover_of(cells: NDArray[np.intp], runs_max: int) -> Cover:
         block *= 2
 
 
-def cells_of(poses: NDArray[np.intp], cols: int) -> NDArray[np.intp]:
-    """Return the cells of poses, ``intp[n, 2]``, ascending, each once."""
-    flat = np.unique(poses[:, 1] * cols + poses[:, 2])
-    return np.stack((flat // cols, flat % cols), axis=1)
-
-
-def centre_of(piece: Piece, spec: GridSpec, headings_rad: tuple[float, ...]) -> Pose2:
+def centre_of(piece: PoseSet, spec: GridSpec, headings_rad: tuple[float, ...]) -> Pose2:
     """Return the mean of the poses of greatest rank, map frame."""
     best = piece.best
     x_m, y_m = spec.centre_of(float(best[:, 1].mean()), float(best[:, 2].mean()))

@@ -20,6 +20,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.grid.translation import translated
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.reference.probe import Probe
 
@@ -46,10 +47,7 @@ def endpoint_set(grown: NDArray[np.bool_], head: tuple[int, int], *, outside: bo
         head: ``(row, col)`` offset of the head.
         outside: whether a head beyond the grid is on it.
     """
-    endpoints = np.full_like(grown, outside)
-    here, there = _overlap(grown.shape, *head)
-    endpoints[here] = grown[there]
-    return endpoints
+    return translated(grown, *head, outside=outside)
 
 
 def blocked_set(
@@ -66,21 +64,5 @@ def blocked_set(
     met = np.zeros(blocking.shape, np.int32)
     offsets: Iterable[tuple[int, int]] = body.tolist()
     for row, col in offsets:
-        here, there = _overlap(blocking.shape, row, col)
-        if outside:
-            met += 1
-            met[here] -= ~blocking[there]
-        else:
-            met[here] += blocking[there]
+        met += translated(blocking, row, col, outside=outside)
     return met >= blocked_by
-
-
-Window = tuple[slice, slice]
-
-
-def _overlap(shape: tuple[int, ...], row: int, col: int) -> tuple[Window, Window]:
-    """Return the cells p whose p + offset is in the grid, and those p + offset."""
-    rows, cols = shape
-    here = (slice(max(0, -row), max(0, rows - row)), slice(max(0, -col), max(0, cols - col)))
-    there = (slice(max(0, row), max(0, rows + row)), slice(max(0, col), max(0, cols + col)))
-    return here, there

@@ -11,12 +11,15 @@ from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
+from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import numbers_of
 from robotd.grid.wall_field import WallField
+from robotd.grid.window import CellWindow
 from robotd.localization.count.rank_grid import even_headings
 from robotd.localization.fit.refinement import PoseBox, refine
 from robotd.localization.obstacles.beam_obstacles import Obstacles
-from robotd.localization.search.bounded_search import BestPoses, Disk, SearchMap, best_poses
+from robotd.localization.search.bounded_search import SearchMap, best_poses
+from robotd.localization.search.cell_disk import CellDisk
 from tests.benchmarks import workload
 from tests.benchmarks.sections.refining import DRAWN
 from tests.benchmarks.timing import Timing, timed
@@ -51,8 +54,8 @@ def timings() -> Iterator[Timing]:
         yield _two_threads(name, ready, cases[0])
         yield _tracking(name, ready, cases[0])
         yield timed(f"{name}, map made ready to search", partial(SearchMap.of, obstacles, spec, 1.5), 5)
-        rows, cols = (slice(size // 2 - 60, size // 2 + 60) for size in spec.shape)
-        again = partial(ready.updated, obstacles, (rows, cols))
+        row, col = (size // 2 for size in spec.shape)
+        again = partial(ready.updated, obstacles, CellWindow(row - 60, row + 60, col - 60, col + 60))
         yield timed(f"{name}, ready again where 120 x 120 cells changed", again, 9, goal_ms=prepare_ms)
 
 
@@ -74,14 +77,14 @@ def _everywhere(name: str, ready: SearchMap, field: WallField, cases: list[Case]
     return Timing(title, tuple(seconds), goal_ms, f"{note}, greatest {1e3 * np.max(errors_m):.1f}")
 
 
-def _box(found: BestPoses, spec: GridSpec) -> PoseBox:
+def _box(found: PoseSet, spec: GridSpec) -> PoseBox:
     """Return a cell and a step of the headings to all sides of the first of the best."""
     heading, row, col = found.poses[found.ranks == found.best_rank][0].tolist()
     step_rad = math.tau / HEADINGS
     return PoseBox.around(Pose2(*spec.centre_of(row, col), heading * step_rad), spec.resolution_m, step_rad)
 
 
-def _is_right(found: BestPoses, spec: GridSpec, pose: Pose2) -> bool:
+def _is_right(found: PoseSet, spec: GridSpec, pose: Pose2) -> bool:
     """Whether all poses of greatest rank lie by the truth."""
     best = found.poses[found.ranks == found.best_rank]
     x_m = spec.origin_x_m + (best[:, 2] + 0.5) * spec.resolution_m
@@ -99,6 +102,6 @@ def _two_threads(name: str, ready: SearchMap, case: Case) -> Timing:
 
 def _tracking(name: str, ready: SearchMap, case: Case) -> Timing:
     headings_rad = np.array([case.pose.heading_rad + k * (math.tau / HEADINGS) for k in range(-8, 9)])
-    prior = Disk(case.pose.y_m / workload.RESOLUTION_M - 0.5, case.pose.x_m / workload.RESOLUTION_M - 0.5, 6.0)
+    prior = CellDisk(case.pose.y_m / workload.RESOLUTION_M - 0.5, case.pose.x_m / workload.RESOLUTION_M - 0.5, 6.0)
     run = partial(best_poses, ready, case.readings, headings_rad, slack=SLACK, least_rank=LEAST_RANK, prior=prior)
     return timed(f"{name}, best poses within 0.3 m and 10 deg of a prior, by cells", run, 200)

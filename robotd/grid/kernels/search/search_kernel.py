@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Window = tuple[slice, slice]
-"""Rows and columns, from a first to before a last."""
+from robotd.grid.window import CellWindow
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,11 +21,6 @@ class Ground:
     outside_ends: bool
     blocked_by: int
     error_radius_cells: float
-
-    @property
-    def everywhere(self) -> "Window":
-        """The window that holds all cells."""
-        return slice(0, self.free.shape[0]), slice(0, self.free.shape[1])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,25 +55,12 @@ class Question:
     """Nothing is wanted if the best explains fewer."""
     limit: int
     """How many poses at most."""
-    area: tuple[int, int, int, int]
-    """Rows from the first to before the second, columns from the third to before the fourth; inside the map."""
+    window: CellWindow
+    """Poses are wanted in these cells, as far as ``spans`` says; inside the map."""
     by_blocks: bool
-    """Whether to bound blocks of cells first; for an area of a few windows it does not pay."""
+    """Whether to bound blocks of cells first; for a window of a few windows it does not pay."""
     spans: NDArray[np.int32]
-    """``int32[rows of the area, 2]``: in each row, the first column where poses are wanted, and the one
+    """``int32[rows of the window, 2]``: in each row, the first column where poses are wanted, and the one
     after the last."""
     reach_cells: float
     """Where bodies end at the latest; more than the map is wide and high changes nothing."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Found:
-    """What a search found."""
-
-    best_rank: int
-    """The greatest rank, or 0 if it is less than what was asked for."""
-    least: int
-    """Every pose of at least this rank is here and no other: the best rank less the slack, at least 1; or more, where
-    there are more poses than the limit: then the least rank that leaves no more."""
-    poses: NDArray[np.int32]
-    """``int32[n, 4]``, ``(heading, row, col, rank)`` in this order."""

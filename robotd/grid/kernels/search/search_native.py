@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from robotd.grid.kernels._native import ffi, lib
 from robotd.grid.kernels.count.count_native import INSTRUCTION_SETS
 from robotd.grid.kernels.search.endings import endings
-from robotd.grid.kernels.search.search_kernel import Found, Ground, Planes, Question, Window
+from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question
 from robotd.grid.kernels.shared.buffers import floats, ints, octets, words
+from robotd.grid.pose_set import PoseSet
+from robotd.grid.window import CellWindow
 
 
 def make_planes(ground: Ground) -> Planes:
@@ -20,10 +22,11 @@ def make_planes(ground: Ground) -> Planes:
     sizes = _map_of(ground, key_of)
     cells = np.empty(lib.search_cells_size(sizes), np.uint16)
     pooled = np.empty(lib.search_pooled_size(sizes), np.uint64)
-    return _filled(ground, key_of, (cells, pooled, np.empty(ground.free.shape, np.uint8)), ground.everywhere)
+    near = np.empty(ground.free.shape, np.uint8)
+    return _filled(ground, key_of, (cells, pooled, near), CellWindow.whole(near.shape))
 
 
-def renew_planes(planes: Planes, ground: Ground, window: Window) -> Planes:
+def renew_planes(planes: Planes, ground: Ground, window: CellWindow) -> Planes:
     """See the twin."""
     return _filled(ground, planes.key_of, (planes.cells, planes.pooled, planes.near), window)
 
@@ -32,7 +35,7 @@ def _filled(
     ground: Ground,
     key_of: NDArray[np.int8],
     arrays: tuple[NDArray[np.uint16], NDArray[np.uint64], NDArray[np.uint8]],
-    window: Window,
+    window: CellWindow,
 ) -> Planes:
     """Fill what depends on a window of the map."""
     cells, pooled, near = arrays
@@ -40,12 +43,11 @@ def _filled(
     c_map.cells, c_map.pooled = ffi.from_buffer("uint16_t[]", cells), words(pooled)
     c_map.near = octets(near)
     scratch = np.empty(lib.search_scratch_size(c_map), np.uint64)
-    rows, cols = window
-    lib.search_prepare(c_map, rows.start, rows.stop, cols.start, cols.stop, words(scratch))
+    lib.search_prepare(c_map, window.first_row, window.end_row, window.first_col, window.end_col, words(scratch))
     return Planes(ground, key_of, cells, pooled, near, c_map)
 
 
-def search_poses(planes: Planes, question: Question, *, threads: int = 1, instructions: str | None = None) -> Found:
+def search_poses(planes: Planes, question: Question, *, threads: int = 1, instructions: str | None = None) -> PoseSet:
     """See the twin; ``instructions`` is one of ``INSTRUCTION_SETS``, the best one if None.
 
     Raises:
@@ -57,8 +59,8 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     turned = np.array((np.sin(headings_rad), np.cos(headings_rad))).T.copy()
     readings = jumping[:, 1:].copy()
     readings[:, 0] /= question.resolution_m
-    row_first, row_last, col_first, col_last = question.area
-    limit = min(question.limit, (row_last - row_first) * (col_last - col_first) * len(headings_rad))
+    window = question.window
+    limit = min(question.limit, window.size * len(headings_rad))
     poses = np.empty((2 * limit + 256, 4), np.int32)
     job = ffi.new("search_job *")
     job.map = planes.handle
@@ -67,7 +69,8 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     job.reading_count, job.heading_count = len(readings), len(headings_rad)
     job.resolution_m, job.error_radius_cells = question.resolution_m, planes.ground.error_radius_cells
     job.reach_cells = question.reach_cells
-    job.area, job.spans = question.area, ints(question.spans)
+    job.area = window.first_row, window.end_row, window.first_col, window.end_col
+    job.spans = ints(question.spans)
     job.by_blocks = question.by_blocks
     job.slack, job.least_rank, job.limit = question.slack, question.least_rank, limit
     job.bits, job.threads = max(3, len(readings).bit_length()), threads
@@ -78,7 +81,7 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
         raise ValueError(f"this processor has no {instructions}")
     found = poses[: job.pose_count]
     order = np.lexsort((found[:, 2], found[:, 1], found[:, 0]))
-    return Found(job.best_rank, job.least, found[order])
+    return PoseSet.of_rows(found[order], job.best_rank, job.least, slack=question.slack)
 
 
 @functools.lru_cache(maxsize=8)

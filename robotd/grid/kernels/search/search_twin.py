@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid.kernels.search.endings import endings
-from robotd.grid.kernels.search.search_kernel import Found, Ground, Planes, Question, Window
+from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question
+from robotd.grid.pose_set import PoseSet
 from robotd.grid.ray import ray_steps
+from robotd.grid.window import CellWindow
 
 _FAR_CELLS = float(1 << 28)
 
@@ -18,12 +20,12 @@ def make_planes(ground: Ground) -> Planes:
     return Planes(ground, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8), None)
 
 
-def renew_planes(planes: Planes, ground: Ground, window: Window) -> Planes:  # noqa: ARG001  # nothing to renew
+def renew_planes(planes: Planes, ground: Ground, window: CellWindow) -> Planes:  # noqa: ARG001  # nothing to renew
     """Return the planes after cells changed, all of them in a window; the old ones are used up."""
     return make_planes(ground)
 
 
-def search_poses(planes: Planes, question: Question, *, threads: int = 1) -> Found:  # noqa: ARG001  # one is enough
+def search_poses(planes: Planes, question: Question, *, threads: int = 1) -> PoseSet:  # noqa: ARG001  # one is enough
     """Return the best poses.
 
     Heading by heading, cells that may hold an answer are kept in a list, and dropped once they have missed too many
@@ -49,23 +51,23 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1) -> Fou
         least = max(least, best - question.slack if best >= question.least_rank else 0)
         found.append(np.column_stack((np.full(len(cells), heading), cells, ranks)).astype(np.int32))
     if best < question.least_rank:
-        return Found(0, max(1, question.least_rank - question.slack), found[0])
-    return _limited(np.concatenate(found), best, least, question.limit)
+        return PoseSet.nothing(max(1, question.least_rank - question.slack))
+    return _limited(np.concatenate(found), best, least, question)
 
 
-def _limited(poses: NDArray[np.int32], best: int, least: int, limit: int) -> Found:
+def _limited(poses: NDArray[np.int32], best: int, least: int, question: Question) -> PoseSet:
     """Return the poses of a rank, or of the least higher one that leaves few enough."""
-    while (poses[:, 3] >= least).sum() > limit:
+    while (poses[:, 3] >= least).sum() > question.limit:
         least += 1
     poses = poses[poses[:, 3] >= least]
-    return Found(best, least, poses[np.lexsort((poses[:, 2], poses[:, 1], poses[:, 0]))])
+    in_order = poses[np.lexsort((poses[:, 2], poses[:, 1], poses[:, 0]))]
+    return PoseSet.of_rows(in_order, best, least, slack=question.slack)
 
 
 def _asked_for(free: NDArray[np.bool_], question: Question) -> NDArray[np.bool_]:
     wanted = np.zeros_like(free)
     cols = np.arange(free.shape[1])
-    row_first, row_last = question.area[:2]
-    wanted[row_first:row_last] = (question.spans[:, :1] <= cols) & (cols < question.spans[:, 1:])
+    wanted[question.window.slices[0]] = (question.spans[:, :1] <= cols) & (cols < question.spans[:, 1:])
     return wanted & free
 
 

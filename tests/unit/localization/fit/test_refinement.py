@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from robotd.contract.estimate import Extent
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.wall_field import WallField
@@ -122,7 +123,7 @@ def test_a_pose_never_leaves_its_box(seed: int, half: tuple[float, float, float]
     start = moved(MIDDLE, *random.uniform(-0.5, 0.5, 3).tolist())
     low, high = -np.array(half) * random.random(3), np.array(half) * random.random(3)
     at = np.array([start.x_m, start.y_m, start.heading_rad])
-    box = PoseBox(start, *np.stack((at + low, at + high), axis=1).ravel().tolist())
+    box = PoseBox(start, Extent(*np.stack((at + low, at + high), axis=1).ravel().tolist()))
     refined = refine(field, readings, [box], RefinementSettings(walls=walls))
     assert (refined.poses[0] >= at + low - 1e-12).all()
     assert (refined.poses[0] <= at + high + 1e-12).all()
@@ -241,7 +242,7 @@ def test_impossible_settings_are_refused(name: str, value: float) -> None:
 
 def test_a_box_that_holds_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match="wrong order"):
-        PoseBox(MIDDLE, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0)
+        PoseBox(MIDDLE, Extent(1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
 
 
 def furnished(random: np.random.Generator) -> tuple[WallField, Pose2]:

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from robotd.contract.estimate import Extent
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.wall_field import WallField
@@ -82,7 +83,9 @@ def test_the_pose_never_leaves_the_prior_box(room: int, seed: int) -> None:
     field, truth = furnished(room)
     x, y, turn = np.random.default_rng(seed).uniform(-1.0, 1.0, 3).tolist()
     start = Pose2(truth.x_m + x, truth.y_m + y, truth.heading_rad + turn)
-    prior = PoseBox(start, start.x_m - 0.11, start.x_m + 0.3, start.y_m, start.y_m + 0.07, start.heading_rad, 9.0)
+    prior = PoseBox(
+        start, Extent(start.x_m - 0.11, start.x_m + 0.3, start.y_m, start.y_m + 0.07, start.heading_rad, 9.0)
+    )
     found = track(field, sweep_from(field, truth, seed), prior, replace(USUAL, here_share=0.001), DRAWN)
     if isinstance(found, Tracked):
         assert found.pose.x_m - start.x_m + 1e-9 >= -0.11

@@ -16,9 +16,9 @@ from robotd.grid.binary import BinaryMap
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.heading.separated_orientation import (
     Axis,
+    AxisVerdict,
     OrientationSettings,
     SeparatedOrientation,
-    Verdict,
     headings_from_walls,
     map_axis,
     readings_axis,
@@ -84,10 +84,10 @@ def test_in_simulated_rooms_one_of_the_four_headings_is_right_within_two_degrees
         heading = -3.0 + 0.7 * number
         sweep = swept(world.walls, x_m, y_m, heading, cut_off_m=cut_off_m, seed=number)
         result = separated_orientation(sweep, axis, SETTINGS)
-        if result.verdict is Verdict.LITTLE_IN_SIGHT:
+        if result.verdict is AxisVerdict.LITTLE_IN_SIGHT:
             continue
         usable += 1
-        assert (result.verdict, len(result.headings_rad)) == (Verdict.USABLE, 4)
+        assert (result.verdict, len(result.headings_rad)) == (AxisVerdict.USABLE, 4)
         assert result.support > 0.6
         errors = [off_rad(found, heading + turn, math.tau) for found in result.headings_rad]
         assert min(errors) < math.radians(2.0)
@@ -164,12 +164,12 @@ def round_room() -> Walls:
 def test_among_clutter_and_in_a_round_room_it_says_that_it_must_not_be_used(walls: Walls) -> None:
     sweep = swept(walls, 0.3, 0.1, 0.4)
     result = separated_orientation(sweep, Axis(0.0, 1.0), SETTINGS)
-    assert (result.verdict, result.headings_rad) == (Verdict.READINGS_CLUTTERED, ())
+    assert (result.verdict, result.headings_rad) == (AxisVerdict.READINGS_CLUTTERED, ())
     assert result.support < SETTINGS.share_min
     cluttered = axis_of(drawn(walls).occupied)
     assert cluttered.share < SETTINGS.share_min
     assert separated_orientation(sweep, cluttered, SETTINGS) == SeparatedOrientation(
-        Verdict.MAP_CLUTTERED, (), cluttered.share
+        AxisVerdict.MAP_CLUTTERED, (), cluttered.share
     )
 
 
@@ -183,10 +183,10 @@ def test_solid_obstacles_have_the_directions_of_their_outlines() -> None:
 def test_little_in_sight_and_a_map_without_walls_are_no_reason_to_guess() -> None:
     sweep = swept(load_world("laboratory").walls, 3.0, 4.0, 0.0, cut_off_m=0.5)
     for readings in (sweep, sweep[:1], []):
-        assert separated_orientation(readings, Axis(0.0, 1.0), SETTINGS).verdict is Verdict.LITTLE_IN_SIGHT
+        assert separated_orientation(readings, Axis(0.0, 1.0), SETTINGS).verdict is AxisVerdict.LITTLE_IN_SIGHT
     assert readings_axis([], SETTINGS) is None
     assert map_axis(np.zeros((5, 5), np.bool_), RESOLUTION_M, SETTINGS) is None
-    assert separated_orientation(sweep, None, SETTINGS).verdict is Verdict.MAP_CLUTTERED
+    assert separated_orientation(sweep, None, SETTINGS).verdict is AxisVerdict.MAP_CLUTTERED
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,9 @@ from robotd.contract.estimate import Cover, Region
 from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.pose_set import PoseSet
 from robotd.localization.count.rank_grid import RankGrid, even_headings
-from robotd.localization.describe import Answer, Situation, described
+from robotd.localization.describe import JudgedRegion, Situation, described
 from robotd.localization.fit.refinement import RefinementSettings
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.places.pieces import connected_components, pieces_of
@@ -85,9 +86,10 @@ def ready_rooms() -> ReadyMap:
 
 def regions_of(ranks: RankGrid, least_rank: int, most: int = 99) -> tuple[Region, ...]:
     poses = ranks.cells_of_rank(least_rank)
-    pieces = pieces_of(poses, ranks.rank_at(poses), ranks.headings_rad, most)
+    found = PoseSet(poses, ranks.rank_at(poses), ranks.best_rank, least_rank)
+    pieces = pieces_of(found, ranks.headings_rad, most)
     situation = Situation(ready_rooms(), ranks.headings_rad, np.empty((0, 5)), RefinementSettings())
-    return described([Answer(piece) for piece in pieces.best], situation)
+    return described([JudgedRegion(piece) for piece in pieces.best], situation)
 
 
 def test_every_region_is_told_with_its_place_and_extent() -> None:
@@ -144,7 +146,7 @@ def test_a_region_that_goes_all_round_reaches_a_whole_turn() -> None:
 def test_regions_beyond_the_most_are_counted_and_none_is_better() -> None:
     poses = np.array([(0, 0, 2 * col) for col in range(9)])
     ranks = np.array([5, 9, 7, 9, 1, 2, 3, 4, 8], np.uint16)
-    pieces = pieces_of(poses, ranks, (0.0,), 4)
+    pieces = pieces_of(PoseSet(poses, ranks, 9), (0.0,), 4)
     assert [(int(piece.poses[0, 2]), int(piece.ranks[0])) for piece in pieces.best] == [(2, 9), (6, 9), (16, 8), (4, 7)]
     assert pieces.left_out == 5
 

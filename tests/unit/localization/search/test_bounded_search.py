@@ -14,12 +14,15 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.footprints import dilate, disk_footprint
 from robotd.grid.kernels import twins
+from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import numbers_of
+from robotd.grid.window import CellWindow
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.reference.feasible_poses import feasible_poses
 from robotd.localization.reference.probe import probe_of
 from robotd.localization.search import bounded_search as search
-from robotd.localization.search.bounded_search import BestPoses, Box, Disk, Prior, SearchMap, best_poses
+from robotd.localization.search.bounded_search import SearchMap, best_poses
+from robotd.localization.search.cell_disk import CellDisk
 
 try:
     NATIVE: ModuleType = importlib.import_module("robotd.grid.kernels.native")
@@ -70,8 +73,8 @@ eighths = st.integers(-40, 480).map(lambda eighths: eighths / 8)
 priors = st.one_of(
     st.none(),
     st.none(),
-    st.builds(Disk, eighths, eighths, st.integers(0, 240).map(lambda eighths: eighths / 8)),
-    st.builds(Box, *[st.integers(-5, 70)] * 4),
+    st.builds(CellDisk, eighths, eighths, st.integers(0, 240).map(lambda eighths: eighths / 8)),
+    st.builds(CellWindow, *[st.integers(-5, 70)] * 4),
 )
 
 
@@ -90,19 +93,19 @@ def counted(
     return ranks
 
 
-def asked_for(prior: Prior | None, shape: tuple[int, int]) -> NDArray[np.bool_]:
+def asked_for(prior: CellDisk | CellWindow | None, shape: tuple[int, int]) -> NDArray[np.bool_]:
     row, col = np.indices(shape)
     match prior:
         case None:
             return np.ones(shape, np.bool_)
-        case Disk():
+        case CellDisk():
             return np.asarray((row - prior.row) ** 2 + (col - prior.col) ** 2 <= prior.radius**2)
-        case Box():
-            rows = (prior.row_first <= row) & (row < prior.row_last)
-            return np.asarray(rows & (prior.col_first <= col) & (col < prior.col_last))
+        case CellWindow():
+            rows = (prior.first_row <= row) & (row < prior.end_row)
+            return np.asarray(rows & (prior.first_col <= col) & (col < prior.end_col))
 
 
-def assert_is(found: BestPoses, ranks: NDArray[np.int64], slack: int, least_rank: int) -> None:
+def assert_is(found: PoseSet, ranks: NDArray[np.int64], slack: int, least_rank: int) -> None:
     best = int(ranks.max(initial=0))
     least = max(1, best - slack)
     expected = np.argwhere(ranks >= least)
@@ -122,7 +125,7 @@ def test_the_answer_is_that_of_counting_everything(
     drawn: tuple[Obstacles, float],
     sweep: list[RangeReading],
     headings_rad: list[float],
-    prior: Prior | None,
+    prior: CellDisk | CellWindow | None,
     slack: int,
     least_rank: int,
     in_blocks: bool,

@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 
 from robotd.grid.footprints import dilate, disk_footprint
 from robotd.grid.kernels import twins
-from robotd.grid.kernels.search.search_kernel import Found, Ground, Planes, Question
+from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question
+from robotd.grid.pose_set import PoseSet
+from robotd.grid.window import CellWindow
 
 try:
     NATIVE: ModuleType = importlib.import_module("robotd.grid.kernels.native")
@@ -41,7 +43,7 @@ def question_of(shape: tuple[int, int], seed: int, **changes: int) -> Question:
         np.linspace(0.0, 0.5, 6),
         resolution_m=0.2,
         **asked,
-        area=(0, shape[0], 0, shape[1]),
+        window=CellWindow.whole(shape),
         by_blocks=True,
         spans=np.tile(np.array((0, shape[1]), np.int32), (shape[0], 1)),
         reach_cells=500.0,
@@ -54,9 +56,10 @@ def building(seed: int, shape: tuple[int, int]) -> NDArray[np.bool_]:
     return np.asarray(blocks[: shape[0], : shape[1]] | (random.random(shape) < 0.005))
 
 
-def assert_same(one: Found, other: Found) -> None:
-    assert (one.best_rank, one.least) == (other.best_rank, other.least)
+def assert_same(one: PoseSet, other: PoseSet) -> None:
+    assert (one.best_rank, one.least_rank, one.is_all) == (other.best_rank, other.least_rank, other.is_all)
     assert np.array_equal(one.poses, other.poses)
+    assert np.array_equal(one.ranks, other.ranks)
 
 
 @needs_native
@@ -72,14 +75,14 @@ def test_planes_renewed_in_a_window_are_planes_made_anew(
 ) -> None:
     before = building(seed, shape)
     rows, cols = (sorted((data.draw(st.integers(0, size)), data.draw(st.integers(0, size)))) for size in shape)
-    window = slice(*rows), slice(*cols)
+    window = CellWindow(*rows, *cols)
     after = before.copy()
-    after[window] = np.random.default_rng(seed).random(after[window].shape) < 0.1
+    after[window.slices] = np.random.default_rng(seed).random(window.shape) < 0.1
     old, new = ground_of(before, outside), ground_of(after, outside)
     changed = np.argwhere((old.blocking != new.blocking) | (old.grown != new.grown))
     if len(changed):
         (row_first, col_first), (row_last, col_last) = changed.min(axis=0).tolist(), changed.max(axis=0).tolist()
-        window = slice(row_first, row_last + 1), slice(col_first, col_last + 1)
+        window = CellWindow(row_first, row_last + 1, col_first, col_last + 1)
     planes = NATIVE.renew_planes(NATIVE.make_planes(old), new, window)
     anew: Planes = NATIVE.make_planes(new)
     assert np.array_equal(planes.near, anew.near)
@@ -103,7 +106,7 @@ def case(seed: int) -> tuple[Ground, Question]:
 
 
 @functools.cache
-def found_by_numpy(seed: int) -> Found:
+def found_by_numpy(seed: int) -> PoseSet:
     ground, question = case(seed)
     return twins.search_poses(twins.make_planes(ground), question)
 
@@ -130,9 +133,9 @@ def test_more_poses_than_the_limit_are_cut_at_a_rank(kernels: ModuleType, limit:
     shape = (40, 100)
     planes = kernels.make_planes(ground_of(building(5, shape)))
     everything = kernels.search_poses(planes, question_of(shape, 5, slack=20))
-    ranks = everything.poses[:, 3]
-    assert len(ranks) > 300
+    ranks = everything.ranks
+    assert len(everything) > 300
     found = kernels.search_poses(planes, question_of(shape, 5, slack=20, limit=limit))
-    assert found.best_rank == everything.best_rank
-    assert np.array_equal(found.poses, everything.poses[ranks >= found.least])
-    assert len(found.poses) <= limit < (ranks >= found.least - 1).sum()
+    assert (found.best_rank, found.is_all) == (everything.best_rank, False)
+    assert np.array_equal(found.poses, everything.poses[ranks >= found.least_rank])
+    assert len(found.poses) <= limit < (ranks >= found.least_rank - 1).sum()
