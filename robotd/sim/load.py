@@ -1,9 +1,10 @@
-"""An emulated robot by name: one of the worlds, a world file, or the file of a recorded building."""
+"""An emulated robot by name: one of the worlds, a world file, the yaml of a map, or the file of a recorded building."""
 
 from pathlib import Path
 
 from robotd.sim.building import load_recorded_building
 from robotd.sim.emulators.catalogue import Dialects
+from robotd.sim.map_world import load_map_world
 from robotd.sim.recorded_building import OdometrySource, RecordedRobot
 from robotd.sim.robot import EmulatedRobot, SimSettings, SimulatedRobot
 from robotd.sim.world import load_world
@@ -20,7 +21,7 @@ def load_robot(
     boot: int = 0,
     dialects: Dialects | None = None,
 ) -> EmulatedRobot:
-    """Return a robot in a world or in a recorded building.
+    """Return a robot in a world, in a map, or in a recorded building.
 
     Args:
         name_or_path: name of a world, or a file.
@@ -31,14 +32,19 @@ def load_robot(
         dialects: what the devices speak; our own boards' protocol if None.
 
     Raises:
-        ConfigError: there is no such world, or it is damaged.
+        ConfigError: there is no such world or map, or it is damaged.
         RecordingError: the file of a recorded building is damaged.
     """
     if _is_building(Path(name_or_path)):
         return RecordedRobot(
             load_recorded_building(Path(name_or_path)), seed, odometry=odometry, boot=boot, dialects=dialects
         )
-    return SimulatedRobot(load_world(name_or_path), seed, settings, boot=boot, dialects=dialects)
+    world = load_map_world(Path(name_or_path)) if _is_map(name_or_path) else load_world(name_or_path)
+    return SimulatedRobot(world, seed, settings, boot=boot, dialects=dialects)
+
+
+def _is_map(name_or_path: str) -> bool:
+    return name_or_path.endswith((".yaml", ".yml"))
 
 
 def _is_building(path: Path) -> bool:
