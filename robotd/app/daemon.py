@@ -113,7 +113,8 @@ async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
             await daemon.control.start_recording(None)
         parts = {name: group.create_task(part, name=name) for name, part in daemon.parts().items()}
         keeping = group.create_task(daemon.control.keeping.run(), name="keep maps")
-        tasks = [serving, *parts.values(), keeping, group.create_task(keep_going(daemon), name="keep going")]
+        going_on = group.create_task(keep_going(daemon, config.driving.silence_s), name="keep going")
+        tasks = [serving, *parts.values(), keeping, going_on]
         for task in tasks:
             task.add_done_callback(partial(_stop_if_failed, daemon))
         within_s = watchdog_s()

@@ -38,10 +38,22 @@ class Stalls:
         self._daemon.causes.stalled(Stall(now_ns(), stood_still_s, was_stopped, self._log))
 
 
-async def keep_going(daemon: Daemon) -> NoReturn:
-    """Let a held mission go on as soon as the loop has been well for a while; a replay has it from its recording."""
+async def keep_going(daemon: Daemon, silence_s: float) -> NoReturn:
+    """Let a held mission go on as soon as all has been well for a while; a replay has it from its recording.
+
+    Args:
+        daemon: whose missions.
+        silence_s: a base whose odometry is older is not well.
+    """
+    holding = daemon.supervisor.holding
+    hold = holding.hold
     while True:
         await asyncio.sleep(_LOOK_EVERY_S)
-        hold = daemon.supervisor.holding.hold
-        if hold.cause is not None and not hold.is_ending and now_ns() - hold.unwell_ns >= WELL_S * NS_PER_S:
+        if hold.cause is None or hold.is_ending:
+            continue
+        if holding.base_silent_s() > silence_s:
+            hold.unwell_ns = now_ns()
+        if holding.has_waited_enough():
+            daemon.causes.give_up()
+        elif now_ns() - hold.unwell_ns >= WELL_S * NS_PER_S:
             daemon.causes.go_on()

@@ -18,6 +18,7 @@ from robotd.recording.journal import Journal
 STALL = "stall"
 LEASE = "lease"
 GO_ON = "go_on"
+GIVE_UP = "give_up"
 _ARGUMENTS: dict[str, tuple[str, tuple[type, ...]]] = {
     STALL: ("stood_still_s", (float, int)),
     LEASE: ("mission_id", (int,)),
@@ -40,9 +41,14 @@ class Causes:
         self._supervisor.holding.stalled(stall)
 
     def go_on(self) -> None:
-        """Take up that the loop has been well for long enough: a held mission goes on."""
+        """Take up that all has been well for long enough: a held mission goes on."""
         self._journal.cause(now_ns(), GO_ON, {})
         self._supervisor.holding.go_on()
+
+    def give_up(self) -> None:
+        """Take up that a held mission has waited for the base for long enough."""
+        self._journal.cause(now_ns(), GIVE_UP, {})
+        self._supervisor.holding.give_up()
 
     def repeat(self, name: str, arguments: dict[str, Any]) -> None:
         """Take up a cause as the journal noted it; one of a later version is left out.
@@ -55,6 +61,8 @@ class Causes:
             self.stalled(msgspec.convert(arguments, Stall))
         elif name == GO_ON:
             self.go_on()
+        elif name == GIVE_UP:
+            self.give_up()
         elif name == LEASE:
             self._supervisor.lease_expired(arguments["mission_id"])
 

@@ -34,7 +34,8 @@ async def run_localizing(
     context: MissionContext, place: MapInUse, mission: LocalizeMission, report: Reporter, number: int
 ) -> PoseEstimate:
     """Carry out a :class:`LocalizeMission`: sweep, estimate, and tie odometry to the map if the answer is unique."""
-    here = await standing(context.robot, context.settings.sweep.settle_s, context.settings.driving)
+    settings = context.settings
+    here = await context.hold.through(lambda: standing(context.robot, settings.sweep.settle_s, settings.driving))
     headings_rad = _headings(context, place, mission, here)
     report.at(MissionPhase.SWEEPING)
     narrowing = await Narrowing.begin(context, place, mission, headings_rad)

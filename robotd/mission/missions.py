@@ -87,7 +87,8 @@ async def _begin_map(context: MissionContext, mission: MapMission, report: Repor
     except ValueError as error:
         raise MissionError(f"these stops do not fit on one map: {error}") from error
     grid, digest = await context.compute.run("begin map", _blank, spec, settings)
-    here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
+    silence_s = context.settings.driving.silence_s
+    here = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
     place = MapInUse(f"new-{report.mission_id}", mission.name, grid, None, digest)
     place.tie(mission.start, here.in_odom)
     return place

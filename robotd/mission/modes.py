@@ -7,7 +7,8 @@ occasions are never refused: ``STOP`` and ``DEVICE_LOST`` lead to ``DISARMED`` f
 to motion that does not pass through an explicit ``ARM``, and none out of ``FAULT`` but ``CLEAR``.
 
 A mission that is *held* (:mod:`robotd.mission.safety.hold`) keeps its mode: the robot was stopped because our own loop
-stood still, and the mission goes on by itself. Any ``STOP``, ``FAULT`` or ``DEVICE_LOST`` meanwhile ends it as always.
+stood still, or odometry was silent, and the mission goes on by itself. Any ``STOP``, ``FAULT`` or ``DEVICE_LOST``
+meanwhile ends it as always.
 """
 
 import enum

@@ -86,7 +86,7 @@ class Sweeper:
         parts = self._parts(await self.robot.pantilt.limits(), number)
         if not self.robot.has_base:
             parts = parts[:1]
-        start = await standing(self.robot, self.settings.settle_s, self.driving)
+        start = await self.hold.through(lambda: standing(self.robot, self.settings.settle_s, self.driving))
         readings: list[RangeReading] = []
         for part in parts:
             here = await self._turn_base(start, part)

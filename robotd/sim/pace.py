@@ -20,6 +20,8 @@ CATCHING_UP = 1.5
 """So many simulated seconds pass in one while time is made up for; set-points still last until they are renewed."""
 MOST_BEHIND_NS = 300_000_000
 """No further: a daemon takes a clock that stays half a second behind for a liar."""
+PATIENCE_S = 10.0
+"""How long the lines of a simulated robot may be silent (``silence_s``): no cable of it can come off."""
 SLOWED = "this machine is busy: simulated time is slowed"
 
 

@@ -44,7 +44,13 @@ class Freeze:
 
 
 NOBODY = Freeze()
-FREEZES = (Freeze("simulator", 0.5), Freeze("simulator", 2.0), Freeze("daemon", 0.5), Freeze("client", 0.8))
+FREEZES = (
+    Freeze("simulator", 0.5),
+    Freeze("simulator", 2.0),
+    Freeze("simulator", 5.0),
+    Freeze("daemon", 0.5),
+    Freeze("client", 0.8),
+)
 
 
 def children(pid: int) -> list[int]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 _LOCALIZED = re.compile(r"(\d+) of (\d+) (?:localized|kept-out stops localized)")
 _STALL = re.compile(r"the event loop stood still for")
-_HOLD = re.compile(r"held: this machine was too busy")
+_HOLD = re.compile(r"held: (?:this machine was too busy|drive: no odometry)")
 _SLOWED = "simulated time is slowed"
 HEADER = """\
 | beside | nice | frozen | finished | seconds | localized | stalls | holds | slowed | why it did not finish |

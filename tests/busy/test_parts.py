@@ -82,4 +82,10 @@ def test_who_is_to_stand_still_is_found_by_its_command_line(tmp_path: Path) -> N
         assert Freeze("simulator", 0.5).process(os.getpid()) is None
     finally:
         process.communicate()
-    assert {str(freeze) for freeze in FREEZES} == {"simulator 0.5 s", "simulator 2 s", "daemon 0.5 s", "client 0.8 s"}
+    assert {str(freeze) for freeze in FREEZES} == {
+        "simulator 0.5 s",
+        "simulator 2 s",
+        "simulator 5 s",
+        "daemon 0.5 s",
+        "client 0.8 s",
+    }

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
+from robotd.app.stalls import keep_going
 from robotd.cli.emulated import config_text
 from robotd.config import loads
 from robotd.contract.events import Event
@@ -118,9 +119,13 @@ class Bench:
 
 
 @contextlib.asynccontextmanager
-async def bench(directory: Path, dialects: Dialects, readings: int = 60) -> AsyncIterator[Bench]:
+async def bench(
+    directory: Path, dialects: Dialects, readings: int = 60, silence_s: float = 1.0
+) -> AsyncIterator[Bench]:
     """Bring a daemon to life that records from its first moment."""
-    text = config_text({device: f"/dev/emulated/{device}" for device in DEVICES}, dialects.settings())
+    said = dialects.settings()
+    sections = {device: {**said.get(device, {}), "silence_s": silence_s} for device in DEVICES}
+    text = config_text({device: f"/dev/emulated/{device}" for device in DEVICES}, sections)
     config = in_directory(replace(loads(text), sweep=SweepSettings(readings=readings)), directory)
     config = replace(config, recording=replace(config.recording, preroll_bytes=_PREROLL_BYTES))
     robot = SimulatedRobot(load_world("laboratory"), seed=4, dialects=dialects)
@@ -133,6 +138,7 @@ async def bench(directory: Path, dialects: Dialects, readings: int = 60) -> Asyn
             parts = [asyncio.create_task(part, name=name) for name, part in daemon.parts().items()]
             one = Bench(robot, daemon, laid, events, parts, StopWatch(journal, daemon))
             one._others.append(asyncio.create_task(one.look_on()))
+            one._others.append(asyncio.create_task(keep_going(daemon, config.driving.silence_s)))
             try:
                 await until_ready(daemon)
                 yield one

@@ -16,6 +16,7 @@ from robotd.contract.missions import DriveMission, Legs, MapMission
 from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
+from robotd.mission.motion.steering import DrivingSettings
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, Stall
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
@@ -34,7 +35,7 @@ async def going(live: Live, directory: Path) -> AsyncIterator[Living]:
     async with live(SimulatedRobot(load_world("office"), seed=4), armed=False) as it:
         await it.daemon.control.start_recording(str(file))
         await it.daemon.control.arm()
-        task = asyncio.create_task(keep_going(it.daemon))
+        task = asyncio.create_task(keep_going(it.daemon, DrivingSettings().silence_s))
         try:
             yield it
         finally:

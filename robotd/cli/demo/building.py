@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from robotd.cli.demo.mission import SILENCE_S, Trial, follow, print_readings, stage
+from robotd.cli.demo.mission import Trial, follow, print_readings, stage
 from robotd.cli.demo.rig import Rig, rig, wired
 from robotd.cli.demo.room import fresh
 from robotd.cli.demo.truth import true_pose
@@ -85,7 +85,6 @@ def _config() -> Config:
         deceleration_mps2=1.0,
         turn_deceleration_radps2=4.0,
         gain_hz=2.0,
-        silence_s=SILENCE_S,
     )
     # Twenty metres and more lie between the walls of a hall; the laser of the recorded robot saw them.
     return replace(config, driving=driving, rangefinder=replace(config.rangefinder, range_max_m=12.0))

@@ -24,8 +24,6 @@ from robotd.core.reading import ReadingStatus, Sweep
 
 LEASE_S = 10.0
 """Generous: a demonstration shares two cores with its simulated hardware, and with whatever else runs."""
-SILENCE_S = 2.0
-"""Of odometry: simulated boards get no processor now and then, and nothing real moves meanwhile."""
 _WIDTH = 120
 
 

@@ -1,6 +1,7 @@
 """An emulated robot and the real daemon, as two processes joined by pseudo-terminals, with a client for this one."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,11 +15,13 @@ from robotd.client import Client
 from robotd.config import Config, effective_text
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import RequestTimeout, RobotdError
-from robotd.sim.pace import SLOWED
+from robotd.mission.safety.hold import TOO_BUSY
+from robotd.sim.pace import PATIENCE_S, SLOWED
 
 UNFINISHED = "unfinished"
 """Name of the map of a demonstration that failed; the next one keeps it."""
 DEVICES = ("drive", "pantilt", "rangefinder")
+_SILENT = re.compile(r"\b(silent for|no odometry for|no answer to|deadman)\b")
 _START_S = 180.0
 """Starting is quick, unless the machine is busy with something else."""
 _END_S = 60.0
@@ -37,10 +40,11 @@ def wired(config: Config, directory: Path) -> Config:
     links = directory / "devices"
     return replace(
         config,
+        sweep=replace(config.sweep, aim_timeout_s=PATIENCE_S),
         server=replace(config.server, runtime_dir=str(directory / "run")),
-        drive=replace(config.drive, port=str(links / "drive")),
-        pantilt=replace(config.pantilt, port=str(links / "pantilt")),
-        rangefinder=replace(config.rangefinder, port=str(links / "rangefinder")),
+        drive=replace(config.drive, port=str(links / "drive"), silence_s=PATIENCE_S),
+        pantilt=replace(config.pantilt, port=str(links / "pantilt"), silence_s=PATIENCE_S),
+        rangefinder=replace(config.rangefinder, port=str(links / "rangefinder"), silence_s=PATIENCE_S),
         maps=replace(config.maps, dir=str(directory / "maps")),
         recording=replace(config.recording, dir=str(directory / "recordings")),
     )
@@ -73,13 +77,27 @@ def rig(directory: Path, config: Config, emulator: list[str]) -> Iterator[Rig]:
         try:
             yield Rig(client, truth)
         except RobotdError as error:
-            reason = f"{error}{slowed(log.read_text(encoding='utf-8', errors='replace'))}"
-            raise RobotdError(f"{reason}; {_kept(client, directory)}; log: {log}; then start it again") from error
+            why = explained(str(error), simulation.poll(), log.read_text(encoding="utf-8", errors="replace"))
+            raise RobotdError(f"{why}; {_kept(client, directory)}; log: {log}; {_next_step(why)}") from error
 
 
-def slowed(log: str) -> str:
-    """Return what a log says of the machine, to be put after a reason; nothing if it had processors to spare."""
-    return f"; {SLOWED}, for the simulated robot got no processor for a while" if SLOWED in log else ""
+def explained(reason: str, simulation_ended: int | None, log: str) -> str:
+    """Return why a demonstration failed, with the machine as its cause where it must be.
+
+    Args:
+        reason: what the client was told.
+        simulation_ended: exit code of the simulated robot; None while it lives.
+        log: what both processes said.
+    """
+    if simulation_ended is not None:
+        return f"{reason}: the simulated robot ended with {simulation_ended}"
+    if TOO_BUSY not in reason and (SLOWED in log or _SILENT.search(reason)):  # no cable of it can come off
+        return f"{reason}; {TOO_BUSY}: the simulated robot got no processor for a while"
+    return reason
+
+
+def _next_step(why: str) -> str:
+    return "start it again when less else runs" if TOO_BUSY in why else "then start it again"
 
 
 def _kept(client: Client, directory: Path) -> str:

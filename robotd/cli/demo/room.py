@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
-from robotd.cli.demo.mission import SILENCE_S, Trial, follow, print_readings, print_trials, stage
+from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials, stage
 from robotd.cli.demo.rig import UNFINISHED, Rig, rig, wired
 from robotd.cli.demo.truth import true_pose
 from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
@@ -95,9 +95,7 @@ def _keep_unfinished(directory: Path) -> None:
 
 def brisk() -> DrivingSettings:
     """Return how to drive when somebody is watching."""
-    return DrivingSettings(
-        speed_mps=0.6, turn_radps=1.5, deceleration_mps2=0.4, turn_deceleration_radps2=2.0, silence_s=SILENCE_S
-    )
+    return DrivingSettings(speed_mps=0.6, turn_radps=1.5, deceleration_mps2=0.4, turn_deceleration_radps2=2.0)
 
 
 def _localize_at(parts: Rig, console: Console, probe_m: tuple[float, float]) -> Trial:

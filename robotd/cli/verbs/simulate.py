@@ -20,6 +20,7 @@ from robotd.sim.faults.catalogue import FAULTS, meaning_of
 from robotd.sim.faults.laid import run_faulty_on_ptys
 from robotd.sim.faults.plan import PlannedFault, parse_plan
 from robotd.sim.load import load_robot
+from robotd.sim.pace import PATIENCE_S
 from robotd.sim.recorded_building import OdometrySource
 from robotd.sim.robot import EmulatedRobot
 from robotd.sim.runtime import run_on_ptys
@@ -32,10 +33,13 @@ def _sim(arguments: argparse.Namespace) -> int:
     odometry = OdometrySource(arguments.odometry)
     robot = load_robot(arguments.world, arguments.seed, odometry=odometry, dialects=dialects)
 
-    def write(file: Path, ports: dict[str, str]) -> None:
-        write_config(file, config_text(ports, dialects.settings()))
-
     plan = parse_plan(arguments.faults) if arguments.faults else ()
+    silence_s = {} if plan else {"silence_s": PATIENCE_S}  # who tries faults wants to see what they do to a real robot
+
+    def write(file: Path, ports: dict[str, str]) -> None:
+        settings = dialects.settings()
+        write_config(file, config_text(ports, {device: {**settings.get(device, {}), **silence_s} for device in ports}))
+
     _serve(arguments, robot, write, truth_path=arguments.truth, plan=plan)
     return OK
 

@@ -51,6 +51,7 @@ class BoardDevice:
             dictionaries={},
             wire=self._wire,
             counters=self._counters,
+            silence_s=settings.silence_s,
         )
 
     @property

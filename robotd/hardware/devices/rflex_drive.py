@@ -57,7 +57,6 @@ _HALTS_LEAST = 4
 """Both axes twice: each heard alone, whatever came just before."""
 _QUIET_S = 0.005
 """It reports on and on, so it is never quiet for long; and an answer that comes late is a voltage all the same."""
-_SILENCE_S = 1.0
 _ANSWER_S = 0.5
 _TRIES = 3
 _STATUS_EVERY_S = 5.0
@@ -134,7 +133,8 @@ class RflexDrive(BoughtDevice[Message]):
         await dialogue.ask(STATUS, is_a(SystemStatus), timeout_s=_ANSWER_S, tries=_TRIES)
 
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
-        await together(self._pace(dialogue), self._watch_battery(dialogue), dialogue.until_lost(_SILENCE_S))
+        silence_s = self._settings.silence_s
+        await together(self._pace(dialogue), self._watch_battery(dialogue), dialogue.until_lost(silence_s))
 
     async def _pace(self, dialogue: Dialogue[Message]) -> NoReturn:
         """Send the newest set-point, one axis after the other no quicker than is heard, and end it in its time."""

@@ -21,6 +21,8 @@ from robotd.hardware.transport.line_format import LineFormat
 
 _U16_MAX = 0xFFFF
 _SERVO_ID_MAX = 252
+_REPORTS_MISSED = 3
+"""So many in a row may be lost before a device is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,6 +39,9 @@ class PortSettings:
     """Period of the telemetry [ms]; set-points follow it."""
     ttl_max_ms: Annotated[int, Within(10, _U16_MAX, "ms")] = 500
     """Longest time for which the board may go on with a motion without hearing from us [ms]."""
+    silence_s: Annotated[float, Within(0.3, 60.0, "s")] = 1.0
+    """A device that reports by itself is lost when nothing came of it for so long; one that only answers is asked. A
+    base in motion is stopped sooner, by ``driving.silence_s``."""
 
     def __post_init__(self) -> None:
         """Refuse what no line and no board can do."""
@@ -45,6 +50,11 @@ class PortSettings:
         if self.line:
             LineFormat.parse(self.line)
         refuse_outside(self)
+        if self.silence_s * 1000.0 < _REPORTS_MISSED * self.telemetry_ms:
+            raise ValueError(
+                f"silence_s must be at least {_REPORTS_MISSED} times telemetry_ms, got {self.silence_s} s"
+                f" and {self.telemetry_ms} ms"
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

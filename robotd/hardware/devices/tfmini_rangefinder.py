@@ -46,7 +46,6 @@ _STREAMS_S = 0.3
 """Within this a stream of a hundred a second has come by."""
 _STALE = 2
 """Frames of a stream that may have been measured before they were asked for: the one under way, and one in a buffer."""
-_SILENCE_S = 1.0
 _IDLE_POLL_S = 1.0
 _VERSION_NUMBER = 0x01
 _STATUS = {
@@ -66,6 +65,7 @@ class TfminiRangefinder(BoughtDevice[Message]):
         """Make the device: its dialect names the model; its bias is applied to every range."""
         super().__init__(TfminiWire(), wiring)
         self._model = Model(settings.dialect)
+        self._silence_s = settings.silence_s
         self._instrument = Instrument(settings)
         self._streamed: Broadcast[Heard[Data]] = Broadcast()
         self._is_first = False
@@ -142,7 +142,7 @@ class TfminiRangefinder(BoughtDevice[Message]):
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
         """It speaks only when asked, so that it is still there must be asked; one that streams is heard."""
         if self._is_first:
-            await dialogue.until_lost(_SILENCE_S)
+            await dialogue.until_lost(self._silence_s)
         while True:
             await dialogue.until_idle(_IDLE_POLL_S)
             await dialogue.ask(VERSION, _is_version, timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True)

@@ -15,8 +15,6 @@ from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.transport import Connect
 from robotd.hardware.wire.board import BoardWire
 
-SILENCE_S = 1.0
-
 
 class LinkListener(Protocol):
     """The device that lives at the end of a link."""
@@ -51,6 +49,8 @@ class Link:
     """Dictionaries read so far, by CRC-32."""
     wire: BoardWire
     counters: LinkCounters
+    silence_s: float
+    """The board is lost when nothing came for so long."""
 
     async def run(self, listener: LinkListener) -> NoReturn:
         """Keep the link up until cancelled; nothing that a board or a line does ends it."""
@@ -80,7 +80,7 @@ class _Talk:
             link.wire,
             counters=link.counters,
             on_telemetry=self.listener.telemetry,
-            silence_s=SILENCE_S,
+            silence_s=link.silence_s,
         )
         async with session:
             try:

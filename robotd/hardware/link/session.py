@@ -180,15 +180,28 @@ class Session:
 
     async def _repeat_until_answered(self, request: Request, takes_s: float) -> Received:
         data = self._wire.encode(request.message, request.seq)
-        for attempt in range(TRIES):
+        began_ns, unheard = now_ns(), 0
+        attempt = 0
+        while attempt < TRIES + unheard:
             self._counters.retries += attempt > 0
+            sent_ns = now_ns()
             self._line.write(data)
-            patience_s = takes_s if attempt == TRIES - 1 else 0.0
+            patience_s = takes_s if attempt >= TRIES + unheard - 1 else 0.0
             reply = await request.wait(self._round_trip(request.message).timeout_s(attempt) + patience_s)
             if reply is not None:
                 return reply
+            unheard += self._is_line_silent(sent_ns, began_ns)
+            attempt += 1
         self._counters.timeouts += 1
-        raise LinkTimeout(f"{self.device}: no answer to {type(request.message).__name__} in {TRIES} tries")
+        raise LinkTimeout(f"{self.device}: no answer to {type(request.message).__name__} in {attempt} tries")
+
+    def _is_line_silent(self, sent_ns: int, began_ns: int) -> bool:
+        """Say whether nothing at all came since a try: then it is not the request that goes unanswered.
+
+        Such a try does not count while the line may be silent: whether the board is lost is for the reader to say.
+        """
+        within_s = (now_ns() - began_ns) / NS_PER_S < self._silence_s
+        return self._serving and self.heard_ns < sent_ns and within_s
 
     def _round_trip(self, message: Message) -> RoundTrip:
         return self._round_trips.setdefault(type(message), RoundTrip())

@@ -12,19 +12,19 @@ from collections.abc import AsyncIterator, Callable
 from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import NS_PER_S
-from robotd.core.errors import DeviceError, LinkTimeout
+from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.core.silence import within
 from robotd.hardware.devices.drive import Drive
 from robotd.mission.motion.steering import DrivingSettings, distance_left_m, leg_twist, turn_rate_radps
-from robotd.mission.safety.hold import Hold, Interrupted
+from robotd.mission.safety.hold import FellSilent, Hold, Interrupted
 
 
 async def rotate_to(drive: Drive, heading_rad: float, settings: DrivingSettings, hold: Hold | None = None) -> Odometry:
     """Turn on the spot to a heading in the ``odom`` frame, the short way round.
 
     Raises:
-        LinkTimeout: odometry fell silent.
+        FellSilent: odometry fell silent.
         DeviceError: the base does not turn.
         Interrupted: the mission was held meanwhile.
     """
@@ -49,7 +49,7 @@ async def translate_to(
     """Drive straight to a point in the ``odom`` frame that lies ahead.
 
     Raises:
-        LinkTimeout: odometry fell silent.
+        FellSilent: odometry fell silent.
         DeviceError: the base does not get nearer.
         Interrupted: the mission was held meanwhile.
     """
@@ -79,7 +79,7 @@ async def settle(drive: Drive, settle_s: float, settings: DrivingSettings) -> Od
     """Wait until odometry has reported standstill for ``settle_s`` by its own times; return the last report.
 
     Raises:
-        LinkTimeout: odometry fell silent.
+        FellSilent: odometry fell silent.
         DeviceError: the base does not come to rest.
     """
     began_ns: int | None = None
@@ -99,7 +99,7 @@ async def settle(drive: Drive, settle_s: float, settings: DrivingSettings) -> Od
 
 
 async def next_odometry(drive: Drive, silence_s: float) -> Odometry:
-    """Return the next odometry message; LinkTimeout if there is none for ``silence_s``."""
+    """Return the next odometry message; FellSilent if there is none for ``silence_s``."""
     with drive.odometry.subscribe() as stream:
         async for now in _within(stream, silence_s):
             return now
@@ -141,5 +141,5 @@ async def _within(stream: Subscription[Odometry], silence_s: float) -> AsyncIter
             async with within(silence_s):
                 now = await stream.get()
         except TimeoutError:
-            raise LinkTimeout(f"drive: no odometry for {silence_s:g} s") from None
+            raise FellSilent(f"drive: no odometry for {silence_s:g} s") from None
         yield now

@@ -1,21 +1,23 @@
-"""A mission is held: this machine was too busy, the base was stopped, and the mission goes on by itself.
+"""A mission is held: it was interrupted for a moment, the base was stopped, and the mission goes on by itself.
 
 The one way back to motion that needs no ``arm``, hence narrow: it begins only in a mission under way, and only because
-our own loop stood still; every stop, fault, lost device and expired lease ends it, and then only ``arm`` leads on; and
-it begins no more than :data:`HOLDS_A_MINUTE` times within a minute.
+our own loop stood still, or because odometry fell silent on a line that is not lost; every stop, fault, lost device and
+expired lease ends it, and then only ``arm`` leads on; and it begins no more than :data:`HOLDS_A_MINUTE` times within a
+minute.
 """
 
 import asyncio
 from collections import deque
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import NoReturn, TypeVar
 
 from robotd.core.clock import NS_PER_S
-from robotd.core.errors import RobotdError
+from robotd.core.errors import LinkTimeout, RobotdError
 
 T = TypeVar("T")
 
+TOO_BUSY = "this machine was too busy"
 HOLDS_A_MINUTE = 6
 WELL_S = 1.0
 """A held mission goes on once the loop has turned for so long without a stall."""
@@ -37,7 +39,7 @@ class Stall:
 
     def __str__(self) -> str:
         """Say it in a line."""
-        return f"this machine was too busy: the loop stood still {self.stood_still_s:.1f} s; log: {self.log}"
+        return f"{TOO_BUSY}: the loop stood still {self.stood_still_s:.1f} s; log: {self.log}"
 
     def is_recent(self, time_ns: int) -> bool:
         """Whether what happens at this time may have come of it."""
@@ -46,6 +48,14 @@ class Stall:
 
 class Interrupted(Exception):  # no error: the step is taken again
     """A hold broke into a step of the mission."""
+
+
+class FellSilent(LinkTimeout):
+    """No odometry came; whether the base is waited for is decided where the step can be taken again."""
+
+
+def _not_waited_for(error: FellSilent) -> NoReturn:
+    raise error
 
 
 class Hold:
@@ -58,7 +68,9 @@ class Hold:
         self.count = 0
         """How often it began since start."""
         self.unwell_ns = 0
-        """When the last stall ended."""
+        """When it was last found that all is not well: the loop stood still, or the base was silent."""
+        self.wait_for_base: Callable[[FellSilent], None] = _not_waited_for
+        """Begins a hold because odometry fell silent, or raises what ends the mission."""
         self._over = asyncio.Event()
         self._over.set()
         self._begun_ns: deque[int] = deque(maxlen=HOLDS_A_MINUTE)
@@ -81,6 +93,10 @@ class Hold:
         self.is_ending = False
         self._over.set()
 
+    def lasted_s(self, time_ns: int) -> float:
+        """Return for how long the mission has been held; 0 if it is not."""
+        return 0.0 if self.cause is None else (time_ns - self._begun_ns[-1]) / NS_PER_S
+
     async def over(self) -> None:
         """Wait until nothing is held."""
         await self._over.wait()
@@ -92,6 +108,9 @@ class Hold:
             count = self.count
             try:
                 return await step()
+            except FellSilent as error:
+                if self.count == count:
+                    self.wait_for_base(error)
             except (Interrupted, RobotdError):
                 if self.count == count:
                     raise  # devices that were stopped for a hold say so; else it is a failure

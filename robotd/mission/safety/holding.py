@@ -1,7 +1,11 @@
-"""What the supervisor does about a stall of ours: nothing while the base stands, a hold while it is driven."""
+"""What the supervisor does when a mission is interrupted for a moment: a hold, if the base is concerned, else nothing.
+
+Our own loop stood still while the base was driven; or odometry fell silent, though the line is not lost.
+"""
 
 import asyncio
 import logging
+import math
 from collections.abc import Awaitable, Callable
 from typing import Protocol
 
@@ -9,17 +13,21 @@ from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.events import Event, Status
 from robotd.contract.modes import Mode
 from robotd.core.attention import attention
-from robotd.core.clock import now_ns
-from robotd.core.errors import RobotdError
+from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.errors import LinkTimeout, RobotdError
 from robotd.core.silence import within
 from robotd.hardware.devices.device import Device
 from robotd.mission.modes import UNDER_WAY, Occasion
 from robotd.mission.robot import Robot
-from robotd.mission.safety.hold import HOLDS_A_MINUTE, Hold, Stall
+from robotd.mission.safety.hold import HOLDS_A_MINUTE, FellSilent, Hold, Stall
 
 _ARM_TIMEOUT_S = 5.0
+_WAITED_FOR_S = 10.0
+"""So long a base that is on the line but tells no odometry is waited for."""
 _DEADMAN = ("deadman",)
 _NEXT_STEP = "continue with: robotctl arm (after a fault robotctl clear first), then the mission again"
+
+_TOO_OFTEN = f"for the {HOLDS_A_MINUTE + 1}th time within a minute"
 
 Devices = tuple[Device, ...]
 
@@ -59,6 +67,7 @@ class Holding:
         self._host = host
         self._stall: Stall | None = None
         self._going_on: asyncio.Task[None] | None = None
+        hold.wait_for_base = self._wait_for_base
 
     def stalled(self, stall: Stall) -> None:
         """Take note of a stall; if the base was stopped, hold the mission."""
@@ -68,7 +77,7 @@ class Holding:
         if not stall.was_stopped:
             return
         if self._host.mode in UNDER_WAY:
-            self._begin(stall)
+            self._hold_for(stall)
         else:
             self._host.halt(Occasion.STOP, f"{stall}; {_NEXT_STEP}")
 
@@ -87,7 +96,7 @@ class Holding:
             return False
         if self.hold.cause is None and status.faults and stall is not None:
             log.warning("%s: its deadman ran out while the loop stood still", status.name)
-            self._begin(stall)
+            self._hold_for(stall)
             return True
         return self.hold.cause is not None
 
@@ -95,6 +104,20 @@ class Holding:
         """Return a reason, with a stall before it that may be the cause."""
         stall = self._recent()
         return reason if stall is None else f"{reason}; shortly before, {stall}; {_NEXT_STEP}"
+
+    def base_silent_s(self) -> float:
+        """Return how old the newest odometry is, by its own time."""
+        latest = self._host.robot.drive.odometry.latest
+        return math.inf if latest is None else (now_ns() - latest.time_ns) / NS_PER_S
+
+    def has_waited_enough(self) -> bool:
+        """Whether the base has been silent for too long to be waited for, though its line is not lost."""
+        return min(self.hold.lasted_s(now_ns()), self.base_silent_s()) > _WAITED_FOR_S
+
+    def give_up(self) -> None:
+        """End a mission that waits for a base that does not come back."""
+        if self.hold.cause is not None:
+            self._host.halt(Occasion.STOP, f"drive: no odometry for {_WAITED_FOR_S:g} s; {_NEXT_STEP}")
 
     def go_on(self) -> None:
         """Arm the devices again and let the mission go on; whatever comes between ends it as always."""
@@ -121,18 +144,34 @@ class Holding:
                 self._host.halt(Occasion.STOP, f"cannot go on: {str(error) or 'arming took too long'}; {_NEXT_STEP}")
             return
         if self.hold.cause is not None:
-            log.info("the mission goes on: the loop has been well for a while")
+            log.info("the mission goes on: all has been well for a while")
             self.hold.end()
             self._host.publish(self._host.status)
 
-    def _begin(self, stall: Stall) -> None:
-        if not self.hold.begin(f"{stall}; it goes on by itself", stall.time_ns):
-            often = f"for the {HOLDS_A_MINUTE + 1}th time within a minute"
-            self._host.halt(Occasion.STOP, f"{stall}, {often}; {_NEXT_STEP}")
-            return
-        log.warning("held: %s", stall)
+    def _wait_for_base(self, error: FellSilent) -> None:
+        """Hold the mission until the base is heard again.
+
+        Raises:
+            LinkTimeout: it is not waited for: it is not there, was never heard, or fell silent too often.
+        """
+        robot = self._host.robot
+        if self._host.mode not in UNDER_WAY or not robot.has_base or robot.drive.odometry.latest is None:
+            raise error
+        if not self._begin(str(error), now_ns()):
+            raise LinkTimeout(f"{error}, {_TOO_OFTEN}; {_NEXT_STEP}") from error
+
+    def _hold_for(self, stall: Stall) -> None:
+        if not self._begin(str(stall), stall.time_ns):
+            self._host.halt(Occasion.STOP, f"{stall}, {_TOO_OFTEN}; {_NEXT_STEP}")
+
+    def _begin(self, cause: str, time_ns: int) -> bool:
+        """Stop and hold; False if that was so too often, and the mission must end."""
+        if not self.hold.begin(f"{cause}; it goes on by itself", time_ns):
+            return False
+        log.warning("held: %s", cause)
         self._host.robot.stop_now()
         self._host.publish(self._host.status)
+        return True
 
     def _recent(self) -> Stall | None:
         return self._stall if self._stall is not None and self._stall.is_recent(now_ns()) else None

@@ -2,8 +2,11 @@
 
 from pathlib import Path
 
-from robotd.cli.demo.rig import UNFINISHED, slowed
+import pytest
+
+from robotd.cli.demo.rig import UNFINISHED, explained
 from robotd.cli.demo.room import fresh
+from robotd.mission.safety.hold import TOO_BUSY
 from robotd.sim.pace import SLOWED
 
 
@@ -33,6 +36,25 @@ def test_what_a_finished_one_left_goes(tmp_path: Path) -> None:
     assert not list(directory.glob("failed-*"))
 
 
-def test_a_demonstration_that_fails_on_a_busy_machine_says_so() -> None:
-    assert slowed(f"devices are there\n{SLOWED}\ndrive: silent for 1 s\n").startswith("; this machine is busy")
-    assert slowed("devices are there\ndrive: silent for 1 s\n") == ""
+@pytest.mark.parametrize(
+    ("reason", "log"),
+    [
+        ("drive is gone: drive: silent for 10 s", ""),
+        ("drive: no odometry for 0.5 s, for the 7th time within a minute", ""),
+        ("pantilt: no answer to Aim in 9 tries", ""),
+        ("drive: deadman", ""),
+        ("the lease of mission 3 expired", f"devices are there\n{SLOWED}\n"),
+        (f"drive: deadman; shortly before, {TOO_BUSY}: the loop stood still 0.4 s", ""),
+    ],
+)
+def test_a_demonstration_that_fails_on_a_busy_machine_says_so_once(reason: str, log: str) -> None:
+    words = explained(reason, None, log)
+    assert words.startswith(reason)
+    assert words.count(TOO_BUSY) == 1
+
+
+def test_what_has_another_cause_is_not_blamed_on_the_machine() -> None:
+    assert explained("(3.00, 1.00) m cannot be reached", None, "") == "(3.00, 1.00) m cannot be reached"
+    assert (
+        explained("drive: silent for 10 s", -9, SLOWED) == "drive: silent for 10 s: the simulated robot ended with -9"
+    )

@@ -100,6 +100,7 @@ def link_to(connect: Connect, tape: Tape | None = None, kind: BoardKind = BoardK
         dictionaries={},
         wire=BoardWire(kind),
         counters=LinkCounters(),
+        silence_s=1.0,
     )
 
 

@@ -18,7 +18,7 @@ from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError, Tr
 from robotd.hardware.link.clock_sync import ClockSync
 from robotd.hardware.link.handshake import Terms, shake_hands
 from robotd.hardware.link.round_trip import TIMEOUT_MAX_S
-from robotd.hardware.link.session import LinkCounters, Session
+from robotd.hardware.link.session import TRIES, LinkCounters, Session
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.memory import memory_pair
@@ -345,3 +345,22 @@ async def test_a_result_that_we_do_not_know_is_named_by_its_number() -> None:
         b.session._take(Received(Arm.TYPE | REPLY, 0, Ack(77)), now_ns())
         with pytest.raises(DeviceError, match="result_77"):
             await arming
+
+
+async def test_tries_on_a_line_on_which_nothing_is_heard_do_not_count_until_it_is_lost() -> None:
+    async with bench(BoardKind.PANTILT) as b:
+        serving = asyncio.create_task(b.session.serve())
+        await asyncio.sleep(0.1)
+        heard, b.line.from_board = b.line.from_board, never
+        asking = asyncio.create_task(b.session.ask(ReadLimits(), Limits))
+        await asyncio.sleep(0.7)
+        assert not asking.done()
+        b.line.from_board = heard
+        assert isinstance(await asking, Limits)
+        assert b.counters.retries > TRIES
+        assert b.counters.timeouts == 0
+        b.line.from_board = never
+        with pytest.raises(TransportError, match="silent for 1 s"):
+            await b.session.ask(ReadLimits(), Limits)
+        with pytest.raises(LinkTimeout, match="silent for 1 s"):
+            await serving

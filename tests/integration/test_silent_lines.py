@@ -1,0 +1,232 @@
+"""A line that is silent for a moment holds what drives and delays what stands; one that is lost ends the mission."""
+
+import asyncio
+import random
+import threading
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+
+from firmware_proto.common import BoardKind
+from firmware_proto.drive import OdometryReport
+from robotd.app.replaying import ReplayReport, replay_recording
+from robotd.contract.events import MissionPhase, MissionProgress
+from robotd.contract.missions import Legs, MapMission
+from robotd.contract.modes import Mode
+from robotd.hardware.link.tap import Direction
+from robotd.hardware.wire.board import BoardWire
+from robotd.mission.safety.hold import HOLDS_A_MINUTE
+from robotd.sim.emulators.catalogue import Dialects
+from robotd.sim.faults.fault import Fault
+from robotd.sim.faults.of_flow import Silence
+from robotd.sim.faults.of_frames import frames_of
+from robotd.sim.robot import DEVICES
+from tests.faults.bench import Bench, bench
+
+pytestmark = pytest.mark.slow
+
+STOPPED_S = 0.55
+"""Odometry may be silent for half a second, and a report is due each 40 ms."""
+LOST_S = 1.1
+PATIENT_S = 10.0
+
+
+class NoOdometry(Fault):
+    """The base says how it is, but not where."""
+
+    def changed(self, data: bytes, way: Direction) -> bytes:
+        frames = data if way is Direction.TO_BOARD else b"".join(f for f in frames_of(data) if not _is_odometry(f))
+        return bytes(frames)
+
+
+def _is_odometry(frame: bytes) -> bool:
+    return any(isinstance(one.message, OdometryReport) for one in BoardWire(BoardKind.DRIVE).feed(b"\0" + frame))
+
+
+@asynccontextmanager
+async def mapping(directory: Path, silence_s: float = 1.0) -> AsyncIterator[Bench]:
+    """Yield a robot that makes a map with two stops, and check that its recording replays."""
+    async with bench(directory, Dialects(), silence_s=silence_s) as it:
+        await it.daemon.control.arm()
+        it.start(MapMission("laboratory", it.robot.stops_m[:1], it.robot.start, Legs.STRAIGHT))
+        yield it
+        await it.daemon.control.stop_recording()  # what ends the daemon is in no replay
+    (file,) = (directory / "recordings").glob("*.mcap")
+    report = _replayed(file)
+    assert report.differences == ()
+    assert report.digest == report.recorded_digest
+
+
+def _replayed(file: Path) -> ReplayReport:
+    reports: list[ReplayReport] = []
+    thread = threading.Thread(target=lambda: reports.append(replay_recording(file)))
+    thread.start()
+    thread.join()
+    return reports[0]
+
+
+def fall_silent(it: Bench, devices: tuple[str, ...] = DEVICES) -> None:
+    for device in devices:
+        it.cables[device].set_fault(Silence(random.Random(1)))
+
+
+def mend(it: Bench) -> None:
+    for cable in it.cables.values():
+        cable.mend()
+
+
+async def until(it: Bench, happens: Callable[[Bench], bool]) -> None:
+    async with asyncio.timeout(120.0):
+        with it.daemon.control.events.subscribe(depth=100_000) as events:
+            while not happens(it):
+                await events.get()
+
+
+async def ended(it: Bench) -> MissionProgress:
+    async with asyncio.timeout(300.0):
+        async for event in it.events:
+            if isinstance(event, MissionProgress) and event.is_last:
+                return event
+    raise AssertionError("a subscription never ends")
+
+
+def twist(it: Bench) -> tuple[float, float]:
+    latest = it.daemon.robot.drive.odometry.latest
+    return (0.0, 0.0) if latest is None else (abs(latest.twist.speed_mps), abs(latest.twist.turn_radps))
+
+
+def is_held(it: Bench) -> bool:
+    return it.daemon.control.status.held is not None
+
+
+async def rests_unarmed(it: Bench) -> None:
+    """Check that nothing moves by itself once the lines are there again."""
+    where = it.robot.truth
+    await asyncio.sleep(10.0)
+    assert it.robot.truth == where
+    assert it.mode in {Mode.DISARMED, Mode.FAULT}  # its deadman is latched if it drove
+    assert not any(device.status.armed for device in it.daemon.robot.devices)
+
+
+MOMENTS: dict[str, Callable[[Bench], bool]] = {
+    "sweeping": lambda it: it.robot._head.arrives_us is not None,
+    "turning": lambda it: twist(it)[1] > 0.3,
+    "driving": lambda it: twist(it)[0] > 0.2,
+}
+
+
+@pytest.mark.parametrize("moment", MOMENTS)
+@pytest.mark.parametrize("lasts_s", [0.2, 0.7, 0.85])
+async def test_a_moment_without_a_word_ends_nothing(tmp_path: Path, moment: str, lasts_s: float) -> None:
+    async with mapping(tmp_path) as it:
+        await until(it, MOMENTS[moment])
+        fall_silent(it)
+        await asyncio.sleep(lasts_s)
+        assert is_held(it) == (moment != "sweeping" and lasts_s > STOPPED_S)
+        assert it.mode is Mode.MAPPING
+        assert not is_held(it) or not it.daemon.robot.drive.is_driven
+        mend(it)
+        end = await ended(it)
+        assert end.phase is MissionPhase.DONE, end
+
+
+@pytest.mark.parametrize("moment", MOMENTS)
+async def test_a_silence_that_the_setting_allows_ends_nothing(tmp_path: Path, moment: str) -> None:
+    async with mapping(tmp_path, PATIENT_S) as it:
+        await until(it, MOMENTS[moment])
+        fall_silent(it)
+        await asyncio.sleep(STOPPED_S)
+        assert is_held(it) == (moment != "sweeping")
+        assert not it.daemon.robot.drive.is_driven
+        await asyncio.sleep(3.0)
+        assert it.robot.at_rest
+        mend(it)
+        end = await ended(it)
+        assert end.phase is MissionPhase.DONE, end
+        assert not is_held(it)
+
+
+@pytest.mark.parametrize("device", DEVICES)
+@pytest.mark.parametrize("moment", MOMENTS)
+async def test_a_line_that_stays_silent_is_lost_within_a_second_held_or_not(
+    tmp_path: Path, moment: str, device: str
+) -> None:
+    async with mapping(tmp_path) as it:
+        await until(it, MOMENTS[moment])
+        fall_silent(it, (device,))
+        await asyncio.sleep(LOST_S)
+        assert (it.mode, is_held(it)) == (Mode.DISARMED, False)
+        await asyncio.sleep(1.0)
+        mend(it)
+        end = await ended(it)
+        assert end.phase in {MissionPhase.STOPPED, MissionPhase.FAILED}
+        assert f"{device}: silent for 1 s" in end.message
+        await rests_unarmed(it)
+
+
+async def test_a_cable_pulled_while_held_ends_the_mission(tmp_path: Path) -> None:
+    async with mapping(tmp_path) as it:
+        await until(it, MOMENTS["driving"])
+        fall_silent(it)
+        await until(it, is_held)
+        it.cables["rangefinder"].unplug()
+        await asyncio.sleep(0.1)
+        assert it.mode is Mode.DISARMED
+        await asyncio.sleep(1.0)
+        it.cables["rangefinder"].plug()
+        mend(it)
+        await rests_unarmed(it)
+
+
+async def test_a_device_lost_while_held_ends_the_mission(tmp_path: Path) -> None:
+    async with mapping(tmp_path, PATIENT_S) as it:
+        await until(it, MOMENTS["driving"])
+        fall_silent(it, ("drive",))
+        await until(it, is_held)
+        it.cables["drive"].unplug()
+        await asyncio.sleep(0.1)
+        assert (it.mode, is_held(it)) == (Mode.DISARMED, False)
+        assert (await ended(it)).phase is MissionPhase.STOPPED
+
+
+async def test_a_stop_while_the_base_is_silent_is_the_end(tmp_path: Path) -> None:
+    async with mapping(tmp_path, PATIENT_S) as it:
+        await until(it, MOMENTS["driving"])
+        fall_silent(it)
+        await until(it, is_held)
+        await it.daemon.control.stop("enough")
+        await asyncio.sleep(1.0)
+        mend(it)
+        assert (await ended(it)).message.startswith("enough")
+        assert not is_held(it)
+        await rests_unarmed(it)
+
+
+async def test_a_base_that_reports_but_tells_no_odometry_is_given_up(tmp_path: Path) -> None:
+    async with mapping(tmp_path) as it:
+        await until(it, MOMENTS["sweeping"])  # a base that is driven would end by its deadman
+        it.cables["drive"].set_fault(NoOdometry(random.Random(1)))
+        await until(it, is_held)
+        await asyncio.sleep(9.0)
+        assert is_held(it)
+        await asyncio.sleep(1.5)
+        assert (it.mode, is_held(it)) == (Mode.DISARMED, False)
+        message = (await ended(it)).message
+        assert "no odometry for 10 s" in message
+        assert "continue with: robotctl arm" in message
+
+
+async def test_the_seventh_silence_within_a_minute_ends_the_mission_and_says_why(tmp_path: Path) -> None:
+    async with mapping(tmp_path) as it:
+        for _ in range(HOLDS_A_MINUTE + 1):
+            await until(it, lambda it: it.daemon.robot.drive.is_driven or it.mode is Mode.DISARMED)
+            fall_silent(it)
+            await asyncio.sleep(0.7)
+            mend(it)
+        end = await ended(it)
+        assert end.phase is MissionPhase.FAILED
+        assert it.mode is Mode.DISARMED
+        for words in ("no odometry for 0.5 s", "7th time within a minute", "continue with: robotctl arm"):
+            assert words in end.message
