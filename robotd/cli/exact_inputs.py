@@ -14,7 +14,8 @@ from robotd.exact.planar import PlanarSet
 from robotd.exact.rationals import DEFAULT, Arithmetic, rational
 from robotd.exact.readings import beams_of
 from robotd.grid.binary import BinaryMap
-from robotd.maps.store import MANIFEST, MapStore
+from robotd.maps.store import MapStore
+from robotd.maps.version_files import MANIFEST
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,9 +72,9 @@ def read_map(path: Path, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
 def _read_cells(path: Path, arithmetic: Arithmetic) -> PlanarSet:
     path = path.resolve()  # even "." has a name
     if (path / MANIFEST).exists() and path.name.isdecimal():
-        grid, _ = MapStore(path.parent.parent).load(path.parent.name, int(path.name))
+        grid = MapStore(path.parent.parent).load(path.parent.name, int(path.name)).grid
     elif any(entry.name.isdecimal() for entry in path.iterdir()):
-        grid, _ = MapStore(path.parent).load(path.name)
+        grid = MapStore(path.parent).load(path.name).grid
     else:
         raise MapError(f"{path}: no saved map: neither its directory nor that of one of its versions{_maps_in(path)}")
     spec = grid.spec

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import re
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 from typing import Any, Self
 
@@ -11,7 +12,7 @@ import msgspec
 from robotd.core.errors import MapError
 from robotd.core.grid_spec import MAX_SIDE_CELLS, GridSpec
 
-SCHEMA = 1
+SCHEMA = 2
 _FILE_MAX_BYTES = MAX_SIDE_CELLS**2 + 1024  # an image has a few words before its cells
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
@@ -58,6 +59,8 @@ class Manifest:
     spec: GridSpec
     files: dict[str, FileSum]
     metadata: dict[str, Any]
+    stops: int | None
+    """How many stops ``stops.bin`` holds; None if there is no such file."""
 
     def encode(self) -> bytes:
         """Return the file's bytes.
@@ -83,15 +86,32 @@ def decode_manifest(data: bytes) -> Manifest:
         raise MapError(f"manifest.json has no {error.args[0]!r}") from error
     except (ValueError, AttributeError, TypeError, RecursionError) as error:
         raise MapError(f"manifest.json is damaged: {error}") from error
-    if schema != SCHEMA:
-        raise MapError(f"manifest.json has schema {schema}, this version reads schema {SCHEMA}")
+    if type(schema) is not int or not (schema == SCHEMA or schema in _MIGRATIONS):
+        raise MapError(f"manifest.json has schema {str(schema)[:20]}, this version reads schemas 1 to {SCHEMA}")
     try:
         is_whole = claimed == _sum({"schema": schema, **content})
     except (ValueError, RecursionError) as error:
         raise MapError(f"manifest.json is damaged: {error}") from error
     if not is_whole:
         raise MapError("manifest.json was altered: its own checksum is wrong")
-    return _manifest_of(content)
+    return _manifest_of(_migrated(content, schema))
+
+
+def _with_stops_unknown(content: dict[str, Any]) -> dict[str, Any]:
+    """Return what schema 2 says of a map of schema 1, which did not keep its stops."""
+    if "stops" in content:
+        raise MapError("manifest.json makes no sense: schema 1 has no 'stops'")
+    return content | {"stops": None}
+
+
+_MIGRATIONS: dict[int, Callable[[dict[str, Any]], dict[str, Any]]] = {1: _with_stops_unknown}
+"""From each schema to the next: what an old manifest says in the words of the new one. Its files are never changed."""
+
+
+def _migrated(content: dict[str, Any], schema: int) -> dict[str, Any]:
+    for number in range(schema, SCHEMA):
+        content = _MIGRATIONS[number](content)
+    return content
 
 
 def _manifest_of(content: dict[str, Any]) -> Manifest:
@@ -112,6 +132,8 @@ def _check_sizes(manifest: Manifest) -> None:
         raise MapError(f"manifest.json makes no sense: more than {MAX_SIDE_CELLS} cells along a side")
     if not all(0 <= one.size_bytes <= _FILE_MAX_BYTES for one in manifest.files.values()):
         raise MapError(f"manifest.json makes no sense: expected files of 0 to {_FILE_MAX_BYTES} bytes")
+    if manifest.stops is not None and manifest.stops < 0:
+        raise MapError(f"manifest.json makes no sense: {manifest.stops} stops")
 
 
 def _sum(content: dict[str, Any]) -> str:

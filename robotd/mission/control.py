@@ -20,7 +20,8 @@ from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import MapError, MissionError, RecordingError
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.maps.store import MapEntry, MapStore
+from robotd.maps.entry import MapEntry, StoredMap
+from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute
 from robotd.mission.keeping import Keeping
 from robotd.mission.modes import Occasion
@@ -139,8 +140,8 @@ class Control:
 
     async def stored_map(self, name: str, version: int | None) -> MapChanged:
         """Return every cell of a stored map; MapError if it is missing or damaged."""
-        grid, entry = await self._compute.run("read map", self._store.load, name, version)
-        return MapInUse(entry.digest, entry.name, grid, None, entry.digest).whole(now_ns())
+        stored = await self._compute.run("read map", self._store.load, name, version)
+        return _place_of(stored).whole(now_ns())
 
     async def list_maps(self) -> tuple[MapEntry, ...]:
         """Return what is in the store."""
@@ -155,8 +156,8 @@ class Control:
         place = self._place()
         metadata: dict[str, Any] = {"generation": place.generation, "map_id": place.map_id}
         created_ns = now_ns() + wall_offset_ns()
-        wanted = name or place.name
-        entry = await self._compute.run("save map", self._store.save, wanted, place.grid, metadata, created_ns)
+        wanted, save = name or place.name, self._store.save
+        entry = await self._compute.run("save map", save, wanted, place.grid, metadata, created_ns, place.stops)
         place.settled_generation = max(place.settled_generation, metadata["generation"])
         log.info("map %s was saved as version %d of %s (%s)", place.name, entry.version, entry.name, entry.digest)
         self._changed()
@@ -183,19 +184,17 @@ class Control:
             MissionError: a mission is under way, or the map in use would be lost, see :meth:`Keeping.make_way`.
         """
         self._supervisor.require_replaceable_map()
-        grid, entry = await self._compute.run("read map", self._store.load, name, version)
+        stored = await self._compute.run("read map", self._store.load, name, version)
+        entry, place = stored.entry, _place_of(stored)
         pose = None if robot_in_map is None else msgspec.to_builtins(robot_in_map)
         arguments = {"map_id": entry.digest, "name": name, "robot_in_map": pose}
-        command = await self._compute.run("pack map", _use_map, arguments, grid)
+        command = await self._compute.run("pack map", _use_map, arguments, stored.grid)
         await self.keeping.make_way()  # last of all, so that nothing changes the map meanwhile
-        self._use(command, grid, entry.digest, unsaved=entry.version if entry.is_unsaved else None)
+        self._use(command, place)
         return entry
 
-    def _use(self, command: CommandEntry, grid: OccupancyGrid, digest: str, *, unsaved: int | None = None) -> None:
+    def _use(self, command: CommandEntry, place: MapInUse) -> None:
         arguments = command.arguments
-        place = MapInUse(arguments["map_id"], arguments["name"], grid, None, digest)
-        if unsaved is not None:
-            place.settled_generation, place.kept_version = -1, unsaved
         here = self._supervisor.robot.drive.odometry.latest
         if arguments["robot_in_map"] is not None:
             if here is None:
@@ -248,8 +247,9 @@ class Control:
                 start = noted_as(NotedStart, name, arguments)
                 self.start(mission_of(start), start.lease_s)
             case "use_map":
-                grid = grid_of(noted_as(NotedMap, name, arguments))
-                self._use(CommandEntry(now_ns(), name, arguments), grid, grid.digest())
+                noted = noted_as(NotedMap, name, arguments)
+                place = MapInUse(noted.map_id, noted.name, grid_of(noted), None)
+                self._use(CommandEntry(now_ns(), name, arguments), place)
             case _:
                 raise RecordingError(f"unknown request {name!r}")
 
@@ -261,6 +261,15 @@ class Control:
 
     def _changed(self) -> None:
         self._supervisor.publish(self._supervisor.status)
+
+
+def _place_of(stored: StoredMap) -> MapInUse:
+    """Return a stored map as one to use, made of what it was made of; nothing ties odometry to it yet."""
+    entry = stored.entry
+    place = MapInUse(entry.digest, entry.name, stored.grid, None, entry.digest, stored.stops)
+    if entry.is_unsaved:
+        place.settled_generation, place.kept_version = -1, entry.version
+    return place
 
 
 def _use_map(arguments: dict[str, Any], grid: OccupancyGrid) -> CommandEntry:

@@ -9,7 +9,8 @@ import logging
 
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import MapError, MissionError
-from robotd.maps.store import UNSAVED, MapEntry, MapStore
+from robotd.maps.entry import UNSAVED, MapEntry
+from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute
 from robotd.mission.modes import UNDER_WAY
 from robotd.mission.supervisor import Supervisor
@@ -82,7 +83,8 @@ class Keeping:
         generation = place.generation
         metadata = {"generation": generation, "map_id": place.map_id, UNSAVED: True}
         created_ns = now_ns() + wall_offset_ns()
-        entry = await self._compute.run("keep map", self._store.save, place.name, place.grid, metadata, created_ns)
+        save = self._store.save
+        entry = await self._compute.run("keep map", save, place.name, place.grid, metadata, created_ns, place.stops)
         place.kept_generation, place.kept_version = generation, entry.version
         return entry
 

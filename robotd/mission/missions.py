@@ -8,6 +8,7 @@ from robotd.contract.estimate import PoseEstimate
 from robotd.contract.missions import DriveMission, LocalizeMission, MapMission, Mission
 from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec
+from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.driving import run_driving
@@ -89,7 +90,7 @@ async def _begin_map(context: MissionContext, mission: MapMission, report: Repor
     grid, digest = await context.compute.run("begin map", _blank, spec, settings)
     silence_s = context.settings.driving.silence_s
     here = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
-    place = MapInUse(f"new-{report.mission_id}", mission.name, grid, None, digest)
+    place = MapInUse(f"new-{report.mission_id}", mission.name, grid, None, digest, MapStops(settings))
     place.tie(mission.start, here.in_odom)
     return place
 

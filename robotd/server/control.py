@@ -6,7 +6,7 @@ from robotd.contract.events import Event, MapChanged, Status
 from robotd.contract.missions import Mission
 from robotd.core.broadcast import Broadcast
 from robotd.core.pose import Pose2
-from robotd.maps.store import MapEntry
+from robotd.maps.entry import MapEntry
 
 
 class Control(Protocol):

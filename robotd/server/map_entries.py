@@ -2,7 +2,7 @@
 
 from robotd.contract.requests import MapEntryInfo
 from robotd.core.text import printable
-from robotd.maps.store import MapEntry
+from robotd.maps.entry import MapEntry
 
 
 def entry_info(entry: MapEntry) -> MapEntryInfo:

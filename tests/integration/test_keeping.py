@@ -99,8 +99,31 @@ async def test_mapping_stopped_after_two_of_five_stops_is_kept(live: Live) -> No
         assert status.map_kept_version == 1
         assert it.daemon.supervisor.place is not None
         assert it.daemon.supervisor.place.generation == 2
-        grid, entry = MapStore(Path(it.daemon.control._store._root)).load("office")
+        stored = MapStore(Path(it.daemon.control._store._root)).load("office")
+        grid, entry = stored.grid, stored.entry
         assert (entry.metadata["generation"], grid.digest()) == (2, digest_in_use(it))
+        assert stored.stops == it.daemon.supervisor.place.stops
+        assert entry.stops == 2
+
+
+async def test_a_map_that_is_loaded_takes_its_stops_along(live: Live) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it:
+        control = it.daemon.control
+        await it.done(MapMission("office", robot.stops_m[:1], robot.start))
+        assert it.daemon.supervisor.place is not None
+        made = it.daemon.supervisor.place.stops
+        await control.save_map(None)
+        await control.load_map("office", None, robot.start)
+        place = it.daemon.supervisor.place
+        assert place.stops == made
+        assert made is not None
+        laid = place.grid_with(made.stops[0].sweep)
+        place.take(laid)
+        saved = await control.save_map("hall")
+        assert saved.stops == 3
+        stored = MapStore(control._store.root).load("hall")
+        assert (stored.stops, stored.grid.digest()) == (laid.stops, digest_in_use(it))
 
 
 async def test_a_map_of_which_nothing_was_seen_is_not_kept(live: Live) -> None:

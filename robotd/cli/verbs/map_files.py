@@ -12,8 +12,9 @@ from robotd.cli.quantities import number, positive, whole
 from robotd.cli.show.terminal import complain, out, print_json
 from robotd.cli.verb import OK, Verb
 from robotd.core.errors import ConfigError, MapError, RobotdError
+from robotd.maps.entry import MapEntry
 from robotd.maps.manifest import is_name
-from robotd.maps.store import MapEntry, MapStore
+from robotd.maps.store import MapStore
 
 if TYPE_CHECKING:
     from robotd.interop.map_server import ImportedMap
@@ -87,8 +88,9 @@ def _name_of(file: Path) -> str:
 
 def _export(arguments: argparse.Namespace) -> int:
     map_server, _ = _needs_extra()
-    grid, entry = _store(arguments).load(arguments.name, arguments.version)
-    files: dict[str, bytes] = map_server.export_map(grid, entry.name, arguments.mode)
+    stored = _store(arguments).load(arguments.name, arguments.version)
+    entry = stored.entry
+    files: dict[str, bytes] = map_server.export_map(stored.grid, entry.name, arguments.mode)
     directory: OutputPath = arguments.directory
     for name in files:
         check(directory / name, _YAML if name.endswith(".yaml") else _IMAGE)

@@ -6,10 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.contract.events import MapChanged
+from robotd.core.map_stop import MapStop
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import Sweep
 from robotd.grid.binary import BinaryMap
 from robotd.grid.latest import latest_with
+from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.window import CellWindow
 from robotd.mission.whereabouts.readiness import Readiness
@@ -28,6 +30,8 @@ class Laid:
     """As :attr:`MapInUse.latest`, of this grid."""
     digest: str
     """Of the grid."""
+    stops: MapStops | None
+    """What the grid is made of, if that is known."""
 
 
 @dataclass(slots=True)
@@ -45,6 +49,8 @@ class MapInUse:
     """Where the odometry frame lies on the map; None while nothing ties them."""
     digest: str = ""
     """Of the grid as it is now; made where the grid was, since for the largest it takes a tenth of a second."""
+    stops: MapStops | None = None
+    """What the grid is made of; None if that is not known, as of maps that did not keep it. Replaced with the grid."""
     generation: int = 0
     """Counts its changes since it came into use."""
     readiness: Readiness = field(default_factory=Readiness)
@@ -109,11 +115,12 @@ class MapInUse:
         map_from_robot = self.map_from_odom @ sweep.in_odom
         changed = grid.insert(sweep, map_from_robot)
         latest = latest_with(self.latest, grid.usable(sweep), map_from_robot, grid.spec)
-        return Laid(grid, changed, latest, grid.digest())
+        stops = None if self.stops is None else self.stops.with_stop(MapStop(sweep, map_from_robot))
+        return Laid(grid, changed, latest, grid.digest(), stops)
 
     def take(self, laid: "Laid") -> None:
         """Go on with the grid that a sweep was laid in."""
-        self.grid, self.latest, self.digest = laid.grid, laid.latest, laid.digest
+        self.grid, self.latest, self.digest, self.stops = laid.grid, laid.latest, laid.digest, laid.stops
         self.generation += 1
         self.readiness.note(CellWindow.bounding(laid.cells, laid.grid.spec.shape))
 

@@ -183,5 +183,6 @@ async def test_a_map_that_nobody_saved_outlives_sigterm(short: Path, monkeypatch
         daemon.supervisor.adopt(place)
         os.kill(os.getpid(), signal.SIGTERM)
         await asyncio.wait_for(running, 5.0)
-    loaded, entry = MapStore(short / "maps").load("lab")
+    stored = MapStore(short / "maps").load("lab")
+    loaded, entry = stored.grid, stored.entry
     assert (entry.is_unsaved, loaded.digest()) == (True, grid.digest())

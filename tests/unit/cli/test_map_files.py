@@ -34,12 +34,13 @@ def test_a_map_goes_in_and_comes_out(hall: Path, tmp_path: Path, capsys: pytest.
     assert run("import", hall, "--maps", maps, "--json") == 0
     told = json.loads(capsys.readouterr().out)
     assert (told["name"], told["version"], told["rows"], told["cols"], told["notes"]) == ("hall", 1, 2, 3, [])
-    grid, entry = MapStore(maps).load("hall")
+    stored = MapStore(maps).load("hall")
+    grid, entry = stored.grid, stored.entry
     assert grid.cells.tolist() == [[255, 128, 1], [1, 1, 1]]
     assert entry.metadata["imported_from"] == "hall.yaml"
     assert run("export", "hall", out, "--maps", maps, "--mode", "scale") == 0
     assert run("import", out / "hall.yaml", "--name", "again", "--maps", maps) == 0
-    assert MapStore(maps).load("again")[0].digest() == grid.digest()
+    assert MapStore(maps).load("again").grid.digest() == grid.digest()
 
 
 def test_a_picture_alone_needs_its_resolution(hall: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -47,7 +48,7 @@ def test_a_picture_alone_needs_its_resolution(hall: Path, tmp_path: Path, capsys
     assert run("import", picture, "--maps", maps) == 1
     assert "give the yaml beside it, or --resolution" in capsys.readouterr().err
     assert run("import", picture, "--maps", maps, "--resolution", "0.05", "--origin", "-1.5", "2") == 0
-    assert MapStore(maps).load("hall")[0].spec.origin_x_m == -1.5
+    assert MapStore(maps).load("hall").grid.spec.origin_x_m == -1.5
 
 
 @pytest.mark.parametrize(
@@ -98,7 +99,7 @@ def test_the_configuration_says_where_maps_are(hall: Path, tmp_path: Path) -> No
     file = tmp_path / "robotd.toml"
     file.write_text('[maps]\ndir = "mine"\n')
     assert run("import", hall, "--config", file) == 0
-    assert MapStore(tmp_path / "mine").load("hall")[1].version == 1
+    assert MapStore(tmp_path / "mine").load("hall").entry.version == 1
 
 
 def test_without_the_extra_it_is_said_how_to_get_it(

@@ -14,7 +14,8 @@ from hypothesis.extra.numpy import arrays
 from robotd.core.errors import MapError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.maps.store import MapEntry, MapStore
+from robotd.maps.entry import MapEntry
+from robotd.maps.store import MapStore
 
 SPEC = GridSpec(0.05, -1.0 / 3.0, 2.5, (6, 8))
 
@@ -44,7 +45,8 @@ specs = st.builds(
 def test_a_map_comes_back_bit_for_bit(tmp_path: Path, data: st.DataObject, spec: GridSpec) -> None:
     cells = data.draw(arrays(np.uint8, spec.shape))
     saved = MapStore(tmp_path).save("any", OccupancyGrid(spec, cells), {"note": "ä", "depth": [1, None]}, 17)
-    grid, loaded = MapStore(tmp_path).load("any")
+    stored = MapStore(tmp_path).load("any")
+    grid, loaded = stored.grid, stored.entry
     assert grid.spec == spec
     np.testing.assert_array_equal(grid.cells, cells)
     assert loaded == saved
@@ -55,14 +57,14 @@ def test_a_map_comes_back_bit_for_bit(tmp_path: Path, data: st.DataObject, spec:
 def test_a_loaded_map_goes_on_with_the_given_settings(tmp_path: Path) -> None:
     chosen = GridSettings(raise_alpha=0.7)
     MapStore(tmp_path).save("lab", grid_of(1), {}, 0)
-    assert MapStore(tmp_path, chosen).load("lab")[0].settings == chosen
+    assert MapStore(tmp_path, chosen).load("lab").grid.settings == chosen
 
 
 def test_versions_count_up_and_old_ones_go(tmp_path: Path) -> None:
     store = store_with(tmp_path, 5, keep=3)
     assert [entry.version for entry in store.list()] == [3, 4, 5]
-    assert store.load("lab")[1].version == 5
-    assert store.load("lab", 3)[1].metadata == {"stops": 3}
+    assert store.load("lab").entry.version == 5
+    assert store.load("lab", 3).entry.metadata == {"stops": 3}
     assert sorted(path.name for path in tmp_path.iterdir()) == [".lock", "lab"]
 
 
@@ -134,7 +136,7 @@ def test_damage_is_named_and_never_papered_over(tmp_path: Path, file: str, harm:
         path.write_bytes(harmed[harm])
     with pytest.raises(MapError, match=rf"lab version 3 is damaged: {file}.*; version 2 is intact"):
         store.load("lab")
-    assert store.load("lab", 2)[1].version == 2
+    assert store.load("lab", 2).entry.version == 2
     listed = store.list()[-1]
     assert listed.version == 3
     assert (listed.damage is not None) == (file == "manifest.json")
@@ -175,7 +177,7 @@ def json_or_none(path: Path) -> object:
         ("spec", {"resolution_m": -1.0, "origin_x_m": 0.0, "origin_y_m": 0.0, "shape": [6, 8]}, "must be positive"),
         ("spec", {"resolution_m": 0.05, "origin_x_m": 0.0, "origin_y_m": 0.0, "shape": [6, 8]}, "another digest"),
         ("spec", {"resolution_m": 0.05, "origin_x_m": 0.0, "origin_y_m": 0.0, "shape": [8, 8]}, "48 bytes for 8 x 8"),
-        ("schema", 2, "schema 2, this version reads schema 1"),
+        ("schema", 3, "schema 3, this version reads schemas 1 to 2"),
         ("name", "other", "belongs to map other"),
         ("files", {}, "does not list cells.bin"),
         ("surprise", 1, "makes no sense"),
@@ -225,11 +227,11 @@ def test_unsaved_versions_take_no_place_from_saved_ones_and_three_are_kept(tmp_p
 def test_the_newest_saved_version_is_loaded_before_any_that_nobody_saved(tmp_path: Path) -> None:
     store = MapStore(tmp_path)
     only = kept(store, 1)
-    assert store.load("lab")[1] == only
+    assert store.load("lab").entry == only
     store.save("lab", grid_of(2), {}, 2)
     assert kept(store, 3).version == 3
-    assert store.load("lab")[1].version == 2
-    assert store.load("lab", 3)[0].digest() == grid_of(3).digest()
+    assert store.load("lab").entry.version == 2
+    assert store.load("lab", 3).grid.digest() == grid_of(3).digest()
 
 
 def test_saving_what_is_kept_takes_the_mark_away_and_keeping_it_again_writes_nothing(tmp_path: Path) -> None:
@@ -239,7 +241,8 @@ def test_saving_what_is_kept_takes_the_mark_away_and_keeping_it_again_writes_not
     saved = store.save("lab", grid_of(1), {"stops": 2}, 17)
     assert (saved.version, saved.is_unsaved, saved.metadata, saved.created_unix_ns) == (1, False, {"stops": 2}, 17)
     assert store.list() == (saved,)
-    grid, entry = store.load("lab", 1)
+    stored = store.load("lab", 1)
+    grid, entry = stored.grid, stored.entry
     assert (entry, grid.digest()) == (saved, grid_of(1).digest())
     assert sorted(path.name for path in tmp_path.iterdir()) == [".lock", "lab"]
 
@@ -249,7 +252,7 @@ def test_what_is_kept_but_damaged_is_saved_anew(tmp_path: Path) -> None:
     (kept(store, 1).path / "cells.bin").write_bytes(bytes(48))
     saved = store.save("lab", grid_of(1), {}, 2)
     assert saved.version == 2
-    assert store.load("lab")[0].digest() == grid_of(1).digest()
+    assert store.load("lab").grid.digest() == grid_of(1).digest()
 
 
 @pytest.mark.parametrize("origin", [0, np.float64(-3.0), True], ids=repr)
@@ -257,5 +260,6 @@ def test_a_grid_placed_by_whole_numbers_or_numpys_comes_back(tmp_path: Path, ori
     store = MapStore(tmp_path, keep=10)
     grid = OccupancyGrid(GridSpec(1, origin, origin, (4, 5)))
     saved = store.save("lab", grid, {}, 1)
-    loaded, entry = store.load("lab")
+    stored = store.load("lab")
+    loaded, entry = stored.grid, stored.entry
     assert (entry.version, loaded.digest()) == (saved.version, grid.digest())

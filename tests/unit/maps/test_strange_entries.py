@@ -32,7 +32,8 @@ def save_and_find(root: Path, name: str = "lab") -> int:
     """Save a map, find it as the newest and by its number, and return that."""
     saved = MapStore(root).save(name, grid_of(7), {"seed": 7}, 7)
     for version in (None, saved.version):
-        grid, found = MapStore(root).load(name, version)
+        stored = MapStore(root).load(name, version)
+        grid, found = stored.grid, stored.entry
         assert found == saved
         np.testing.assert_array_equal(grid.cells, grid_of(7).cells)
     assert saved in MapStore(root).list()
@@ -64,7 +65,7 @@ def test_a_stray_file_hides_nothing_and_blocks_nothing(root: Path, path: str, ki
     else:
         stray.symlink_to("nowhere")
     assert [(entry.name, entry.version) for entry in MapStore(root).list()] == [("lab", 1), ("lab", 2)]
-    assert MapStore(root).load("lab")[1].version == 2
+    assert MapStore(root).load("lab").entry.version == 2
     assert save_and_find(root) == (4 if path == "lab/3" else 3)
     assert os.path.lexists(stray), "it is somebody else's, and stays"
 
@@ -168,7 +169,7 @@ def test_names_that_a_file_system_may_change_are_refused(root: Path, name: str) 
 def test_the_largest_map_is_found_again(root: Path) -> None:
     spec = GridSpec(0.05, 0.0, 0.0, (MAX_SIDE_CELLS, MAX_SIDE_CELLS))
     saved = MapStore(root).save("hall", OccupancyGrid(spec, np.full(spec.shape, 128, np.uint8)), {}, 1)
-    assert MapStore(root).load("hall")[1] == saved
+    assert MapStore(root).load("hall").entry == saved
 
 
 def test_the_longest_name_fits(root: Path) -> None:

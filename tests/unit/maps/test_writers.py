@@ -48,7 +48,8 @@ def reported(process: subprocess.Popen[str]) -> dict[int, int]:
 
 
 def assert_found(root: Path, version: int, seed: int) -> None:
-    grid, entry = MapStore(root).load("lab", version)
+    stored = MapStore(root).load("lab", version)
+    grid, entry = stored.grid, stored.entry
     assert entry.metadata == {"seed": seed}
     np.testing.assert_array_equal(grid.cells, np.random.default_rng(seed).integers(0, 256, (40, 50), np.uint8))
 

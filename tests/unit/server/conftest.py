@@ -19,7 +19,7 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import MapError, MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.maps.store import MapEntry
+from robotd.maps.entry import MapEntry
 from robotd.mission.safety.lease import Lease
 from robotd.server.server import Server, ServerSettings
 

@@ -15,7 +15,7 @@ from robotd.contract import requests as api
 from robotd.contract.envelope import Reply, decode_reply, encode_request
 from robotd.contract.missions import LocalizeMission
 from robotd.core.errors import MapError, ServerError
-from robotd.maps.store import MapEntry
+from robotd.maps.entry import MapEntry
 from robotd.server.commands import Commands
 from robotd.server.handlers import Handlers
 from robotd.server.outcomes import Outcomes

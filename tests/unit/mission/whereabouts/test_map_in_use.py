@@ -8,6 +8,7 @@ import pytest
 from robotd.contract.estimate import PoseState
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.prediction import Predictor, unlocalized
@@ -43,6 +44,25 @@ def test_a_sweep_makes_a_new_grid_and_leaves_every_snapshot_alone() -> None:
     patched.reshape(-1)[change.cells] = change.values
     assert np.array_equal(patched, here.whole(3).values)
     assert (snapshot.generation, change.generation) == (0, 1)
+
+
+def test_a_map_is_made_of_the_stops_that_were_laid_in_and_no_snapshot_of_them_changes() -> None:
+    here = place(Pose2(0.5, 0.25, 0.3))
+    here.stops = before = MapStops(here.grid.settings)
+    for x_m in (0.0, 0.1):
+        here.take(here.grid_with(sweep_at(Pose2(x_m, 0.0, 0.0))))
+    assert here.stops is not None
+    assert before.stops == ()
+    assert [stop.map_from_robot for stop in here.stops.stops] == [
+        Pose2(0.5, 0.25, 0.3) @ Pose2(x_m, 0.0, 0.0) for x_m in (0.0, 0.1)
+    ]
+    assert here.stops.grid_on(here.grid.spec).digest() == here.digest
+
+
+def test_a_map_whose_stops_are_not_known_does_not_get_to_know_them() -> None:
+    here = place()
+    here.take(here.grid_with(sweep_at(IDENTITY)))
+    assert here.stops is None
 
 
 def test_a_sweep_needs_to_know_where_it_was_taken() -> None:

@@ -1,0 +1,40 @@
+"""A map is its stops: laid in one after the other, by the settings it was begun with, they come to its grid again."""
+
+from dataclasses import dataclass, field, replace
+
+from robotd.core.grid_spec import GridSpec
+from robotd.core.map_stop import MapStop
+from robotd.grid.arithmetic import arithmetic
+from robotd.grid.occupancy import GridSettings, OccupancyGrid
+
+_SEVERAL = "several"
+"""In the place of an arithmetic: part of the stops were laid in by another one."""
+
+
+@dataclass(frozen=True, slots=True)
+class MapStops:
+    """What a grid was made of, from nothing known on."""
+
+    settings: GridSettings
+    """How readings change the cells, at every stop; what it says of size is of no account here."""
+    stops: tuple[MapStop, ...] = ()
+    """In the order in which they were laid in, which matters."""
+    arithmetic: str = field(default_factory=arithmetic)
+    """By which they were laid in, see :func:`robotd.grid.arithmetic.arithmetic`."""
+
+    @property
+    def is_of_this_arithmetic(self) -> bool:
+        """Whether the grid they were made into must come out here bit for bit."""
+        return self.arithmetic == arithmetic()
+
+    def with_stop(self, stop: MapStop) -> "MapStops":
+        """Return these and one more, which was laid in here."""
+        same = self.arithmetic if self.is_of_this_arithmetic else _SEVERAL
+        return replace(self, stops=(*self.stops, stop), arithmetic=same)
+
+    def grid_on(self, spec: GridSpec) -> OccupancyGrid:
+        """Return the grid that they make on these cells. O(stops x readings x cells a beam)."""
+        grid = OccupancyGrid(spec, settings=self.settings)
+        for stop in self.stops:
+            grid.insert(stop.sweep, stop.map_from_robot)
+        return grid

@@ -1,0 +1,143 @@
+"""Stops as columns of numbers, and back: what is alike lies together, so that it can be packed small.
+
+A column is the bytes of its numbers, little-endian, transposed: all first bytes, then all second ones, and so on. Those
+of high place hardly vary, and cost next to nothing once packed.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from robotd.core.map_stop import MapStop
+from robotd.core.pose import Pose2
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+
+_FLOAT, _WHOLE, _COUNT, _OCTET = "<f8", "<i8", "<u4", "u1"
+_MEASURED = frozenset({ReadingStatus.OK, ReadingStatus.MISS})
+_GREATEST = 1e6
+"""Of coordinates, distances [m] and angles [rad]: the kernels need finite ones, and no robot has others."""
+
+
+class StopColumns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Stops in order, and their readings in order."""
+
+    numbers: bytes
+    """Of the sweeps, int64[n]."""
+    counts: bytes
+    """How many readings each stop has, uint32[n]."""
+    in_odom: bytes
+    """x, y [m] and heading [rad] by odometry, float64[3 n]: all x, then all y, then all headings."""
+    in_map: bytes
+    """The same on the map."""
+    times_ns: bytes
+    """Of the readings, int64[m]: each less the one before, the first as it is."""
+    bearings_rad: bytes
+    """float64[m]."""
+    ranges_m: bytes
+    """float64[m], 0 for readings that measured nothing."""
+    origins_m: bytes
+    """Where the beams start, float64[2 m]: all x, then all y."""
+    states: bytes
+    """Which of ``statuses`` each reading has, uint8[m]."""
+    statuses: tuple[ReadingStatus, ...]
+    strong: bytes
+    """1 for readings that have a strength, else 0, uint8[m]."""
+    strengths: bytes
+    """int64[m], 0 for readings that have none."""
+
+
+def columns_of(stops: tuple[MapStop, ...]) -> StopColumns:
+    """Return stops as columns.
+
+    Raises:
+        OverflowError: a number needs more than 64 bits.
+    """
+    sweeps = [stop.sweep for stop in stops]
+    readings = [reading for sweep in sweeps for reading in sweep.readings]
+    statuses = tuple(ReadingStatus)
+    code = {status: number for number, status in enumerate(statuses)}
+    times_ns = np.array([reading.time_ns for reading in readings], np.int64)
+    return StopColumns(
+        numbers=_packed([sweep.number for sweep in sweeps], _WHOLE),
+        counts=_packed([len(sweep.readings) for sweep in sweeps], _COUNT),
+        in_odom=_packed(_poses([sweep.in_odom for sweep in sweeps]), _FLOAT),
+        in_map=_packed(_poses([stop.map_from_robot for stop in stops]), _FLOAT),
+        times_ns=_packed(np.diff(times_ns, prepend=np.int64(0)), _WHOLE),
+        bearings_rad=_packed([reading.bearing_rad for reading in readings], _FLOAT),
+        ranges_m=_packed([reading.range_m or 0.0 for reading in readings], _FLOAT),
+        origins_m=_packed([[r.origin_x_m for r in readings], [r.origin_y_m for r in readings]], _FLOAT),
+        states=_packed([code[reading.status] for reading in readings], _OCTET),
+        statuses=statuses,
+        strong=_packed([reading.strength is not None for reading in readings], _OCTET),
+        strengths=_packed([reading.strength or 0 for reading in readings], _WHOLE),
+    )
+
+
+def stops_of(columns: StopColumns, stops_max: int, readings_max: int) -> tuple[MapStop, ...]:
+    """Return the stops that columns say.
+
+    Raises:
+        ValueError: they contradict each other or themselves, or there are more stops or readings; says in which.
+    """
+    counts = _column("counts", columns.counts, _COUNT)
+    stops, total = len(counts), int(counts.sum(dtype=np.int64))
+    if stops > stops_max or total > readings_max:
+        raise ValueError(f"expected at most {stops_max} stops of {readings_max} readings, got {stops} of {total}")
+    numbers = _column("numbers", columns.numbers, _WHOLE, stops)
+    in_odom, in_map = _poses_of("in_odom", columns.in_odom, stops), _poses_of("in_map", columns.in_map, stops)
+    readings = _readings(columns, total)
+    return tuple(
+        MapStop(Sweep(number, odom, tuple(next(readings) for _ in range(count))), pose)
+        for number, odom, pose, count in zip(numbers.tolist(), in_odom, in_map, counts.tolist(), strict=True)
+    )
+
+
+def _readings(columns: StopColumns, total: int) -> Iterator[RangeReading]:
+    times_ns = np.cumsum(_column("times_ns", columns.times_ns, _WHOLE, total))
+    origins_m = _column("origins_m", columns.origins_m, _FLOAT, 2 * total)
+    states = _column("states", columns.states, _OCTET, total)
+    if total and int(states.max()) >= len(columns.statuses):
+        raise ValueError(f"states: expected less than {len(columns.statuses)}, got {int(states.max())}")
+    statuses = [columns.statuses[state] for state in states.tolist()]
+    ranges_m = _column("ranges_m", columns.ranges_m, _FLOAT, total).tolist()
+    strong = _column("strong", columns.strong, _OCTET, total).tolist()
+    strengths = _column("strengths", columns.strengths, _WHOLE, total).tolist()
+    return map(
+        RangeReading,
+        times_ns.tolist(),
+        _column("bearings_rad", columns.bearings_rad, _FLOAT, total).tolist(),
+        statuses,
+        [range_m if status in _MEASURED else None for range_m, status in zip(ranges_m, statuses, strict=True)],
+        [strength if has else None for strength, has in zip(strengths, strong, strict=True)],
+        origins_m[:total].tolist(),
+        origins_m[total:].tolist(),
+    )
+
+
+def _poses(poses: list[Pose2]) -> list[list[float]]:
+    return [[pose.x_m for pose in poses], [pose.y_m for pose in poses], [pose.heading_rad for pose in poses]]
+
+
+def _poses_of(name: str, data: bytes, count: int) -> tuple[Pose2, ...]:
+    numbers = _column(name, data, _FLOAT, 3 * count).reshape(3, count).T
+    return tuple(Pose2(*pose) for pose in numbers.tolist())
+
+
+def _packed(values: object, kind: DTypeLike) -> bytes:
+    numbers = np.ascontiguousarray(np.asarray(values, kind)).reshape(-1)
+    return numbers.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
+
+
+def _column(name: str, data: bytes, kind: str, count: int | None = None) -> NDArray[Any]:
+    size = np.dtype(kind).itemsize
+    if len(data) % size or (count is not None and len(data) != count * size):
+        wanted = "whole numbers" if count is None else f"{count} numbers"
+        raise ValueError(f"{name}: expected {wanted} of {size} bytes, got {len(data)} bytes")
+    octets = np.frombuffer(data, np.uint8).reshape(size, -1)
+    numbers = np.ascontiguousarray(octets.T).reshape(-1).view(kind)
+    if kind == _FLOAT and not bool((np.abs(numbers) <= _GREATEST).all()):
+        raise ValueError(f"{name}: expected finite numbers up to {_GREATEST:g}")
+    return numbers

@@ -1,0 +1,74 @@
+"""The file ``stops.bin`` of a stored map: what it was made of.
+
+A line that says what it is and of which format, then zlib of a msgpack map: ``settings`` and ``arithmetic`` as
+:class:`~robotd.grid.map_stops.MapStops` has them, and the columns of :mod:`robotd.maps.stop_columns`. Its checksum is
+in the manifest.
+"""
+
+import zlib
+from typing import Annotated
+
+import msgspec
+
+from robotd.core.errors import MapError
+from robotd.grid.map_stops import MapStops
+from robotd.grid.occupancy import GridSettings
+from robotd.maps.stop_columns import StopColumns, columns_of, stops_of
+
+FORMAT = 1
+STOPS_MAX = 1 << 14
+READINGS_MAX = 1 << 19
+"""Of all stops together: a thousand stops of 500, the most that one mission makes. They take 150 MB in memory."""
+_UNPACKED_MAX_BYTES = 32 << 20
+"""More than that many stops and readings take; nothing is unpacked beyond it."""
+_HEAD = b"robotd stops "
+_LEVEL = 6
+
+
+class _Content(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    settings: GridSettings
+    arithmetic: Annotated[str, msgspec.Meta(max_length=16)]
+    columns: StopColumns
+
+
+def encode_stops(stops: MapStops) -> bytes:
+    """Return the bytes of the file.
+
+    Raises:
+        MapError: it could not be read again: there are too many readings, or numbers that no robot has.
+    """
+    try:
+        content = _Content(stops.settings, stops.arithmetic, columns_of(stops.stops))
+    except OverflowError as error:
+        raise MapError(f"a stop cannot be stored: {error}") from error
+    data = _HEAD + b"%d\n" % FORMAT + zlib.compress(msgspec.msgpack.encode(content), _LEVEL)
+    if decode_stops(data) != stops:
+        raise MapError("the stops would not come back as they are")
+    return data
+
+
+def decode_stops(data: bytes) -> MapStops:
+    """Return what the file says.
+
+    Raises:
+        MapError: it is cut, altered, of another format, or contradicts itself; takes no more than 32 MiB to find out.
+    """
+    head, line_end, packed = data.partition(b"\n")
+    if not line_end or not head.startswith(_HEAD):
+        raise MapError(f"it does not begin with {_HEAD.decode()!r}")
+    if head != _HEAD + b"%d" % FORMAT:
+        named = head[len(_HEAD) : len(_HEAD) + 20].decode(errors="replace")
+        raise MapError(f"it has format {named!r}, this version reads format {FORMAT}")
+    try:
+        content = msgspec.msgpack.decode(_unpacked(packed), type=_Content)
+        return MapStops(content.settings, stops_of(content.columns, STOPS_MAX, READINGS_MAX), content.arithmetic)
+    except (ValueError, zlib.error, RecursionError) as error:
+        raise MapError(str(error)[:200]) from error
+
+
+def _unpacked(packed: bytes) -> bytes:
+    unpacking = zlib.decompressobj()
+    data = unpacking.decompress(packed, _UNPACKED_MAX_BYTES)
+    if not unpacking.eof or unpacking.unused_data:
+        raise ValueError("expected the end of its zlib where the file ends")
+    return data
