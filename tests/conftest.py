@@ -7,6 +7,7 @@ import os
 import tempfile
 import threading
 from collections.abc import Iterator
+from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import Any
 
@@ -95,3 +96,10 @@ def laser_data() -> Path:
     if not (DATA_DIR / "intel").is_dir():
         pytest.skip(f"no recorded laser logs at {DATA_DIR}: set ROBOTD_DATA to the folder that holds intel/ and fr079/")
     return DATA_DIR
+
+
+@pytest.fixture
+def no_tracker_is_left() -> Iterator[None]:
+    """End what a pool of processes starts beside itself, which would outlive the test with its pipe."""
+    yield
+    resource_tracker._resource_tracker._stop()  # type: ignore[attr-defined]  # there is no public way

@@ -1,17 +1,29 @@
-"""Which scans of a log make the map, and at which the robot is sought.
+"""Which scans of a log make the map, and at which the robot is sought: one protocol each, so that figures compare.
 
-Scans in file order, of more than 2000 only every fourth. The even ones make the map. Each case is one of the odd
-ones, chosen by a seeded generator; nothing is known beforehand. Figures of programs that keep to this compare.
+Scans in file order, of more than 2000 only every fourth.
+
+- *interleaved*: the even ones make the map, each case is one of the odd ones. The robot is never far off the map.
+- *half*: the first half makes the map, each case is one of the second half. Many are well off the map.
+- *other*: the even ones of another building make the map. No place is right, and sure means wrong.
+
+Cases are chosen by a seeded generator; nothing is known beforehand.
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from robotd.core.angles import wrap_rad
+from robotd.core.pose import Pose2
 from robotd.logs.scan import RecordedLog, Scan
 
 _MANY_SCANS = 2000
 _OF_MANY_EVERY = 4
+_NEAR_M = 1.0
+_NEAR_RAD = math.radians(45.0)
+"""As near to a scan of the map, a query is on the map: most of what it sees was seen from there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,21 +33,67 @@ class Query:
     number: int
     """Which scan of the log it is, in file order, from 0."""
     scan: Scan
+    truth: Pose2 | None
+    """Where the laser was on the map; None if that is another building's."""
+    is_near: bool
+    """Whether a scan of the map was taken within 1 m and 45 degrees of it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Division:
-    """A log, divided."""
+    """What makes the map, and what is asked of it."""
 
     map_scans: tuple[Scan, ...]
     queries: tuple[Query, ...]
+    """In the order in which they were drawn."""
 
 
-def divide(log: RecordedLog, cases: int, seed: int) -> Division:
-    """Divide a log into the scans of the map and at most ``cases`` queries, in the order in which they are drawn."""
-    numbered = tuple(Query(number, scan) for number, scan in enumerate(log.scans))
-    if len(numbered) > _MANY_SCANS:
-        numbered = numbered[::_OF_MANY_EVERY]
-    odd = numbered[1::2]
-    chosen = np.random.default_rng(seed).choice(len(odd), min(cases, len(odd)), replace=False) if odd else ()
-    return Division(tuple(query.scan for query in numbered[::2]), tuple(odd[index] for index in chosen))
+def interleaved(log: RecordedLog, cases: int, seed: int) -> Division:
+    """Divide a log: even scans make the map, at most ``cases`` of the odd ones are asked."""
+    numbered = _numbered(log)
+    return _division([scan for _, scan in numbered[::2]], numbered[1::2], cases, seed)
+
+
+def halves(log: RecordedLog, cases: int, seed: int) -> Division:
+    """Divide a log: its first half makes the map, at most ``cases`` of the second are asked."""
+    numbered = _numbered(log)
+    middle = (len(numbered) + 1) // 2
+    return _division([scan for _, scan in numbered[:middle]], numbered[middle:], cases, seed)
+
+
+def elsewhere(log: RecordedLog, building: RecordedLog, cases: int, seed: int) -> Division:
+    """Ask at most ``cases`` of the odd scans of a log of the map that another building's even ones make."""
+    chosen = _chosen(_numbered(log)[1::2], cases, seed)
+    queries = tuple(Query(number, scan, None, is_near=False) for number, scan in chosen)
+    return Division(tuple(scan for _, scan in _numbered(building)[::2]), queries)
+
+
+_Numbered = Sequence[tuple[int, Scan]]
+
+
+def _numbered(log: RecordedLog) -> _Numbered:
+    numbered = tuple(enumerate(log.scans))
+    return numbered[::_OF_MANY_EVERY] if len(numbered) > _MANY_SCANS else numbered
+
+
+def _chosen(scans: _Numbered, cases: int, seed: int) -> _Numbered:
+    if not scans:
+        return ()
+    order = np.random.default_rng(seed).choice(len(scans), min(cases, len(scans)), replace=False)
+    return tuple(scans[index] for index in order)
+
+
+def _division(map_scans: Sequence[Scan], others: _Numbered, cases: int, seed: int) -> Division:
+    known = [scan.laser_pose for scan in map_scans]
+    queries = (
+        Query(number, scan, scan.laser_pose, is_near=_is_near(scan.laser_pose, known))
+        for number, scan in _chosen(others, cases, seed)
+    )
+    return Division(tuple(map_scans), tuple(queries))
+
+
+def _is_near(pose: Pose2, known: Sequence[Pose2]) -> bool:
+    return any(
+        pose.distance_m(other) <= _NEAR_M and abs(wrap_rad(pose.heading_rad - other.heading_rad)) <= _NEAR_RAD
+        for other in known
+    )

@@ -44,15 +44,18 @@ class Job:
     settings: JobSettings
     seed: int
     commit: str
+    protocol: str
     digest: str
     """Of settings and map."""
 
     @classmethod
-    def of(cls, log: str, grid: OccupancyGrid, settings: JobSettings, *, seed: int, commit: str) -> "Job":
+    def of(
+        cls, log: str, grid: OccupancyGrid, settings: JobSettings, *, seed: int, commit: str, protocol: str
+    ) -> "Job":
         """Return the job of a log."""
         # How many threads share the work changes no answer.
         told = f"{settings.reach} {settings.localization} {settings.judgement} {settings.error_model} {grid.digest()}"
-        return cls(log, grid, settings, seed, commit, hashlib.sha256(told.encode()).hexdigest()[:16])
+        return cls(log, grid, settings, seed, commit, protocol, hashlib.sha256(told.encode()).hexdigest()[:16])
 
     def __call__(self, query: Query) -> Result:
         """Seek a scan, nothing known."""
@@ -63,8 +66,8 @@ class Job:
         localizer.add(*readings)
         estimate = localizer.estimate(0, final=True)
         cpu_s, wall_s = time.process_time() - cpu_s, time.perf_counter() - wall_s
-        key = CaseKey(self.log, query.number, self.seed, self.digest, self.commit)
-        return Result.of(key, estimate, query.scan.laser_pose, cpu_s=cpu_s, wall_s=wall_s)
+        key = CaseKey(self.log, query.number, self.seed, self.digest, self.commit, self.protocol)
+        return Result.of(key, query, estimate, cpu_s=cpu_s, wall_s=wall_s)
 
 
 def run(job: Job, queries: Iterable[Query], map_: Map = map) -> Iterator[Result]:

@@ -42,6 +42,7 @@ class LogReport:
     """One log, and what became of its cases so far."""
 
     log: str
+    protocol: str
     scans: int
     """Scans in the log."""
     map_scans: int
@@ -55,6 +56,11 @@ class LogReport:
     """Lines of the log that were left out."""
 
     @property
+    def name(self) -> str:
+        """The log, and how it was asked if not as usual."""
+        return f"{self.log} {self.protocol}" if self.protocol != "interleaved" else self.log
+
+    @property
     def is_cut(self) -> bool:
         """Whether it was interrupted."""
         return self.tally.cases < self.asked
@@ -63,6 +69,7 @@ class LogReport:
         """Return it for programs."""
         return {
             "log": self.log,
+            "protocol": self.protocol,
             "scans": self.scans,
             "poses": self.poses.value,
             "damaged_lines": self.damaged_lines,

@@ -7,7 +7,8 @@ from typing import Any
 from robotd.contract.estimate import PoseEstimate
 from robotd.core.angles import wrap_rad
 from robotd.core.pose import Pose2
-from robotd.evaluation.verdict import CaseVerdict, has_truth, verdict_on
+from robotd.evaluation.division import Query
+from robotd.evaluation.verdict import CaseVerdict, has_truth, is_near, verdict_on
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +23,8 @@ class CaseKey:
     """Digest of everything that the answer depends on but the log."""
     commit: str
     """Of which program; its version where no commit is known."""
+    protocol: str
+    """How the log was divided, and what was done to the map."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +35,14 @@ class Result:
     verdict: CaseVerdict
     has_truth: bool
     """Whether the truth is among the answers."""
-    truth: Pose2
-    """Where the laser was, map frame."""
+    is_near: bool
+    """Whether a scan of the map was taken nearby."""
+    truth: Pose2 | None
+    """Where the laser was, map frame; None if it was not on this map."""
+    belief: float
+    """Share of the belief that the best answer has; 0 without one."""
+    is_best_right: bool
+    """Whether the best answer is right, however sure of it."""
     best: Pose2 | None
     answers: tuple[Pose2, ...]
     """The middles of all regions, map frame, the best first."""
@@ -45,30 +54,36 @@ class Result:
     """Time until the answer was there."""
 
     @classmethod
-    def of(cls, key: CaseKey, estimate: PoseEstimate, truth: Pose2, *, cpu_s: float, wall_s: float) -> "Result":
+    def of(cls, key: CaseKey, query: Query, estimate: PoseEstimate, *, cpu_s: float, wall_s: float) -> "Result":
         """Judge an estimate."""
+        truth, first = query.truth, estimate.regions[0] if estimate.regions else None
         return cls(
-            key,
-            verdict_on(estimate, truth),
-            has_truth(estimate, truth),
-            truth,
-            estimate.best,
-            tuple(region.centre for region in estimate.regions),
-            estimate.best_rank,
-            estimate.readings,
-            cpu_s,
-            wall_s,
+            key=key,
+            verdict=verdict_on(estimate, truth),
+            has_truth=has_truth(estimate, truth),
+            is_near=query.is_near,
+            truth=truth,
+            belief=0.0 if first is None else first.belief,
+            is_best_right=first is not None and truth is not None and is_near(first.pose, truth),
+            best=estimate.best,
+            answers=tuple(region.centre for region in estimate.regions),
+            best_rank=estimate.best_rank,
+            readings=estimate.readings,
+            cpu_s=cpu_s,
+            wall_s=wall_s,
         )
 
     @property
     def error_m(self) -> float | None:
-        """How far the answer is from the truth; None without one answer."""
-        return None if self.best is None else self.best.distance_m(self.truth)
+        """How far the answer is from the truth; None without either."""
+        return None if self.best is None or self.truth is None else self.best.distance_m(self.truth)
 
     @property
     def error_rad(self) -> float | None:
         """How far it is turned."""
-        return None if self.best is None else abs(wrap_rad(self.best.heading_rad - self.truth.heading_rad))
+        if self.best is None or self.truth is None:
+            return None
+        return abs(wrap_rad(self.best.heading_rad - self.truth.heading_rad))
 
     def document(self) -> dict[str, Any]:
         """Return it for programs, flat but for its poses."""
@@ -76,7 +91,10 @@ class Result:
             **dataclasses.asdict(self.key),
             "verdict": self.verdict.value,
             "has_truth": self.has_truth,
-            "truth": dataclasses.asdict(self.truth),
+            "is_near": self.is_near,
+            "truth": None if self.truth is None else dataclasses.asdict(self.truth),
+            "belief": self.belief,
+            "is_best_right": self.is_best_right,
             "best": None if self.best is None else dataclasses.asdict(self.best),
             "error_m": self.error_m,
             "error_rad": self.error_rad,

@@ -17,6 +17,13 @@ class Tally:
     verdicts: Counter[CaseVerdict] = field(default_factory=Counter)
     ambiguous_with_truth: int = 0
     """Cases that are ambiguous with the truth among the answers."""
+    near: int = 0
+    """Cases near to a scan of the map."""
+    near_right: int = 0
+    said: Counter[int] = field(default_factory=Counter)
+    """Cases by the belief of their best answer, in tenths; without an answer they are not in it."""
+    said_right: Counter[int] = field(default_factory=Counter)
+    """Those of them whose best answer is right."""
     error_m: Quantiles = field(default_factory=Quantiles)
     """How far the right answers are off."""
     error_rad: Quantiles = field(default_factory=Quantiles)
@@ -30,7 +37,10 @@ class Tally:
         whole = cls()
         for tally in tallies:
             whole.verdicts += tally.verdicts
-            whole.ambiguous_with_truth += tally.ambiguous_with_truth
+            for name in ("ambiguous_with_truth", "near", "near_right"):
+                setattr(whole, name, getattr(whole, name) + getattr(tally, name))
+            whole.said += tally.said
+            whole.said_right += tally.said_right
             for name in ("error_m", "error_rad", "cpu_s", "wall_s"):
                 getattr(whole, name).merge(getattr(tally, name))
         return whole
@@ -44,6 +54,12 @@ class Tally:
         """Count one more."""
         self.verdicts[result.verdict] += 1
         self.ambiguous_with_truth += result.verdict is CaseVerdict.AMBIGUOUS and result.has_truth
+        self.near += result.is_near
+        self.near_right += result.is_near and result.verdict is CaseVerdict.RIGHT
+        if result.answers:
+            tenth = min(int(10 * result.belief), 9)
+            self.said[tenth] += 1
+            self.said_right[tenth] += result.is_best_right
         self.cpu_s.add(result.cpu_s)
         self.wall_s.add(result.wall_s)
         if result.verdict is CaseVerdict.RIGHT and result.error_m is not None and result.error_rad is not None:
@@ -60,6 +76,12 @@ class Tally:
             "cases": self.cases,
             **{verdict.value: self.share(self.verdicts[verdict]) for verdict in CaseVerdict},
             "ambiguous_with_truth": self.share(self.ambiguous_with_truth),
+            "near": self.near,
+            "near_right": self.near_right,
+            "calibration": [
+                {"belief": [tenth / 10, (tenth + 1) / 10], "cases": cases, "right": self.said_right[tenth]}
+                for tenth, cases in sorted(self.said.items())
+            ],
             "error_m": self.error_m.told(),
             "error_rad": self.error_rad.told(),
             "cpu_s": self.cpu_s.told(),

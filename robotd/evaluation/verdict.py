@@ -24,15 +24,18 @@ class CaseVerdict(enum.StrEnum):
     """No answer."""
 
 
-def verdict_on(estimate: PoseEstimate, truth: Pose2) -> CaseVerdict:
-    """Return what became of a case."""
+def verdict_on(estimate: PoseEstimate, truth: Pose2 | None) -> CaseVerdict:
+    """Return what became of a case; where there is no truth on the map, to be sure is to be wrong."""
     if estimate.best is not None:
-        return CaseVerdict.RIGHT if is_near(estimate.best, truth) else CaseVerdict.WRONG_AND_SURE
+        is_right = truth is not None and is_near(estimate.best, truth)
+        return CaseVerdict.RIGHT if is_right else CaseVerdict.WRONG_AND_SURE
     return CaseVerdict.AMBIGUOUS if estimate.state is PoseState.AMBIGUOUS else CaseVerdict.LOST
 
 
-def has_truth(estimate: PoseEstimate, truth: Pose2) -> bool:
+def has_truth(estimate: PoseEstimate, truth: Pose2 | None) -> bool:
     """Whether the truth is among the answers."""
+    if truth is None:
+        return False
     return any(region.extent.holds(truth, near_m=RIGHT_M, near_rad=RIGHT_RAD) for region in estimate.regions)
 
 

@@ -24,7 +24,7 @@ def load_map_world(path: Path) -> World:
     """
     try:
         from robotd.interop.map_server import IMAGE_MAX_BYTES, import_map  # noqa: PLC0415  # an extra
-        from robotd.interop.map_server_yaml import decode_map_yaml  # noqa: PLC0415
+        from robotd.interop.map_server_yaml import decode_map_yaml  # noqa: PLC0415  # of the same extra
     except ImportError as error:
         raise ConfigError(f"maps as worlds need the extra interop ({error})", file=str(path)) from error
     try:

@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
-from robotd.evaluation.division import divide
+from robotd.evaluation.division import interleaved
 from robotd.evaluation.recorded import Reach, map_of, readings_of
 from robotd.grid.occupancy import GridSettings
 from robotd.grid.readings import numbers_of
@@ -39,7 +39,7 @@ class Building:
     """One log, made ready."""
 
     def __init__(self, log: Path, settings: GridSettings) -> None:
-        division = divide(read_log(log), cases=60, seed=0)
+        division = interleaved(read_log(log), cases=60, seed=0)
         ternary = TernaryMap.from_grid(map_of(division.map_scans, REACH, settings))
         obstacles = Obstacles.of_map(ternary, UnknownCells.BLOCKS_ONLY, ERROR_RADIUS_CELLS, blocked_by=2)
         self.spec = ternary.spec

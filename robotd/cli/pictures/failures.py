@@ -24,9 +24,16 @@ def draw_failure(directory: Path, job: Job, scan: Scan, result: Result) -> None:
     if result.verdict is CaseVerdict.RIGHT:
         return
     name = job.log.split(".")[0]
-    axes = _map(f"{name}, scan {result.key.scan}: {result.verdict.replace('_', ' ')}", job, result)
+    axes = _map(f"{name}, {job.protocol}, scan {result.key.scan}: {result.verdict.replace('_', ' ')}", job, result)
     _answers(axes, scan, result)
-    save(axes, directory / f"{name}-{result.key.scan:05}-{result.verdict}.png")
+    save(axes, directory / f"{_file_name(job)}-{result.key.scan:05}-{result.verdict}.png")
+
+
+def _file_name(job: Job) -> str:
+    """Return what tells the pictures of one task from those of another."""
+    usual = job.protocol == "interleaved"
+    name = job.log.split(".")[0] if usual else f"{job.log.split('.')[0]}-{job.protocol.split('.')[0]}"
+    return f"{name}-{round(1000 * job.grid.spec.resolution_m)}mm".replace("=", "-")
 
 
 def _map(title: str, job: Job, result: Result) -> Axes:
@@ -42,8 +49,9 @@ def _answers(axes: Axes, scan: Scan, result: Result) -> None:
     """Draw the scan where it was taken and where the best answer has it, and all other answers."""
     claimed = result.best or (result.answers[0] if result.answers else None)
     rivals = result.answers[1:]
-    _scan(axes, scan, result.truth, TRUTH)
-    _pointer(axes, result.truth, TRUTH, "o")
+    if result.truth is not None:
+        _scan(axes, scan, result.truth, TRUTH)
+        _pointer(axes, result.truth, TRUTH, "o")
     if claimed is not None:
         _scan(axes, scan, claimed, ESTIMATE)
         _pointer(axes, claimed, ESTIMATE, "x")

@@ -19,6 +19,7 @@ _WORDS = {
     CaseVerdict.AMBIGUOUS: "ambiguous",
     CaseVerdict.LOST: "lost",
 }
+_CPU = [f"CPU {percent} %" if percent < 100 else "most" for percent in PERCENTILES]
 
 
 def print_report(report: LogReport) -> None:
@@ -26,13 +27,14 @@ def print_report(report: LogReport) -> None:
     spec = report.map.spec
     size = f"{spec.cols} x {spec.rows} cells of {spec.resolution_m * 1000:g} mm"
     done = f"{report.tally.cases} cases" if not report.is_cut else _so_far(report)
-    title = f"{report.log}: {done}; map of {report.map_scans} of {report.scans} scans, {size}"
+    title = f"{report.name}: {done}; map of {report.map_scans} of {report.scans} scans, {size}"
     out().print(Text(title, style="bold"))
     shares = Table.grid(padding=(0, 2))
     for words, share in _shares(report.tally):
         shares.add_row(Text(f"  {words}"), Text(f"{100 * share:5.1f} %"))
     out().print(shares)
     out().print(_percentile_table(report.tally))
+    print_calibration(report.tally)
 
 
 def _so_far(report: LogReport) -> str:
@@ -64,13 +66,29 @@ def _percentile_table(tally: Tally) -> Table:
     return table
 
 
+def print_calibration(tally: Tally) -> None:
+    """Print whether belief means what it says: of the cases whose best answer has such a belief, how many are right."""
+    if not tally.said:
+        return
+    table = Table("belief said", "cases", "best answer right", box=None, header_style="dim")
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for tenth, cases in sorted(tally.said.items()):
+        table.add_row(
+            Text(f"{10 * tenth} to {10 * tenth + 10} %"), str(cases), f"{100 * tally.said_right[tenth] / cases:.1f} %"
+        )
+    out().print(table)
+
+
 def print_summary(reports: list[LogReport]) -> None:
     """Print one line for each log, and one for all their cases together."""
-    table = Table(*("log", "cases", *_WORDS.values(), "with truth", "error", "CPU"), box=None, header_style="bold")
+    table = Table(
+        *("log", "cases", *_WORDS.values(), "with truth", "right nearby", "error", *_CPU), box=None, header_style="bold"
+    )
     for column in table.columns[1:]:
         column.justify = "right"
     for report in reports:
-        _add_summary(table, report.log, report.tally)
+        _add_summary(table, f"{report.name} {1000 * report.map.spec.resolution_m:g} mm", report.tally)
     _add_summary(table, "all", Tally.of(report.tally for report in reports))
     out().print(table)
 
@@ -87,8 +105,9 @@ def _add_summary(table: Table, name: str, tally: Tally) -> None:
         str(tally.cases),
         *(share(tally.verdicts[verdict]) for verdict in _WORDS),
         share(tally.ambiguous_with_truth),
+        f"{100 * tally.near_right / tally.near:.1f} % of {tally.near}" if tally.near else "-",
         middle(tally.error_m, "mm"),
-        middle(tally.cpu_s, "ms"),
+        *(f"{1000 * value:.0f} ms" for value in (tally.cpu_s.told() or {}).values()),
     )
 
 

@@ -20,10 +20,13 @@ from robotd.cli.show.evaluation_tables import print_parameters, print_report, pr
 from robotd.cli.show.terminal import err
 from robotd.cli.verb import INTERRUPTED, OK, Verb
 from robotd.core.errors import RecordingError
-from robotd.evaluation.division import Division, divide
+from robotd.evaluation.division import Division
 from robotd.evaluation.job import Job, JobSettings, run
 from robotd.evaluation.log_report import LogReport, MapFacts
-from robotd.evaluation.recorded import Reach, map_of
+from robotd.evaluation.processes import over_processes
+from robotd.evaluation.protocol import WORDS as PROTOCOL_WORDS
+from robotd.evaluation.protocol import Protocol, checked_word
+from robotd.evaluation.recorded import Reach
 from robotd.evaluation.result import Result
 from robotd.evaluation.tally import Tally
 from robotd.evaluation.verdict import RIGHT_M, RIGHT_RAD
@@ -42,8 +45,11 @@ class _Plan:
 
     cases: int
     seed: int
-    grid: GridSettings
+    grids: tuple[GridSettings, ...]
+    """One for each size of cells."""
+    protocols: tuple[Protocol, ...]
     job: JobSettings
+    workers: int
     commit: str
 
     def document(self) -> dict[str, Any]:
@@ -55,41 +61,62 @@ class _Plan:
             "right_within": {"m": RIGHT_M, "rad": RIGHT_RAD},
             "cases": self.cases,
             "seed": self.seed,
-            "grid": asdict(self.grid),
+            "protocols": [protocol.name for protocol in self.protocols],
+            "grid": asdict(self.grids[0]) | {"resolution_m": [grid.resolution_m for grid in self.grids]},
             **asdict(self.job),
         }
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Task:
+    """One line of the last table: a log, asked in one way on cells of one size."""
+
+    name: str
+    log: RecordedLog
+    protocol: Protocol
+    grid: GridSettings
 
 
 def _eval(arguments: argparse.Namespace) -> int:
     plan = _plan(arguments)
     draw = _drawing() if arguments.pictures is not None else None
     logs = _logs(arguments)
+    tasks = [
+        _Task(name, log, protocol, grid) for name, log in logs for protocol in plan.protocols for grid in plan.grids
+    ]
     reports: list[LogReport] = []
     with _lines(arguments.json) as say:
         say({"parameters": plan.document()})
         with suppress(KeyboardInterrupt):
-            for name, log in logs:
-                reports.append(_evaluate(plan, name, log, say, draw and _into(arguments.pictures, draw)))
+            for task in tasks:
+                reports.append(_evaluate(plan, task, say, draw and _into(arguments.pictures, draw)))
                 say(reports[-1].document())
                 if reports[-1].is_cut:
                     break
     if not _is_standard_output(arguments.json):
         _tell(plan, reports)
-    return OK if len(reports) == len(logs) and not reports[-1].is_cut else INTERRUPTED
+    return OK if len(reports) == len(tasks) and not reports[-1].is_cut else INTERRUPTED
 
 
 def _plan(arguments: argparse.Namespace) -> _Plan:
     read = config.load(arguments.config) if arguments.config else config.Config()
-    grid = GridSettings(
-        resolution_m=arguments.resolution,
-        rows=1,
-        cols=1,
-        raise_alpha=arguments.raise_alpha,
-        lower_alpha=arguments.lower_alpha,
-    )
+    alphas = {"raise_alpha": arguments.raise_alpha, "lower_alpha": arguments.lower_alpha}
+    grids = tuple(GridSettings(resolution_m=side_m, rows=1, cols=1, **alphas) for side_m in arguments.resolution)
     reach = Reach(arguments.range_max, min(arguments.clear, arguments.range_max))
-    job = JobSettings(reach, read.localization, read.judgement, read.error_model, cores())
-    return _Plan(arguments.cases, arguments.seed, grid, job, _commit())
+    threads = cores() if arguments.workers == 1 else 1
+    job = JobSettings(reach, read.localization, read.judgement, read.error_model, threads)
+    protocols = tuple(_protocol(arguments, word) for word in arguments.protocol or ["interleaved"])
+    return _Plan(arguments.cases, arguments.seed, grids, protocols, job, arguments.workers, _commit())
+
+
+def _protocol(arguments: argparse.Namespace, word: str) -> Protocol:
+    if not word.startswith("other="):
+        return Protocol(word)
+    path = Path(word.removeprefix("other="))
+    log = Reading.of(arguments).read(path)
+    if not arguments.raw:
+        refuse_raw_odometry(path, log)
+    return Protocol(f"other={path.name}", log)
 
 
 def _commit() -> str:
@@ -141,32 +168,33 @@ def _is_standard_output(file: Path | None) -> bool:
     return str(file) == STANDARD_OUTPUT
 
 
-def _evaluate(
-    plan: _Plan, name: str, log: RecordedLog, say: _Say, draw: Callable[[Job, Scan, Result], None] | None
-) -> LogReport:
+def _evaluate(plan: _Plan, task: _Task, say: _Say, draw: Callable[[Job, Scan, Result], None] | None) -> LogReport:
     """Make the map of a log and seek its queries; Ctrl-C keeps what was done."""
-    division = divide(log, plan.cases, plan.seed)
-    job = _job(plan, name, division)
+    job, division = _job(plan, task)
     scans = {query.number: query.scan for query in division.queries}
     tally = Tally()
     with _bar() as bar, suppress(KeyboardInterrupt):
-        task = bar.add_task(name, total=len(division.queries))
-        for result in run(job, division.queries):
+        shown = bar.add_task(task.name, total=len(division.queries))
+        for result in run(job, division.queries, map if plan.workers == 1 else over_processes(plan.workers)):
             tally.add(result)
             say(result.document())
             if draw is not None:
                 draw(job, scans[result.key.scan], result)
-            bar.update(task, advance=1)
-    counts = len(log.scans), len(division.map_scans), len(division.queries)
-    return LogReport(name, *counts, MapFacts.of(job.grid), tally, log.poses, log.damaged_lines)
+            bar.update(shown, advance=1)
+    counts = len(task.log.scans), len(division.map_scans), len(division.queries)
+    facts = MapFacts.of(job.grid)
+    return LogReport(task.name, task.protocol.name, *counts, facts, tally, task.log.poses, task.log.damaged_lines)
 
 
-def _job(plan: _Plan, name: str, division: Division) -> Job:
+def _job(plan: _Plan, task: _Task) -> tuple[Job, Division]:
     try:
-        grid = map_of(division.map_scans, plan.job.reach, plan.grid)
+        grid, division = task.protocol.map_and_queries(
+            task.log, plan.job.reach, task.grid, cases=plan.cases, seed=plan.seed
+        )
     except ValueError as error:
-        raise RecordingError(f"{name}: no map can be made of it: {error}") from error
-    return Job.of(name, grid, plan.job, seed=plan.seed, commit=plan.commit)
+        raise RecordingError(f"{task.name}: no map can be made of it: {error}") from error
+    job = Job.of(task.name, grid, plan.job, seed=plan.seed, commit=plan.commit, protocol=task.protocol.name)
+    return job, division
 
 
 def _bar() -> Progress:
@@ -182,17 +210,35 @@ def _tell(plan: _Plan, reports: list[LogReport]) -> None:
     print_parameters(plan.document())
 
 
+def _protocol_word(text: str) -> str:
+    try:
+        return checked_word(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
 def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("log", type=Path, nargs="+", metavar="LOG", help=f"{LOG_HELP}; its poses are the truth")
     parser.add_argument("--raw", action="store_true", help=RAW_HELP)
     parser.add_argument("--cases", type=whole(1), default=100, metavar="N", help="scans to seek (default: 100)")
     parser.add_argument("--seed", type=whole(0), default=0, metavar="N", help="chooses them (default: 0)")
     parser.add_argument(
+        "--protocol",
+        type=_protocol_word,
+        action="append",
+        metavar="P",
+        help=f"how to ask, once for each: {', '.join(PROTOCOL_WORDS)} (default: interleaved)",
+    )
+    parser.add_argument(
+        "--workers", type=whole(1), default=1, metavar="N", help="processes that share the cases (default: 1)"
+    )
+    parser.add_argument(
         "--resolution",
         type=within(GridSettings, "resolution_m"),
-        default=0.05,
+        nargs="+",
+        default=[0.05],
         metavar="M",
-        help="side of a cell of the map [m] (default: 0.05)",
+        help="sides of cells of the map [m], each a map of its own (default: 0.05)",
     )
     parser.add_argument(
         "--raise-alpha",

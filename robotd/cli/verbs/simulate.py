@@ -96,7 +96,7 @@ def _announce(ports: dict[str, str], file: Path | None, *, as_json: bool) -> Non
 
 
 def _sim_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("world", metavar="WORLD", help=f"{', '.join(world_names())}, a file of one, or the yaml of a map")
+    parser.add_argument("world", metavar="WORLD", help=f"{', '.join(world_names())}, a file of one, or a map's yaml")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="same seed, same noise (default: 1)")
     odometry_argument(parser)
     for device, table in (("drive", DRIVES), ("pantilt", PANTILTS), ("rangefinder", RANGEFINDERS)):

@@ -56,8 +56,34 @@ def test_shares_add_up_and_a_room_without_symmetry_is_recognized(
     assert report["error_m"]["p50"] < 0.1
     assert report["cpu_s"]["p50"] > 0.0
     assert re.search(rf"right +{100 * report['right']:.1f} %", said)
-    assert parameters["grid"]["resolution_m"] == 0.05
+    assert parameters["grid"]["resolution_m"] == [0.05]
     assert len(results) == 6
+
+
+@pytest.mark.usefixtures("no_tracker_is_left")
+def test_every_way_to_ask_is_a_line_of_the_table(
+    log_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, other = tmp_path / "report.jsonl", tmp_path / "other.log"
+    other.write_bytes(log_file.read_bytes())
+    words = ["--protocol", "half", "--protocol", f"other={other}", "--protocol", "degrade=trinary"]
+    assert (
+        run_eval(log_file, *words, "--resolution", "0.05", "0.1", "--cases", "1", "--workers", "2", "--json", file) == 0
+    )
+    _, results, reports = documents(file.read_text())
+    asked = [(report["protocol"], report["map"]["resolution_m"]) for report in reports]
+    names = ["half", "other=other.log", "degrade=trinary"]
+    assert asked == [(name, side_m) for name in names for side_m in (0.05, 0.1)]
+    assert len({(result["protocol"], result["settings"]) for result in results}) == 6
+    said = capsys.readouterr().out
+    assert "room.log other=other.log 100 mm" in said
+    assert "belief said" in said
+
+
+def test_a_protocol_that_is_none_is_wrong_usage(log_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["eval", str(log_file), "--protocol", "degrade=melted"])
+    assert "expected one of interleaved, half, other=LOG, degrade=thicker-1" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("compress", [gzip.compress, bz2.compress])

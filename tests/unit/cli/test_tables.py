@@ -75,13 +75,18 @@ def test_the_tables_of_eval(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         "ambiguous",
         "lost",
         "with truth",
+        "right nearby",
         "error",
-        "CPU",
+        "CPU 50 %",
+        "CPU 90 %",
+        "CPU 99 %",
+        "most",
     ]
     [total] = [columns(line) for line in said if line.strip().startswith("all ")]
     assert total[1] == "4"
+    assert re.fullmatch(r"\d+\.\d % of 4", total[7])
     assert total[-1].endswith(" ms")
-    assert total[-2].endswith(" mm")
+    assert total[-5].endswith(" mm")
     for words in ("right", "wrong and sure", "ambiguous", "lost"):
         assert any(re.fullmatch(rf"{words} +\d+\.\d %", line.strip()) for line in said)
 

@@ -13,10 +13,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robotd.core.reading import ReadingStatus
-from robotd.evaluation.division import Query, divide
+from robotd.evaluation.division import Query, elsewhere, halves, interleaved
 from robotd.evaluation.job import Job, JobSettings, run
 from robotd.evaluation.recorded import Reach, map_of, readings_of
 from robotd.evaluation.result import Result
+from robotd.evaluation.verdict import CaseVerdict
 from robotd.grid.occupancy import GridSettings
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement
@@ -42,7 +43,7 @@ def log(log_text: str) -> RecordedLog:
 @settings(max_examples=30, deadline=None)
 def test_a_log_is_divided_as_the_protocol_says(log_text: str, scans: int, cases: int, seed: int) -> None:
     scan = parse_carmen(log_text.splitlines()[:1]).scans[0]
-    division = divide(RecordedLog((scan,) * scans, 80.0), cases, seed)
+    division = interleaved(RecordedLog((scan,) * scans, 80.0), cases, seed)
     kept = list(range(scans))[:: 4 if scans > 2000 else 1]
     odd = kept[1::2]
     chosen: Any = np.random.default_rng(seed).choice(len(odd), min(cases, len(odd)), replace=False) if odd else []
@@ -73,11 +74,40 @@ def test_the_map_holds_every_hit_where_the_log_has_it(log: RecordedLog) -> None:
     assert (x_m.min(), x_m.max(), y_m.min(), y_m.max()) == pytest.approx((0.0, 5.0, 0.0, 3.0), abs=0.06)
 
 
+@given(scans=st.integers(2, 2600), cases=st.integers(1, 50), seed=st.integers(0, 5))
+@settings(max_examples=30, deadline=None)
+def test_half_a_log_is_asked_of_the_other_half(log_text: str, scans: int, cases: int, seed: int) -> None:
+    scan = parse_carmen(log_text.splitlines()[:1]).scans[0]
+    kept = list(range(scans))[:: 4 if scans > 2000 else 1]
+    division = halves(RecordedLog((scan,) * scans, 80.0), cases, seed)
+    middle = (len(kept) + 1) // 2
+    assert len(division.map_scans) == middle
+    assert {query.number for query in division.queries} <= set(kept[middle:])
+    assert len(division.queries) == min(cases, len(kept) - middle)
+    assert all(query.is_near and query.truth == scan.laser_pose for query in division.queries)
+
+
+def test_a_query_is_near_where_a_scan_of_the_map_was_taken_nearby(log: RecordedLog) -> None:
+    ahead, back = log.scans[10], log.scans[-10]
+    division = interleaved(RecordedLog((ahead, ahead, ahead, back), 80.0), 2, 0)
+    assert {query.number: query.is_near for query in division.queries} == {1: True, 3: False}
+
+
+def test_on_another_buildings_map_nothing_is_right(log: RecordedLog, job: Job) -> None:
+    queries = elsewhere(log, log, 3, 0).queries
+    assert [query.truth for query in queries] == [None] * 3
+    verdicts = {result.verdict for result in run(job, queries)}
+    assert CaseVerdict.RIGHT not in verdicts
+    assert CaseVerdict.WRONG_AND_SURE in verdicts  # it was its own map after all, so it is sure
+
+
 @pytest.fixture
 def job(log: RecordedLog) -> Job:
-    grid = map_of(divide(log, 4, 0).map_scans, REACH, GridSettings(rows=1, cols=1, raise_alpha=0.5, lower_alpha=0.9))
+    grid = map_of(
+        interleaved(log, 4, 0).map_scans, REACH, GridSettings(rows=1, cols=1, raise_alpha=0.5, lower_alpha=0.9)
+    )
     judged = JobSettings(REACH, LocalizationSettings(), Judgement(), ErrorModel(), 1)
-    return Job.of("room.log", grid, judged, seed=0, commit="none")
+    return Job.of("room.log", grid, judged, seed=0, commit="none", protocol="interleaved")
 
 
 def timeless(result: Result) -> Result:
@@ -98,7 +128,7 @@ def in_another_process(job: Job, queries: Iterable[Query]) -> list[Result]:
 
 
 def test_cases_mean_the_same_in_processes_of_their_own(log: RecordedLog, job: Job) -> None:
-    queries = divide(log, 4, 0).queries
+    queries = interleaved(log, 4, 0).queries
     elsewhere = list(run(job, queries, in_another_process))
     assert [timeless(result) for result in elsewhere] == [timeless(result) for result in run(job, queries)]
     assert len({result.key for result in elsewhere}) == len(queries)
@@ -106,17 +136,17 @@ def test_cases_mean_the_same_in_processes_of_their_own(log: RecordedLog, job: Jo
 
 def test_a_key_changes_with_whatever_the_answer_depends_on(job: Job) -> None:
     settings = replace(job.settings, localization=replace(job.settings.localization, range_error_m=0.2))
-    other_map = Job.of(job.log, job.grid, job.settings, seed=0, commit="none")
+    other_map = Job.of(job.log, job.grid, job.settings, seed=0, commit="none", protocol="interleaved")
     other_map.grid.cells[0, 0] ^= 1
-    digests = {job.digest, Job.of(job.log, job.grid, settings, seed=0, commit="none").digest}
-    digests.add(Job.of(job.log, other_map.grid, job.settings, seed=0, commit="none").digest)
-    threads = Job.of(job.log, job.grid, replace(job.settings, threads=7), seed=0, commit="none")
+    digests = {job.digest, Job.of(job.log, job.grid, settings, seed=0, commit="none", protocol="interleaved").digest}
+    digests.add(Job.of(job.log, other_map.grid, job.settings, seed=0, commit="none", protocol="interleaved").digest)
+    threads = Job.of(job.log, job.grid, replace(job.settings, threads=7), seed=0, commit="none", protocol="interleaved")
     assert len(digests) == 3
     assert threads.digest in digests
 
 
 def test_a_result_is_small_and_comes_back_whole(log: RecordedLog, job: Job) -> None:
-    result = job(divide(log, 1, 0).queries[0])
+    result = job(interleaved(log, 1, 0).queries[0])
     packed = pickle.dumps(result)
     assert len(packed) < 4096
     assert pickle.loads(packed) == result
