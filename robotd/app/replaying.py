@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from robotd.app.compose import Daemon, compose
-from robotd.config import loads
+from robotd.config import Config, loads
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RecordingError, RobotdError
-from robotd.hardware.wire.requests import summarize_requests
+from robotd.hardware.devices.catalogue import request_words
 from robotd.mission.causes import check_cause
 from robotd.mission.noted import check_noted
 from robotd.recording.comparison import Difference, compare, results_digest
@@ -58,13 +58,14 @@ def replay_recording(path: Path) -> ReplayReport:
     """
     recording = read(path)
     check_recorded(recording)
+    config = loads(recording.header.config_text, file="the recording's configuration")
     journal = PrerollJournal(recording.header, _NO_LIMIT)
-    replayed = run_recorded(_play(recording, journal), start_ns=recording.header.started_ns)
+    replayed = run_recorded(_play(recording, config, journal), start_ns=recording.header.started_ns)
     return ReplayReport(
         digest=results_digest(replayed),
         recorded_digest=results_digest(recording.entries),
         results=sum(isinstance(entry, ResultEntry) for entry in replayed),
-        differences=compare(recording, replayed, summarize_requests),
+        differences=compare(recording, replayed, request_words(config.devices)),
         complete=recording.complete,
         duration_s=(recording.end_ns - recording.header.started_ns) / NS_PER_S,
     )
@@ -109,7 +110,7 @@ def _check_device(device: str) -> None:
         raise RecordingError(f"expected one of the devices {', '.join(DEVICES)}, got {device[:40]!r}")
 
 
-async def _play(recording: Recording, journal: PrerollJournal) -> tuple[Entry, ...]:
+async def _play(recording: Recording, config: Config, journal: PrerollJournal) -> tuple[Entry, ...]:
     """Let the daemon live through the recording and return what its journal noted until it ended."""
     requests: set[asyncio.Task[None]] = set()
 
@@ -122,7 +123,6 @@ async def _play(recording: Recording, journal: PrerollJournal) -> tuple[Entry, .
         daemon.causes.repeat(entry.name, entry.arguments)
 
     playback = Playback(recording, carry_out, take_up)
-    config = loads(recording.header.config_text, file="the recording's configuration")
     connects = {device: playback.line(device).connect for device in DEVICES}
     daemon = compose(config, connects, playback.compute, journal, leases_end_by_causes=recording.notes_causes)
     async with asyncio.TaskGroup() as group:

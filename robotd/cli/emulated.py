@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from robotd.cli.outputs import CONFIG_MARK, write
-from robotd.config import effective_text, loads
+from robotd.config import Config, effective_text, loads
 from robotd.config.writer import write_value
 from robotd.recording.reader import Recording
 from robotd.sim.recorded_building import OdometrySource
@@ -37,7 +37,7 @@ def recorded_config_text(ports: Mapping[str, str], recording: Recording) -> str:
     Raises:
         ConfigError: it is not one of this version.
     """
-    config = loads(recording.header.config_text, file="the recording's configuration")
+    config = _recorded_config(recording)
     wired = replace(
         config,
         server=replace(config.server, runtime_dir=RUNTIME_DIR),
@@ -48,6 +48,15 @@ def recorded_config_text(ports: Mapping[str, str], recording: Recording) -> str:
         rangefinder=replace(config.rangefinder, port=ports["rangefinder"]),
     )
     return f"{CONFIG_MARK}: the configuration of the recorded robot, for its fake.\n\n" + effective_text(wired)
+
+
+def recorded_dialects(recording: Recording) -> dict[str, str]:
+    """Return what each device of a recorded robot speaks; ConfigError if its configuration is not of this version."""
+    return {device: settings.dialect for device, settings in _recorded_config(recording).devices.items()}
+
+
+def _recorded_config(recording: Recording) -> Config:
+    return loads(recording.header.config_text, file="the recording's configuration")
 
 
 def write_config(file: Path, text: str) -> None:

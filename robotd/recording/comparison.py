@@ -2,12 +2,14 @@
 
 import hashlib
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 
 from robotd.core.clock import NS_PER_S
+from robotd.core.errors import RecordingError
 from robotd.hardware.link.tap import Direction
+from robotd.hardware.wire.word import Repeat, Word, Words
 from robotd.recording.entries import BytesEntry, Entry, ResultEntry
 from robotd.recording.reader import Recording
 
@@ -17,9 +19,8 @@ REACTION_NS = NS_PER_S // 10
 """What the daemon had no time to answer before a recording ended is not missing from it."""
 NOTHING = "nothing"
 
-Summarize = Callable[[str, bytes], list[str]]
-"""Says what bytes to a device asked for, a line each; what a replay may do differently (pings, how often a set-point
-is renewed, retries) it leaves out."""
+RETRY_NS = 5_000_000
+"""Nobody tries again sooner: a request said twice within this is two."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,21 +45,28 @@ class _Step:
     text: str
 
 
-def compare(recording: Recording, replayed: Sequence[Entry], summarize: Summarize) -> tuple[Difference, ...]:
+def compare(recording: Recording, replayed: Sequence[Entry], words: Mapping[str, Words]) -> tuple[Difference, ...]:
     """Return the first difference of every line and of the results, in order of time; empty if there is none.
 
     Args:
         recording: what happened.
         replayed: what the daemon's journal noted during the replay.
-        summarize: what to compare of the bytes that went to the boards.
+        words: what the requests to each device mean, in its dialect; how often a set-point is renewed, or anything
+            else at the machine's pace, they leave out.
+
+    Raises:
+        RecordingError: there are bytes of a device, and no words for them.
     """
+    for device in recording.devices:
+        if device not in words:
+            raise RecordingError(f"nothing says what the recorded bytes to {device} mean: they cannot be compared")
     expected_results, actual_results = _results(recording.entries), _results(replayed)
     differences = [
         _first_difference(RESULTS, iter(expected_results[kind]), iter(actual_results[kind]), recording.end_ns)
         for kind in sorted(expected_results.keys() | actual_results.keys())
     ]
     for device in recording.devices:
-        expected, actual = (_requests(entries, device, summarize) for entries in (recording.entries, replayed))
+        expected, actual = (_requests(entries, device, words[device]) for entries in (recording.entries, replayed))
         differences.append(_first_difference(device, expected, actual, recording.end_ns))
     found = [difference for difference in differences if difference is not None]
     return tuple(sorted(found, key=lambda difference: difference.time_ns))
@@ -83,14 +91,40 @@ def _results(entries: Sequence[Entry]) -> defaultdict[str, list[_Step]]:
     return found
 
 
-def _requests(entries: Sequence[Entry], device: str, summarize: Summarize) -> Iterator[_Step]:
-    last = ""
+def _requests(entries: Sequence[Entry], device: str, words: Words) -> Iterator[_Step]:
+    """Yield what a device was asked for; what was said again although it was the same request is there once."""
+    said = _SaidLast()
     for entry in entries:
-        if isinstance(entry, BytesEntry) and entry.device == device and entry.direction is Direction.TO_BOARD:
-            for text in summarize(device, entry.data):
-                if text != last:  # a request repeated until it was answered is one request
-                    yield _Step(entry.time_ns, text)
-                last = text
+        if not isinstance(entry, BytesEntry) or entry.device != device:
+            continue
+        if entry.direction is Direction.FROM_BOARD:
+            said.is_answered = True
+            continue
+        for word in words(entry.data):
+            if not said.again(word, entry.time_ns):
+                yield _Step(entry.time_ns, word.text)
+
+
+class _SaidLast:
+    """The last request on a line, and what has been said until obeyed since the one before."""
+
+    def __init__(self) -> None:
+        self._word: Word | None = None
+        self._time_ns = 0
+        self._stops: set[str] = set()
+        self.is_answered = False
+
+    def again(self, word: Word, time_ns: int) -> bool:
+        """Take the next request, and say whether it is the one before, tried again."""
+        if word.repeat is Repeat.UNTIL_OBEYED:
+            is_again = word.text in self._stops
+            self._stops.add(word.text)  # the axes of a base are halted in turns
+            return is_again
+        is_same = word == self._word and not self._stops and time_ns - self._time_ns >= RETRY_NS
+        is_again = is_same and (word.repeat is Repeat.NUMBERED or not self.is_answered)
+        self._word, self._time_ns, self.is_answered = word, time_ns, False
+        self._stops.clear()
+        return is_again
 
 
 def _first_difference(

@@ -13,8 +13,9 @@ from robotd.contract.missions import Legs, LocalizeMission, MapMission
 from robotd.core.reading import Sweep
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.recording.reader import Recording, read
+from robotd.sim.emulators.catalogue import OWN
 from robotd.sim.fake_robot import FakeRobot
-from robotd.sim.robot import SimulatedRobot
+from robotd.sim.robot import DEVICES, SimulatedRobot
 from robotd.sim.world import load_world
 
 pytestmark = pytest.mark.slow
@@ -46,7 +47,7 @@ async def record(live: Any, path: Path) -> tuple[str, list[Sweep]]:
 
 async def repeat(live: Any, recording: Recording, *, dawdle_s: float) -> tuple[str, list[Sweep], FakeRobot]:
     """Do the same on the fake, but wait between what is asked."""
-    fake = FakeRobot(recording)
+    fake = FakeRobot(recording, dict.fromkeys(DEVICES, OWN))
     robot = SimulatedRobot(load_world("office"), seed=5)
     async with live(fake, QUICK, armed=False) as it:
         await asyncio.sleep(dawdle_s)

@@ -26,6 +26,14 @@ _LEASE_S = 0.5
 _PAUSE_MAX_S = 2.0
 _FEW_MS = 0.003
 _FAULT_MAX_S = 3.0
+VENDOR_ROBOTS = (
+    Dialects("rwi-ascii", "ptu", "dimetix"),
+    Dialects("rflex", "dynamixel", "tfmini-s"),
+    Dialects("board", "fixed", "scip"),
+    Dialects("rwi-ascii", "dynamixel", "lw20"),
+    Dialects("rflex", "ptu", "lwnx"),
+    Dialects("board", "board", "disto"),
+)
 _MAPS_FIRST = 0.5
 """Share of the sessions that begin with a map."""
 
@@ -42,10 +50,10 @@ class Outcome:
     results: int
 
 
-def run_session(seed: int, actions: int) -> Outcome:
-    """Live through a session on the virtual clock, and replay it."""
+def run_session(seed: int, actions: int, dialects: Dialects | None = None) -> Outcome:
+    """Live through a session of a robot (with our own boards, if none is said) on the virtual clock, and replay it."""
     with tempfile.TemporaryDirectory(prefix="robotd-replays-") as directory:
-        session = _Session(random.Random(f"session {seed}"))
+        session = _Session(random.Random(f"session {seed}"), dialects or Dialects())
         run_virtual(session.run(Path(directory), actions))
         (file,) = (Path(directory) / "recordings").glob("*.mcap")
         report = replay_recording(file)
@@ -61,12 +69,13 @@ def _difference(report: ReplayReport) -> str | None:
 
 
 class _Session:
-    def __init__(self, rng: random.Random) -> None:
+    def __init__(self, rng: random.Random, dialects: Dialects) -> None:
         self._rng = rng
+        self._dialects = dialects
         self.done: list[str] = []
 
     async def run(self, directory: Path, actions: int) -> None:
-        async with bench(directory, Dialects()) as it:
+        async with bench(directory, self._dialects) as it:
             if self._rng.random() < _MAPS_FIRST:
                 await self._make_a_map(it)
             for _ in range(actions):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.replay_many.session import run_session
+from tests.replay_many.session import VENDOR_ROBOTS, run_session
 
 pytestmark = pytest.mark.slow
 
@@ -11,4 +11,11 @@ pytestmark = pytest.mark.slow
 def test_a_random_session_replays(seed: int) -> None:
     outcome = run_session(seed, actions=12)
     assert outcome.differs is None, f"python -m tests.replay_many.run --count 1 --seed {seed} after {outcome.done}"
+    assert outcome.results > 0
+
+
+@pytest.mark.parametrize(("seed", "robot"), [(23, 1), (5, 4), (1, 0), (2, 2)])
+def test_a_random_session_of_vendor_devices_replays(seed: int, robot: int) -> None:
+    outcome = run_session(seed, 12, VENDOR_ROBOTS[robot])
+    assert outcome.differs is None, f"seed {seed} of robot {robot} after {outcome.done}"
     assert outcome.results > 0

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
-from robotd.cli.emulated import config_text, odometry_argument, recorded_config_text, write_config
+from robotd.cli.emulated import config_text, odometry_argument, recorded_config_text, recorded_dialects, write_config
 from robotd.cli.outputs import LINKS, MADE_CONFIG, TRUTH_LINES, output_argument
 from robotd.cli.show.terminal import command_line, err, out, print_json, print_pairs
 from robotd.cli.verb import FAILED, OK, Verb
@@ -48,7 +48,7 @@ def _fake(arguments: argparse.Namespace) -> int:
     """Answer as recorded; what the daemon asks otherwise is logged as it happens, and counted at the end."""
     configure("warning")
     recording = read(arguments.file)
-    robot = FakeRobot(recording)
+    robot = FakeRobot(recording, recorded_dialects(recording))
 
     def write(file: Path, ports: dict[str, str]) -> None:
         write_config(file, recorded_config_text(ports, recording))

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
+from firmware_proto.common import BoardKind
 from robotd.core.errors import ConfigError
 from robotd.hardware.devices.board_drive import BoardDrive
 from robotd.hardware.devices.board_pantilt import BoardPanTilt
@@ -24,7 +25,10 @@ from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, Por
 from robotd.hardware.devices.tfmini_rangefinder import TfminiRangefinder
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.line_format import LineFormat
+from robotd.hardware.wire import dimetix, disto, dynamixel, lw20, lwnx, ptu, rflex, rwi_ascii, scip, tfmini
+from robotd.hardware.wire.board import requests_to
 from robotd.hardware.wire.tfmini import Model
+from robotd.hardware.wire.word import Words
 
 S_contra = TypeVar("S_contra", bound=PortSettings, contravariant=True)
 D_co = TypeVar("D_co", covariant=True)
@@ -39,29 +43,31 @@ class Dialect(Generic[S_contra, D_co]):
     adapter: Adapter[S_contra, D_co]
     line: LineFormat
     """What such a device is usually set to."""
+    words: Words | None
+    """What bytes to it ask for; None if it has no line."""
 
 
 _OURS = LineFormat(115_200)
 
 DRIVES: Mapping[str, Dialect[DriveSettings, Drive]] = {
-    "board": Dialect(BoardDrive, _OURS),
-    "rwi-ascii": Dialect(RwiDrive, LineFormat(9_600)),
-    "rflex": Dialect(RflexDrive, LineFormat(115_200)),
+    "board": Dialect(BoardDrive, _OURS, requests_to(BoardKind.DRIVE)),
+    "rwi-ascii": Dialect(RwiDrive, LineFormat(9_600), rwi_ascii.requests),
+    "rflex": Dialect(RflexDrive, LineFormat(115_200), rflex.requests),
 }
 PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {
-    "board": Dialect(BoardPanTilt, _OURS),
-    "ptu": Dialect(PtuPanTilt, LineFormat(9_600)),
-    "fixed": Dialect(FixedPanTilt, LineFormat(9_600)),  # it has no line
-    "dynamixel": Dialect(DynamixelPanTilt, LineFormat(57_600)),
+    "board": Dialect(BoardPanTilt, _OURS, requests_to(BoardKind.PANTILT)),
+    "ptu": Dialect(PtuPanTilt, LineFormat(9_600), ptu.requests),
+    "fixed": Dialect(FixedPanTilt, LineFormat(9_600), None),  # it has no line
+    "dynamixel": Dialect(DynamixelPanTilt, LineFormat(57_600), dynamixel.requests),
 }
 RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {
-    "board": Dialect(BoardRangefinder, _OURS),
-    "dimetix": Dialect(DimetixRangefinder, LineFormat(19_200, 7, "E", 1)),
-    "disto": Dialect(DimetixRangefinder, LineFormat(9_600, 7, "E", 1)),
-    "lw20": Dialect(Lw20Rangefinder, LineFormat(115_200)),
-    "lwnx": Dialect(LwnxRangefinder, LineFormat(115_200)),
-    "scip": Dialect(ScipRangefinder, LineFormat(115_200)),
-    **{model.value: Dialect(TfminiRangefinder, LineFormat(115_200)) for model in Model},
+    "board": Dialect(BoardRangefinder, _OURS, requests_to(BoardKind.RANGEFINDER)),
+    "dimetix": Dialect(DimetixRangefinder, LineFormat(19_200, 7, "E", 1), dimetix.requests),
+    "disto": Dialect(DimetixRangefinder, LineFormat(9_600, 7, "E", 1), disto.requests),
+    "lw20": Dialect(Lw20Rangefinder, LineFormat(115_200), lw20.requests),
+    "lwnx": Dialect(LwnxRangefinder, LineFormat(115_200), lwnx.requests),
+    "scip": Dialect(ScipRangefinder, LineFormat(115_200), scip.requests),
+    **{model.value: Dialect(TfminiRangefinder, LineFormat(115_200), tfmini.requests) for model in Model},
 }
 MOTORLESS, SCANNERS = "fixed", ("scip",)
 """A head without a motor needs a rangefinder that looks all round by itself, and such a one needs it."""
@@ -93,6 +99,12 @@ def line_format(device: str, settings: PortSettings) -> LineFormat:
     """Return how to set a device's serial line; ConfigError if nothing speaks its dialect."""
     usual = _spoken(device, DIALECTS[device], settings).line
     return LineFormat.parse(settings.line) if settings.line else usual
+
+
+def request_words(devices: Mapping[str, PortSettings]) -> dict[str, Words]:
+    """Return what the bytes to each of some devices mean, in its dialect; a device without a line has no words."""
+    words = {device: _spoken(device, DIALECTS[device], settings).words for device, settings in devices.items()}
+    return {device: its_words for device, its_words in words.items() if its_words is not None}
 
 
 T = TypeVar("T")

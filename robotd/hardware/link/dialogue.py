@@ -12,6 +12,7 @@ when a timer happened to fire, and a poll is sent only when nothing was answered
 
 import asyncio
 import contextlib
+from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from types import TracebackType
@@ -104,6 +105,8 @@ class Dialogue(Generic[M]):
         self._stops = 0
         self._heard_ns = now_ns()
         self._answered_ns = self._heard_ns
+        self._pieces_ns: deque[int] = deque(maxlen=_PIECES_MAX)
+        """When the last pieces came."""
         self._unsettled_ns: int | None = self._heard_ns
         """When something was given up whose answer may still come; None if all is settled."""
         self._lost: RobotdError | None = None
@@ -167,6 +170,7 @@ class Dialogue(Generic[M]):
                         return await request.answer
                 except TimeoutError:
                     self._unsettled_ns = given_up_ns
+                    self._line.mark()  # else a replay takes the answer that came before the next recorded moment
                 except asyncio.CancelledError:
                     self._unsettled_ns = now_ns()
                     raise
@@ -237,7 +241,7 @@ class Dialogue(Generic[M]):
 
     async def _settle_down(self) -> None:
         """Let late answers to what was given up go by, as reports; what never falls silent is not waited for."""
-        for _ in range(_PIECES_MAX):
+        while not self._is_never_quiet:
             if self._unsettled_ns is None or self._lost is not None:
                 return
             missing_s = self._quiet_s - (now_ns() - max(self._unsettled_ns, self._heard_ns)) / NS_PER_S
@@ -249,11 +253,21 @@ class Dialogue(Generic[M]):
                     await self._bytes_came.wait()
         self._unsettled_ns = None
 
+    @property
+    def _is_never_quiet(self) -> bool:
+        """Whether so many pieces came since something was given up that there is no waiting for an end.
+
+        Counted by their times: a replay may find out later than the living loop that something was given up.
+        """
+        pieces_ns, since_ns = self._pieces_ns, self._unsettled_ns
+        return since_ns is not None and len(pieces_ns) == _PIECES_MAX and pieces_ns[0] > since_ns
+
     async def _read(self) -> NoReturn:
         try:
             while True:
                 chunk = await self._line.read()
                 self._heard_ns = chunk.time_ns
+                self._pieces_ns.append(chunk.time_ns)
                 self._bytes_came.set()
                 for message in self._wire.feed(chunk.data):
                     self._message_came.set()

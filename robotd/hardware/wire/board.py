@@ -4,13 +4,16 @@ Normative: ``firmware_proto/PROTOCOL.md``.
 """
 
 import struct
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from firmware_proto.common import BoardKind, HelloReply, Kill, Stop
-from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START, answers_for
+from firmware_proto.common import BoardKind, HelloReply, Kill, Ping, Stop
+from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START, answers_for, requests_for
+from firmware_proto.drive import SetVelocity
 from firmware_proto.framing import Deframer, RawFrame, encode_frame
 from firmware_proto.schema import Message, payload_size
 from robotd.core.errors import LocalProtocolError
+from robotd.hardware.wire.word import Repeat, Word, Words, whole
 
 EMERGENCY_SEQ = 0xFFFF
 """``seq`` of the preformatted frames, so that their answers are not taken for those of a session's request."""
@@ -106,3 +109,23 @@ class BoardWire:
         if gap < _SEQ_SPAN // 2:  # otherwise the counter went back: a repeat or a restart, nothing is lost
             self._gaps += gap
         self._expected[frame.type] = frame.seq + 1
+
+
+def requests_to(kind: BoardKind) -> Words:
+    """Return what says what bytes to a board of a kind ask for: without pings and velocities, which are renewed."""
+    layouts = requests_for(kind)
+
+    def requests(data: bytes) -> list[Word]:
+        return whole(data, ((encode_frame(frame), _word(frame, layouts)) for frame in Deframer().feed(data)))
+
+    return requests
+
+
+def _word(frame: RawFrame, layouts: Mapping[int, type[Message]]) -> Word | None:
+    kind = layouts.get(frame.type)
+    if kind is None or payload_size(kind) != len(frame.payload):
+        return Word(f"frame of type {frame.type:#04x} with {len(frame.payload)} bytes")
+    if kind in (Ping, SetVelocity):
+        return None
+    repeat = Repeat.UNTIL_OBEYED if frame.seq == EMERGENCY_SEQ else Repeat.NUMBERED
+    return Word(f"#{frame.seq} {kind.from_payload(frame.payload)}", repeat)

@@ -10,6 +10,8 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from robotd.hardware.wire.word import Word, typed
+
 LINE_MAX_BYTES = 64
 """What is longer without a line end is noise."""
 
@@ -127,3 +129,8 @@ def parsed(text: str) -> Message | None:
     if found := _OTHER.fullmatch(text):
         return Value(int(found[1]), found[2], int(found[3]))
     return None
+
+
+def requests(data: bytes) -> list[Word]:
+    """Return what bytes to the devices ask for, in words: without how hot one is, asked to see that it lives."""
+    return typed(data, b"\r\n", left_out=[f"s{device}t" for device in range(10)])

@@ -13,6 +13,7 @@ believed.
 import re
 
 from robotd.hardware.wire.dimetix import Distance, ErrorCode, Failed, Message, Ready, Value
+from robotd.hardware.wire.word import Word, typed
 
 _DISTANCE_WORD = 31
 _WORDS = re.compile(r"(?:\d\d[.\d]{4}[+-]\d{8} ?)+")
@@ -41,3 +42,8 @@ def parsed(text: str) -> Message | None:
     if about[-1] not in _TENTH_MM_IN:
         return Failed(_ONLY_DEVICE, ErrorCode.SYNTAX)
     return Distance(_ONLY_DEVICE, round(int(number) * _TENTH_MM_IN[about[-1]]))
+
+
+def requests(data: bytes) -> list[Word]:
+    """Return what bytes to the device ask for, in words: without how hot it is, which is asked to see that it lives."""
+    return typed(data, b"\r\n", left_out=("t",))

@@ -9,6 +9,8 @@ import struct
 from dataclasses import dataclass
 from typing import Final
 
+from robotd.hardware.wire.word import Repeat, Word, whole
+
 HEADER: Final = b"\xff\xff\xfd\x00"
 STATUS = 0x55
 PING, READ, WRITE, REBOOT, SYNC_WRITE = 0x01, 0x02, 0x03, 0x08, 0x83
@@ -18,6 +20,7 @@ LENGTH_MAX = 128
 
 TORQUE_ENABLE, HARDWARE_ERROR, BUS_WATCHDOG = 64, 70, 98
 PROFILE_VELOCITY, GOAL_POSITION, MOVING, PRESENT_POSITION = 112, 116, 122, 132
+_ASKED = (MOVING, PRESENT_POSITION)
 BUS_WATCHDOG_MS = 20
 """Unit of the bus watchdog."""
 ALERT = 0x80
@@ -174,3 +177,16 @@ def _message(servo: int, body: bytes) -> Message:
     if body[0] == STATUS and len(body) > 1:
         return Status(servo, body[1], body[2:])
     return Instruction(servo, body[0], body[1:])
+
+
+def requests(data: bytes) -> list[Word]:
+    """Return what bytes to the servos ask for, in words: without the questions where they are and whether they turn."""
+    orders = (message for message in DynamixelWire().feed(data) if isinstance(message, Instruction))
+    return whole(data, ((packet(one.servo, one.instruction, one.parameters), _word(one)) for one in orders))
+
+
+def _word(order: Instruction) -> Word | None:
+    if order.instruction == READ and int.from_bytes(order.parameters[:2], "little") in _ASKED:
+        return None
+    text = f"servo {order.servo} instruction {order.instruction:#04x} {order.parameters.hex(' ')}".rstrip()
+    return Word(text, Repeat.UNTIL_OBEYED if order.instruction == SYNC_WRITE else Repeat.UNANSWERED)

@@ -9,6 +9,8 @@ something that nobody needs goes first (maker's guide to the serial line).
 import re
 from dataclasses import dataclass
 
+from robotd.hardware.wire.word import Word, typed
+
 LINE_MAX_BYTES = 64
 """Answers have at most 32; what is longer without a line end is noise."""
 _ANSWER = re.compile(r"([a-z]{1,8})(?:,(\d{1,3}))?:(.+)")
@@ -36,7 +38,8 @@ def command(text: str) -> bytes:
 
 WAKE = command("www")
 """Never answered after power-up, and unknown later."""
-PRODUCT = command("?P")
+_NAME = "?P"
+PRODUCT = command(_NAME)
 FIRST_RETURN_RAW = command("?LDF,1")
 """Index 0 is a median of the last few, 2 the closest and 3 the furthest of them."""
 LASER_OFF, LASER_ON = command("#LF,0"), command("#LF,1")
@@ -84,3 +87,8 @@ class Lw20Wire:
     def _skip(self) -> None:
         self._counters["bytes_skipped"] += len(self._line)
         self._line.clear()
+
+
+def requests(data: bytes) -> list[Word]:
+    """Return what bytes to the device ask for, in words: without its name, which is asked to see that it lives."""
+    return typed(data, b"\r\n", left_out=(_NAME,))

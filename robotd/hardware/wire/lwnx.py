@@ -9,6 +9,8 @@ import binascii
 import struct
 from dataclasses import dataclass
 
+from robotd.hardware.wire.word import Word, whole
+
 _HEAD = 0xAA
 _HEAD_BYTES, _CRC_BYTES = 3, 2
 _LENGTH_SHIFT, _WRITE = 6, 1
@@ -115,3 +117,14 @@ class LwnxWire:
 
     def _crc(self, size: int) -> int:
         return int.from_bytes(self._buffer[size - _CRC_BYTES : size], "little")
+
+
+def requests(data: bytes) -> list[Word]:
+    """Return what bytes to the device ask for, in words: without its name, which is asked to see that it lives."""
+    return whole(data, ((encoded(packet), _word(packet)) for packet in LwnxWire().feed(data)))
+
+
+def _word(packet: Packet) -> Word | None:
+    if packet.number == NAME and not packet.writes:
+        return None
+    return Word(f"write {packet.number} {packet.data.hex(' ')}" if packet.writes else f"read {packet.number}")

@@ -8,6 +8,8 @@ is echoed before the answer on its line. The answer to a reset may lack its line
 import re
 from dataclasses import dataclass
 
+from robotd.hardware.wire.word import Word, typed
+
 LINE_MAX_BYTES = 256
 """What is longer without a line end is noise."""
 
@@ -123,3 +125,8 @@ class PtuWire:
     def _skip(self) -> None:
         self._counters["bytes_skipped"] += len(self._line)
         self._line.clear()
+
+
+def requests(data: bytes) -> list[Word]:
+    """Return what bytes to the unit ask for, in words: without the questions where it is."""
+    return typed(data, b" ", left_out=("PP", "TP"), until_obeyed=("H",))

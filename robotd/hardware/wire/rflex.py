@@ -9,6 +9,8 @@ controller never acknowledges, drops what comes in quick bursts, and loses speed
 import struct
 from dataclasses import dataclass
 
+from robotd.hardware.wire.word import Repeat, Word, whole
+
 HEAD, TAIL = b"\x1b\x02", b"\x1b\x03"
 OVERHEAD = 9
 DATA_MAX = 64
@@ -18,6 +20,7 @@ SYSTEM, MOTION, DIO = 1, 2, 5
 _ESCAPE = 0x1B
 _AXIS_REPORT = struct.Struct(">IIBiiII")
 _STATUS = struct.Struct(">IIB")
+_SET_DIRECTION, _DIRECTION = 7, struct.Struct(">BIIIB")
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +79,7 @@ def frame(port: int, opcode: int, data: bytes = b"", *, sender: int = 0) -> byte
 
 def set_direction(axis: int, speed: int, acceleration: int, torque: int, *, forwards: bool) -> bytes:
     """Return the order that lets an axis run at a speed."""
-    return frame(MOTION, 7, struct.pack(">BIIIB", axis, speed, acceleration, torque, forwards))
+    return frame(MOTION, _SET_DIRECTION, _DIRECTION.pack(axis, speed, acceleration, torque, forwards))
 
 
 def safe_speed(speed: int) -> int:
@@ -173,3 +176,18 @@ def _message(port: int, opcode: int, data: bytes) -> Message:
     if (port, opcode) == (DIO, 1) and len(data) >= 6:
         return Switches(data[4], data[5:])
     return OtherFrame(port, opcode, data)
+
+
+def requests(data: bytes) -> list[Word]:
+    """Return what bytes to the controller ask for, in words: without speeds, which are renewed, and its status."""
+    frames = (message for message in RflexWire().feed(data) if isinstance(message, OtherFrame))
+    return whole(data, ((frame(one.port, one.opcode, one.data), _word(one)) for one in frames))
+
+
+def _word(order: OtherFrame) -> Word | None:
+    if (order.port, order.opcode, len(order.data)) == (MOTION, _SET_DIRECTION, _DIRECTION.size):
+        axis, speed, _, _, _ = _DIRECTION.unpack(order.data)
+        return None if speed else Word(f"halt {axis}", Repeat.UNTIL_OBEYED)
+    if (order.port, order.opcode) == (SYSTEM, 1):
+        return None
+    return Word(f"port {order.port} opcode {order.opcode} {order.data.hex(' ')}".rstrip())

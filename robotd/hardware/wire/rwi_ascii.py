@@ -9,6 +9,8 @@ until the base is told ``HD`` it echoes what it hears.
 import re
 from dataclasses import dataclass
 
+from robotd.hardware.wire.word import Word, typed
+
 LINE_MAX_BYTES = 64
 """What is longer without a line end is noise."""
 
@@ -68,6 +70,10 @@ def command(mnemonic: str, argument: int | None = None) -> bytes:
         raise ValueError(f"{mnemonic}: {argument} does not fit into 32 bits")
     return f"{mnemonic} {argument:x}\r".encode("ascii")
 
+
+_ASKED, _HALTS = ("TW", "RW", "BV"), ("TH", "RH")
+_RENEWED = re.compile(r"(?:WD|TV|RV) [0-9a-f]{1,8}")
+"""A set-point is given again and again, at the machine's pace."""
 
 STOP_BYTES = b"\r" + command("TH") + command("RH")
 """Both axes ramp down. The CR ends a command that was cut in half."""
@@ -158,3 +164,9 @@ class RwiWire:
 
 def _digits(item: str) -> int:
     return 8 if item == "CLK" else 4
+
+
+def requests(data: bytes) -> list[Word]:
+    """Return what bytes to the base ask for, in words: without questions and set-points that come all the time."""
+    said = typed(data, b"\r", left_out=_ASKED, until_obeyed=_HALTS)
+    return [word for word in said if not _RENEWED.fullmatch(word.text)]

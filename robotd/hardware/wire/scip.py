@@ -13,6 +13,8 @@ each other; the codes of the UST are taken to be those of the UTM; and ``1Dh`` i
 import enum
 from dataclasses import dataclass
 
+from robotd.hardware.wire.word import Word, typed
+
 LINE_MAX_BYTES = 128
 BLOCK_MAX_LINES = 200
 """A scan of a turn in steps of an eighth of a degree has 136 lines; what is longer is no block."""
@@ -196,3 +198,8 @@ def _checked(line: str) -> str | None:
     if sum_of(text) == said:
         return text
     return text[:-1] if text.endswith(";") and sum_of(text[:-1]) == said else None
+
+
+def requests(data: bytes) -> list[Word]:
+    """Return what bytes to the scanner ask for, in words: without what it is, which is asked to see that it lives."""
+    return typed(data, b"\n", left_out=("PP",))

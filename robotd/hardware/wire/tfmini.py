@@ -14,6 +14,8 @@ import enum
 import struct
 from dataclasses import dataclass
 
+from robotd.hardware.wire.word import Word, whole
+
 DATA_BYTES = 9
 _DATA_HEAD, _COMMAND_HEAD = 0x59, 0x5A
 _COMMAND_MIN, _COMMAND_MAX = 4, 32
@@ -147,3 +149,17 @@ class TfminiWire:
         self._counters["measurements"] += 1
         distance, strength, _ = _DATA.unpack(frame)
         return Data(distance, strength)
+
+
+def requests(data: bytes) -> list[Word]:
+    """Return what bytes to the device ask for, in words: without its version, which is asked to see that it lives."""
+    if data == FIRST_STANDARD:
+        return [Word("first generation: say data frames")]
+    replies = (message for message in TfminiWire().feed(data) if isinstance(message, Reply))
+    return whole(data, ((command(one.number, one.payload), _word(one)) for one in replies))
+
+
+def _word(asked: Reply) -> Word | None:
+    """Return the word for a command, which looks like its echo."""
+    frame = command(asked.number, asked.payload)
+    return None if frame == VERSION else Word(f"command {asked.number:#04x} {asked.payload.hex(' ')}".rstrip())

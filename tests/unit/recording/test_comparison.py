@@ -1,25 +1,35 @@
 """A difference is shown as what was expected, what came, when, and on which line."""
 
+import pytest
+
+from robotd.core.errors import RecordingError
 from robotd.hardware.link.tap import Direction
-from robotd.recording.comparison import REACTION_NS, Difference, compare, results_digest
+from robotd.hardware.wire.word import Repeat, Word
+from robotd.recording.comparison import REACTION_NS, RETRY_NS, Difference, compare, results_digest
 from robotd.recording.entries import BytesEntry, ComputedEntry, Entry, RecordingHeader, ResultEntry
 from robotd.recording.reader import Recording
 
 HEADER = RecordingHeader("0.1.0", "", 1, 0, 0)
 LATE_NS = 10 * REACTION_NS
+DEVICES = ("drive", "pantilt", "laser")
+REPEATS = {"#": Repeat.NUMBERED, "!": Repeat.UNTIL_OBEYED}
 
 
 def asked(time_ns: int, text: bytes, device: str = "drive") -> BytesEntry:
     return BytesEntry(time_ns, device, Direction.TO_BOARD, text)
 
 
-def words_but_pings(device: str, data: bytes) -> list[str]:
-    return [word for word in data.decode().split() if word != "ping"]
+def words_but_pings(data: bytes) -> list[Word]:
+    return [Word(text, REPEATS.get(text[0], Repeat.UNANSWERED)) for text in data.decode().split() if text != "ping"]
 
 
 def differences(expected: list[Entry], actual: list[Entry]) -> tuple[Difference, ...]:
     end = ComputedEntry(LATE_NS, "end", 0)
-    return compare(Recording(HEADER, (*expected, end)), actual, words_but_pings)
+    return compare(Recording(HEADER, (*expected, end)), actual, dict.fromkeys(DEVICES, words_but_pings))
+
+
+def heard(time_ns: int) -> BytesEntry:
+    return BytesEntry(time_ns, "drive", Direction.FROM_BOARD, b"tick")
 
 
 def test_times_chunks_and_what_the_summary_leaves_out_do_not_matter() -> None:
@@ -62,8 +72,35 @@ def test_what_the_recording_had_no_time_to_see_is_not_too_much() -> None:
 
 
 def test_what_boards_said_is_not_compared() -> None:
-    heard = BytesEntry(1, "drive", Direction.FROM_BOARD, b"tick")
-    assert differences([heard], []) == ()
+    assert differences([heard(1)], []) == ()
+
+
+def test_a_request_tried_again_is_one_request_and_one_made_again_is_two() -> None:
+    later, later_still = 1 + RETRY_NS, 1 + 2 * RETRY_NS
+    once: list[Entry] = [asked(1, b"shoot")]
+    assert differences(once, [asked(1, b"shoot"), asked(later, b"shoot")]) == ()
+    assert differences(once, [asked(1, b"shoot shoot")]) == (Difference(1, "drive", "nothing", "shoot"),)
+    again: list[Entry] = [asked(1, b"shoot"), heard(2), asked(later, b"shoot")]
+    assert differences(once, again) == (Difference(later, "drive", "nothing", "shoot"),)
+    assert differences(again, [*again, heard(later + 1), asked(later_still, b"shoot")]) != ()
+
+
+@pytest.mark.parametrize("text", [b"#7", b"!halt"])
+def test_what_bears_a_number_or_is_said_until_obeyed_is_one_request_whatever_was_heard(text: bytes) -> None:
+    again: list[Entry] = [asked(1, text), heard(2), asked(1 + RETRY_NS, text), heard(3 + RETRY_NS)]
+    assert differences([asked(1, text)], again) == ()
+
+
+def test_two_stops_that_are_said_in_turns_are_two() -> None:
+    in_turns: list[Entry] = [asked(time_ns, text) for time_ns, text in ((1, b"!a"), (2, b"!b"), (3, b"!a"), (4, b"!b"))]
+    assert differences([asked(1, b"!a !b")], in_turns) == ()
+    assert differences([asked(1, b"!a aim !a")], [asked(1, b"!a aim")]) == (Difference(1, "drive", "!a", "nothing"),)
+
+
+def test_bytes_of_a_device_without_words_are_refused() -> None:
+    recording = Recording(HEADER, (asked(1, b"aim", "crane"),))
+    with pytest.raises(RecordingError, match="bytes to crane"):
+        compare(recording, recording.entries, {"drive": words_but_pings})
 
 
 def test_a_difference_reads_as_a_line() -> None:

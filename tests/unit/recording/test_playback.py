@@ -15,6 +15,7 @@ from robotd.core.errors import TransportError
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
+from robotd.hardware.wire.word import Repeat, Word
 from robotd.recording.comparison import compare, results_digest
 from robotd.recording.entries import BytesEntry, CommandEntry, ComputedEntry, Entry, LineEntry, RecordingHeader
 from robotd.recording.journal import Journal, MemoryJournal
@@ -149,8 +150,11 @@ def replay(recording: Recording) -> list[Entry]:
     return journal.entries
 
 
-def asked(device: str, data: bytes) -> list[str]:
-    return data.decode().split(";")[:-1]
+def in_words(data: bytes) -> list[Word]:
+    return [Word(text, Repeat.UNTIL_OBEYED) for text in data.decode().split(";")[:-1]]
+
+
+WORDS = dict.fromkeys(DEVICES, in_words)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -161,7 +165,7 @@ def test_a_replay_asks_and_finds_what_the_live_run_did(tmp_path: Path, seed: int
     recording = read(tmp_path / "a.mcap")
     assert len(recording.results) > 20
     first, second = replay(recording), replay(recording)
-    assert compare(recording, first, asked) == ()
+    assert compare(recording, first, WORDS) == ()
     assert first == second
     assert results_digest(first) == results_digest(second)
 
@@ -172,7 +176,7 @@ def test_a_daemon_that_thinks_otherwise_is_found_out(tmp_path: Path, monkeypatch
     recording = recording_of(*journal.entries)
     really = ToyDaemon.ask
     monkeypatch.setattr(ToyDaemon, "ask", lambda self, device, line, data: really(self, device, line, b"x" + data))
-    differences = compare(recording, replay(recording), asked)
+    differences = compare(recording, replay(recording), WORDS)
     assert [difference.device for difference in differences] == ["laser", "drive"]
     assert (differences[0].expected, differences[0].actual) == ("hello", "xhello")
 
@@ -182,7 +186,7 @@ def test_a_cut_recording_replays_up_to_the_cut(keep: float) -> None:
     journal = MemoryJournal()
     live_run(4, journal)
     recording = recording_of(*journal.entries[: int(keep * len(journal.entries))])
-    assert compare(recording, replay(recording), asked) == ()
+    assert compare(recording, replay(recording), WORDS) == ()
 
 
 def recorded(test: Callable[[], Coroutine[Any, Any, None]]) -> Callable[[], None]:
