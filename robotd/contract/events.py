@@ -105,6 +105,8 @@ class MapChanged:
     """Changed cells as flat indices ``row * cols + col``, ``intp[n]``; empty when ``whole``."""
     values: NDArray[np.uint8]
     """Their values ``uint8[n]``, or the whole grid ``uint8[rows, cols]``."""
+    stops: int | None = None
+    """How many stops the map is made of by now; None if that is not known."""
 
 
 Event = Odometry | PoseEstimate | Status | SweepProgress | SweepDone | MissionProgress | MapChanged

@@ -30,6 +30,8 @@ class MapPayload(msgspec.Struct, frozen=True):
     """Changed cells, ``row * cols + col`` in four bytes each, little-endian."""
     values_u8: bytes = b""
     """Their values, one byte each."""
+    stops: int | None = None
+    """How many stops the map is made of by now; None if that is not known."""
 
 
 def pack_map(change: MapChanged) -> MapPayload:
@@ -49,6 +51,7 @@ def pack_map(change: MapChanged) -> MapPayload:
         cells_zlib=packed_cells(values) if change.whole else b"",
         indices_u32le=b"" if change.whole else change.cells.astype(_INDEX).tobytes(),
         values_u8=b"" if change.whole else values.tobytes(),
+        stops=change.stops,
     )
 
 
@@ -63,7 +66,9 @@ def unpack_map(payload: MapPayload) -> MapChanged:
         cells, values = _unpack_whole(payload, spec) if payload.whole else _unpack_changes(payload, spec)
     except ValueError as error:
         raise RemoteProtocolError(f"map payload: {error}") from error
-    return MapChanged(payload.time_ns, payload.map_id, payload.generation, spec, payload.whole, cells, values)
+    return MapChanged(
+        payload.time_ns, payload.map_id, payload.generation, spec, payload.whole, cells, values, payload.stops
+    )
 
 
 def _unpack_whole(payload: MapPayload, spec: GridSpec) -> tuple[NDArray[np.intp], NDArray[np.uint8]]:

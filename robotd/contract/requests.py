@@ -64,6 +64,8 @@ class MapEntryInfo:
     """Why this version cannot be read; its other numbers are then zero."""
     unsaved: bool = False
     """Whether nobody saved it: it was kept so that it is not lost."""
+    stops: int | None = None
+    """How many stops it was made of; None if that was not stored with it."""
 
 
 class PoseArgument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

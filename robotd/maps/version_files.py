@@ -53,7 +53,7 @@ class NewVersion:
         if stops is not None:
             try:
                 packed = encode_stops(stops)
-                _check_derived(decode_stops(packed), grid)
+                _check_derived(stops, grid)
             except MapError as error:
                 packed = None
                 _log.warning("map %s is saved without its stops: %s", name, error)

@@ -18,4 +18,5 @@ def entry_info(entry: MapEntry) -> MapEntryInfo:
         resolution_m=entry.spec.resolution_m if entry.spec else 0.0,
         damage=None if entry.damage is None else printable(entry.damage),
         unsaved=entry.is_unsaved,
+        stops=entry.stops,
     )

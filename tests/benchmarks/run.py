@@ -16,7 +16,7 @@ import numpy as np
 
 from robotd.grid import kernels
 from tests.benchmarks import workload
-from tests.benchmarks.sections import counting, erring, inserting, refining, scaling, searching
+from tests.benchmarks.sections import counting, erring, inserting, refining, scaling, searching, storing
 from tests.benchmarks.timing import Timing, copying, yardstick
 
 ROOT = Path(__file__).parents[2]
@@ -29,6 +29,7 @@ SECTIONS: dict[str, Callable[[], Iterable[Timing]]] = {
     "refining": refining.timings,
     "searching": searching.timings,
     "scaling": scaling.timings,
+    "storing": storing.timings,
 }
 """In the order of the report, by the name that ``--only`` takes."""
 

@@ -1,6 +1,7 @@
 """The parsers of requests, replies and files."""
 
 import tempfile
+import zlib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -22,6 +23,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.hardware.link.tap import Direction
 from robotd.logs.scan import RecordedLog
 from robotd.maps.manifest import FileSum, Manifest, decode_manifest
+from robotd.maps.stops_file import decode_stops, encode_stops
 from robotd.recording.entries import BytesEntry, CommandEntry, LineEntry, RecordingHeader
 from robotd.recording.reader import read
 from robotd.recording.recorder import Recorder
@@ -29,6 +31,7 @@ from robotd.sim.building import RecordedBuilding, encode_recorded_building, sele
 from robotd.sim.log_file import read_log
 from robotd.sim.world import parse_world
 from tests.fuzz.target import KIB, MIB, ROOT, Target
+from tests.unit.maps.made_maps import made_stops
 
 _REQUEST_MAX_BYTES = 64 * KIB
 _HEADER = RecordingHeader("0.1.0", "", 5, 1_700_000_000_000_000_001, 1000)
@@ -125,6 +128,21 @@ def _manifest() -> list[bytes]:
     return [Manifest("lab", 3, 1_700_000_000_000_000_000, "ab", spec, files, {"note": "a"}, None).encode()]
 
 
+def _stops() -> list[bytes]:
+    return [encode_stops(made_stops(1, 1, 4)), encode_stops(made_stops(1, 0))]
+
+
+def _stops_unpacked() -> list[bytes]:
+    return [zlib.decompress(data.partition(b"\n")[2]) for data in _stops()]
+
+
+def _stops_of(content: bytes) -> object:
+    """Whatever is read as stops can be written, and is read as the same."""
+    stops = decode_stops(b"robotd stops 1\n" + zlib.compress(content, 0))
+    assert decode_stops(encode_stops(stops)) == stops
+    return stops
+
+
 DOCUMENTS = (
     Target("requests", _answered, _requests, ("robotd/contract/envelope.py",), size_max=512),
     Target(
@@ -183,6 +201,17 @@ DOCUMENTS = (
         typed=(RecordingError,),
         tokens=(b"\x04\0\0\0zstd", b"\x03\0\0\0lz4"),
         size_max=8 * KIB,
+    ),
+    Target("stops-file", decode_stops, _stops, ("robotd/maps/stops_file.py",), typed=(MapError,)),
+    Target(
+        "stops",
+        _stops_of,
+        _stops_unpacked,
+        ("robotd/maps/stops_file.py", "robotd/maps/stop_columns.py"),
+        typed=(MapError,),
+        tokens=(b"\xa7columns", b"\xa6counts", b"\xa8statuses", b"\xc4\x08", b"\xa4miss", b"\xa2ok"),
+        size_max=1536,
+        peak_max=4 * MIB,
     ),
     Target("manifest", decode_manifest, _manifest, ("robotd/maps/manifest.py",), typed=(MapError,)),
     Target(

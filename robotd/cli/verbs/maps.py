@@ -100,7 +100,8 @@ def _tell(arguments: argparse.Namespace, what: str, entry: MapEntryInfo) -> int:
         print_json(asdict(entry))
     else:
         size = f"{entry.cols} x {entry.rows} cells of {entry.resolution_m * 1000:g} mm"
-        out().print(f"{what} {entry.name} version {_version(entry)}: {size}, digest {entry.digest}")
+        made = "" if entry.stops is None else f", made of {entry.stops} stops"
+        out().print(f"{what} {entry.name} version {_version(entry)}: {size}{made}, digest {entry.digest}")
     return OK
 
 
@@ -117,12 +118,13 @@ def _list(arguments: argparse.Namespace) -> int:
                 _version(entry),
                 _date(entry.created_unix_ns),
                 f"{entry.cols} x {entry.rows}",
+                "-" if entry.stops is None else f"{entry.stops}",
             ),
             f"damaged: {entry.damage}" if entry.damage else entry.digest[:12],
         )
         for entry in entries
     ]
-    print_table(("map", "version", "made (UTC)", "cells", "digest"), rows)
+    print_table(("map", "version", "made (UTC)", "cells", "stops", "digest"), rows)
     return OK
 
 
@@ -151,6 +153,8 @@ def _show(arguments: argparse.Namespace) -> int:
         out().print(coloured(cells))
     else:
         out().print(plain(cells, blocks=blocks))
+    if shown.stops is not None:
+        out().print(f"made of {shown.stops} stops")
     return OK
 
 
@@ -167,6 +171,7 @@ def _facts(shown: MapChanged) -> dict[str, object]:
         "generation": shown.generation,
         "digest": grid_digest(shown.spec, values),
         "spec": asdict(shown.spec),
+        "stops": shown.stops,
         "free_cells": int((values < NO_INFORMATION).sum()),
         "unknown_cells": int((values == NO_INFORMATION).sum()),
         "occupied_cells": int((values > NO_INFORMATION).sum()),

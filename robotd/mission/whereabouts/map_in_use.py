@@ -126,9 +126,8 @@ class MapInUse:
 
     def changes(self, time_ns: int, cells: NDArray[np.intp]) -> MapChanged:
         """Return the event for these changed cells."""
-        return MapChanged(
-            time_ns, self.map_id, self.generation, self.grid.spec, False, cells, self.grid.cells.reshape(-1)[cells]
-        )
+        values, stops = self.grid.cells.reshape(-1)[cells], None if self.stops is None else len(self.stops.stops)
+        return MapChanged(time_ns, self.map_id, self.generation, self.grid.spec, False, cells, values, stops)
 
     def whole(self, time_ns: int) -> MapChanged:
         """Return the event that carries every cell."""

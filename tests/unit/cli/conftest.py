@@ -52,7 +52,7 @@ REGION = Region(
 )
 ESTIMATE = PoseEstimate(5, PoseState.LOCALIZED, REGION.centre, (REGION,), 280, 300, final=True, map_id="m")
 AMBIGUOUS = PoseEstimate(4, PoseState.AMBIGUOUS, None, (REGION, REGION), 140, 150, final=False, map_id="m")
-ENTRY = MapEntryInfo("lab", 3, "abcdef0123456789", 1_700_000_000_000_000_000, 40, 60, 0.05)
+ENTRY = MapEntryInfo("lab", 3, "abcdef0123456789", 1_700_000_000_000_000_000, 40, 60, 0.05, stops=7)
 MISSION_EVENTS: tuple[MissionEvent, ...] = (
     MissionProgress(1, 7, "localize", MissionPhase.STARTED, 0, 1),
     SweepProgress(2, 1, 150, 300, 120, 20, 10),
@@ -145,7 +145,7 @@ class FakeClient:
         values[1:5, 1:5] = 255
         values[2:4, 2:4] = 0
         spec = GridSpec(0.1, 0.0, 0.0, (6, 6))
-        return MapChanged(1, "abc", 2, spec, whole=True, cells=np.empty(0, np.intp), values=values)
+        return MapChanged(1, "abc", 2, spec, whole=True, cells=np.empty(0, np.intp), values=values, stops=7)
 
     def record_start(self, path: str | None) -> str | None:
         self.asked.append(("record_start", path))

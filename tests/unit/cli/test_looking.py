@@ -56,10 +56,10 @@ def test_maps_are_saved_loaded_and_listed(client: Any, capsys: pytest.CaptureFix
     assert ("map_save", "lab") in client.asked
     assert ("map_load", "lab", 2, Pose2(1.0, 2.0, 0.0)) in client.asked
     saved, loaded, header, row = capsys.readouterr().out.splitlines()
-    assert saved == "saved lab version 3: 60 x 40 cells of 50 mm, digest abcdef0123456789"
+    assert saved == "saved lab version 3: 60 x 40 cells of 50 mm, made of 7 stops, digest abcdef0123456789"
     assert loaded.startswith("loaded lab version 3")
-    assert header.split() == ["map", "version", "made", "(UTC)", "cells", "digest"]
-    assert row.split() == ["lab", "3", "2023-11-14", "22:13:20", "60", "x", "40", "abcdef012345"]
+    assert header.split() == ["map", "version", "made", "(UTC)", "cells", "stops", "digest"]
+    assert row.split() == ["lab", "3", "2023-11-14", "22:13:20", "60", "x", "40", "7", "abcdef012345"]
     client.damage = "cells.npy: checksum does not match"
     assert main(["map", "list"]) == 0
     assert "damaged: cells.npy: checksum does not match" in capsys.readouterr().out
@@ -76,7 +76,7 @@ def test_a_map_is_drawn_on_the_terminal_and_into_a_file(
     png = tmp_path / "m.png"
     assert main(["map", "show", "lab", "--png", str(png)]) == 0
     assert client.asked[0] == ("map_show", "lab", None)
-    assert capsys.readouterr().out == "█▀▀█\n█▄▄█\n"
+    assert capsys.readouterr().out == "█▀▀█\n█▄▄█\nmade of 7 stops\n"
     assert png.read_bytes().startswith(b"\x89PNG")
     assert main(["map", "show", "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)

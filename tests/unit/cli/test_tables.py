@@ -120,8 +120,8 @@ def test_the_table_of_maps(client: Any, capsys: pytest.CaptureFixture[str]) -> N
     client.damage = "no [cells]"
     assert main(["map", "list"]) == 0
     head, row = [columns(line) for line in capsys.readouterr().out.splitlines()]
-    assert head == ["map", "version", "made (UTC)", "cells", "digest"]
-    assert row == ["lab", "3", "2023-11-14 22:13:20", "60 x 40", "damaged: no [cells]"]
+    assert head == ["map", "version", "made (UTC)", "cells", "stops", "digest"]
+    assert row == ["lab", "3", "2023-11-14 22:13:20", "60 x 40", "7", "damaged: no [cells]"]
 
 
 def test_the_tables_of_the_exact_algorithm(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -121,7 +121,7 @@ def test_a_map_survives_the_wire(rows: int, cols: int, whole: bool, random: Any)
     shape: tuple[int, ...] = (rows, cols) if whole else (random.randrange(rows * cols),)
     values = np.array([random.randrange(256) for _ in range(int(np.prod(shape)))], dtype=np.uint8).reshape(shape)
     cells = np.array(random.sample(range(rows * cols), 0 if whole else shape[0]), dtype=np.intp)
-    change = MapChanged(7, "d", 3, spec, whole, cells, values)
+    change = MapChanged(7, "d", 3, spec, whole, cells, values, random.choice([None, 0, 7]))
     topic, fields = to_wire(change)
     found = decode_frame(encode_frame(topic, "s", 0, fields)).event
     assert isinstance(found, MapChanged)
