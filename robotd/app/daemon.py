@@ -147,7 +147,7 @@ async def _cancelled(*tasks: "asyncio.Task[None]") -> None:
 def _announce(notifier: Notifier) -> None:
     notifier.ready()
     notifier.status("serving")
-    log.info("%s", kernels.IN_USE)
+    log.info("%s", kernels.in_use().about)
     log.info("robotd %s is ready", __version__)
 
 

@@ -43,7 +43,9 @@ def squared_distances(
     """
     squares = np.empty(sources.shape, np.int32)
     limit = _ANY_DISTANCE if limit_cells is None else limit_cells
-    kernels.squared_distances(sources, squares, CellWindow.whole(sources.shape), limit_cells=limit, outside=outside)
+    kernels.in_use().distance.squared_distances(
+        sources, squares, CellWindow.whole(sources.shape), limit_cells=limit, outside=outside
+    )
     return squares
 
 
@@ -68,5 +70,5 @@ def squared_distances_updated(
     """
     updated = squares.copy()
     window = changed.grown(limit_cells, sources.shape)
-    kernels.squared_distances(sources, updated, window, limit_cells=limit_cells, outside=outside)
+    kernels.in_use().distance.squared_distances(sources, updated, window, limit_cells=limit_cells, outside=outside)
     return updated

@@ -32,7 +32,9 @@ def grown_by_disk(mask: NDArray[np.bool_], radius_cells: float, *, outside: bool
         near: NDArray[np.bool_] = squared_distances(mask, outside=outside) <= radius_cells**2
         return near
     grown = np.empty(mask.shape, np.bool_)
-    kernels.grow_disk(mask, grown, CellWindow.whole(mask.shape), radius_cells=radius_cells, outside=outside)
+    kernels.in_use().grow.grow_disk(
+        mask, grown, CellWindow.whole(mask.shape), radius_cells=radius_cells, outside=outside
+    )
     return grown
 
 
@@ -59,5 +61,5 @@ def grown_by_disk_updated(
         return grown_by_disk(mask, radius_cells, outside=outside)
     updated = grown.copy()
     window = changed.grown(int(radius_cells), mask.shape)
-    kernels.grow_disk(mask, updated, window, radius_cells=radius_cells, outside=outside)
+    kernels.in_use().grow.grow_disk(mask, updated, window, radius_cells=radius_cells, outside=outside)
     return updated

@@ -24,5 +24,5 @@ def latest_with(
 ) -> NDArray[np.uint8]:
     """Return what was said last with one more sweep, ``uint8[rows, cols]``; what went in is left as it is."""
     found = latest.copy()
-    kernels.insert_sweep(found, numbers_of(readings), map_from_robot, spec, _TABLES, at_once=True)
+    kernels.in_use().insert.insert_sweep(found, numbers_of(readings), map_from_robot, spec, _TABLES, at_once=True)
     return found

@@ -109,7 +109,9 @@ class OccupancyGrid:
         """
         readings, tables = numbers_of(self.usable(sweep)), (self._lower, self._raise)
         at_once = self.settings.policy is UpdatePolicy.PER_SWEEP
-        return kernels.insert_sweep(self.cells, readings, map_from_robot, self.spec, tables, at_once=at_once)
+        return kernels.in_use().insert.insert_sweep(
+            self.cells, readings, map_from_robot, self.spec, tables, at_once=at_once
+        )
 
     def digest(self) -> str:
         """Return the SHA-256 of placement and cells, in hexadecimal: equal exactly if the maps are."""

@@ -32,7 +32,7 @@ def repacked(
         return packed
     planes = packed.planes.copy()
     for words, mask in zip(planes, (free, blocking, grown), strict=False):
-        kernels.pack_cells(words, mask, packed.origin, changed)
+        kernels.in_use().pack.pack_cells(words, mask, packed.origin, changed)
     top, left = TILE_ROWS + packed.origin[0], PAD_WORDS * WORD_CELLS + packed.origin[1]
     first, end = top + changed.first_row, top + changed.end_row
     columns = slice((left + changed.first_col) // WORD_CELLS, (left + changed.end_col - 1) // WORD_CELLS + 1)

@@ -38,7 +38,9 @@ class WallField:
         O(cells): 0.2 ms for 256 x 256, 3 ms for 1024 x 1024.
         """
         whole = np.ascontiguousarray(walls)
-        return cls(spec, kernels.wall_codes(whole), kernels.skip_codes(whole, blocking & ~whole))
+        return cls(
+            spec, kernels.in_use().cast.wall_codes(whole), kernels.in_use().cast.skip_codes(whole, blocking & ~whole)
+        )
 
     def updated(self, walls: NDArray[np.bool_], blocking: NDArray[np.bool_], changed: CellWindow) -> "WallField":
         """Return the field of a map that differs from this one's in a window alone; this one stays as it is.
@@ -49,8 +51,8 @@ class WallField:
             return self
         codes, skips = self.codes.copy(), self.skips.copy()
         here, there, part = (window.slices for window in influence(changed, REACH_CELLS, self.spec.shape))
-        codes[here] = kernels.wall_codes(np.ascontiguousarray(walls[part]))[there]
+        codes[here] = kernels.in_use().cast.wall_codes(np.ascontiguousarray(walls[part]))[there]
         here, there, part = (window.slices for window in influence(changed, SKIP_MAX, self.spec.shape))
         ends = np.ascontiguousarray(walls[part])
-        skips[1:-1, 1:-1][here] = kernels.skip_codes(ends, blocking[part] & ~ends)[1:-1, 1:-1][there]
+        skips[1:-1, 1:-1][here] = kernels.in_use().cast.skip_codes(ends, blocking[part] & ~ends)[1:-1, 1:-1][there]
         return replace(self, codes=codes, skips=skips)

@@ -53,7 +53,7 @@ def _introduction() -> str:
     return (
         f"# Benchmarks of {datetime.now(UTC):%Y-%m-%d}\n\n"
         f"Commit {commit()}; {processor()}, Python {platform.python_version()}, NumPy {np.__version__}; "
-        f"{kernels.IN_USE}.\n"
+        f"{kernels.in_use().about}.\n"
         f"Written by `make bench`. {workload.__doc__} Cut-off {workload.CUT_OFF_M} m, error radius "
         f"{workload.ERROR_RADIUS_CELLS} cells, seeds 0 and 1.\n\n"
         "Times in milliseconds. The ratio is the least time to the least of the section's yardstick. The goal is what\n"

@@ -90,7 +90,7 @@ def examine() -> Findings:
         python=f"{platform.python_version()} ({platform.machine()})",
         numpy=np.__version__,
         pyzmq=f"{zmq.pyzmq_version()} (libzmq {zmq.zmq_version()})",
-        kernels=kernels.IN_USE,
+        kernels=kernels.in_use().about,
         compiled_kernels=_compiled("robotd.grid.kernels._native", _ROOT / "robotd/grid/kernels"),
         compiled_boards=_compiled("robotd.sim.firmware._native", _ROOT / "firmware_proto/c"),
         plots=importlib.util.find_spec("matplotlib") is not None,

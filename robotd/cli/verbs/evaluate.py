@@ -57,7 +57,7 @@ class _Plan:
         return {
             "robotd": __version__,
             "commit": self.commit,
-            "kernels": str(kernels.IN_USE),
+            "kernels": str(kernels.in_use().about),
             "right_within": {"m": RIGHT_M, "rad": RIGHT_RAD},
             "cases": self.cases,
             "seed": self.seed,

@@ -1,48 +1,36 @@
 """The kernels in C. Importing this fails where they were not compiled; each call releases the GIL.
 
-Every function has a twin of the same name and the same results in :mod:`robotd.grid.kernels.twins`, where it is
-described.
+Every one gives the results of its twin, bit for bit.
 """
 
-from robotd.grid.kernels.cast.cast_native import cast_beams, skip_codes, wall_codes
-from robotd.grid.kernels.count.count_native import (
-    INSTRUCTION_SETS,
-    at_least,
-    count_feasible,
-    greatest,
-    instruction_set,
-)
-from robotd.grid.kernels.distance.distance_native import squared_distances
-from robotd.grid.kernels.draw.draw_native import draw_beams
-from robotd.grid.kernels.error_radius.error_radius_native import share_errors
-from robotd.grid.kernels.fans.fans_native import count_fans
-from robotd.grid.kernels.fit.fit_native import fit_poses, scan_poses
-from robotd.grid.kernels.grow.grow_native import grow_disk
-from robotd.grid.kernels.insert.insert_native import insert_sweep
-from robotd.grid.kernels.pack.pack_native import pack_cells
-from robotd.grid.kernels.search.search_native import make_planes, renew_planes, search_poses
-from robotd.grid.kernels.weigh.weigh_native import weigh_beams
+from robotd.grid.kernels.cast import cast_native
+from robotd.grid.kernels.count import count_native
+from robotd.grid.kernels.distance import distance_native
+from robotd.grid.kernels.draw import draw_native
+from robotd.grid.kernels.error_radius import error_radius_native
+from robotd.grid.kernels.fans import fans_native
+from robotd.grid.kernels.fit import fit_native
+from robotd.grid.kernels.grow import grow_native
+from robotd.grid.kernels.insert import insert_native
+from robotd.grid.kernels.pack import pack_native
+from robotd.grid.kernels.search import search_native
+from robotd.grid.kernels.table import Kernels, KernelsInUse
+from robotd.grid.kernels.weigh import weigh_native
 
-__all__ = [
-    "INSTRUCTION_SETS",
-    "at_least",
-    "cast_beams",
-    "count_fans",
-    "count_feasible",
-    "draw_beams",
-    "fit_poses",
-    "greatest",
-    "grow_disk",
-    "insert_sweep",
-    "instruction_set",
-    "make_planes",
-    "pack_cells",
-    "renew_planes",
-    "scan_poses",
-    "search_poses",
-    "share_errors",
-    "skip_codes",
-    "squared_distances",
-    "wall_codes",
-    "weigh_beams",
-]
+NATIVE = Kernels(
+    about=KernelsInUse(
+        compiled=True, instructions=count_native.instruction_set(), reason="compiled when robotd was installed"
+    ),
+    cast=cast_native,
+    count=count_native,
+    distance=distance_native,
+    draw=draw_native,
+    error_radius=error_radius_native,
+    fans=fans_native,
+    fit=fit_native,
+    grow=grow_native,
+    insert=insert_native,
+    pack=pack_native,
+    search=search_native,
+    weigh=weigh_native,
+)

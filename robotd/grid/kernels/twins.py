@@ -1,36 +1,31 @@
 """The kernels in NumPy: what the ones in C must do, and what does it where they were not compiled."""
 
-from robotd.grid.kernels.cast.cast_twin import cast_beams, skip_codes, wall_codes
-from robotd.grid.kernels.count.count_twin import at_least, count_feasible, greatest
-from robotd.grid.kernels.distance.distance_twin import squared_distances
-from robotd.grid.kernels.draw.draw_twin import draw_beams
-from robotd.grid.kernels.error_radius.error_radius_twin import share_errors
-from robotd.grid.kernels.fans.fans_twin import count_fans
-from robotd.grid.kernels.fit.fit_twin import fit_poses, scan_poses
-from robotd.grid.kernels.grow.grow_twin import grow_disk
-from robotd.grid.kernels.insert.insert_twin import insert_sweep
-from robotd.grid.kernels.pack.pack_twin import pack_cells
-from robotd.grid.kernels.search.search_twin import make_planes, renew_planes, search_poses
-from robotd.grid.kernels.weigh.weigh_twin import weigh_beams
+from robotd.grid.kernels.cast import cast_twin
+from robotd.grid.kernels.count import count_twin
+from robotd.grid.kernels.distance import distance_twin
+from robotd.grid.kernels.draw import draw_twin
+from robotd.grid.kernels.error_radius import error_radius_twin
+from robotd.grid.kernels.fans import fans_twin
+from robotd.grid.kernels.fit import fit_twin
+from robotd.grid.kernels.grow import grow_twin
+from robotd.grid.kernels.insert import insert_twin
+from robotd.grid.kernels.pack import pack_twin
+from robotd.grid.kernels.search import search_twin
+from robotd.grid.kernels.table import Kernels, KernelsInUse
+from robotd.grid.kernels.weigh import weigh_twin
 
-__all__ = [
-    "at_least",
-    "cast_beams",
-    "count_fans",
-    "count_feasible",
-    "draw_beams",
-    "fit_poses",
-    "greatest",
-    "grow_disk",
-    "insert_sweep",
-    "make_planes",
-    "pack_cells",
-    "renew_planes",
-    "scan_poses",
-    "search_poses",
-    "share_errors",
-    "skip_codes",
-    "squared_distances",
-    "wall_codes",
-    "weigh_beams",
-]
+TWINS = Kernels(
+    about=KernelsInUse(compiled=False, instructions="numpy", reason="no C kernels were installed"),
+    cast=cast_twin,
+    count=count_twin,
+    distance=distance_twin,
+    draw=draw_twin,
+    error_radius=error_radius_twin,
+    fans=fans_twin,
+    fit=fit_twin,
+    grow=grow_twin,
+    insert=insert_twin,
+    pack=pack_twin,
+    search=search_twin,
+    weigh=weigh_twin,
+)

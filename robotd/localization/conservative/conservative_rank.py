@@ -81,7 +81,9 @@ class ConservativeRankGrid(RankGrid):
         drawn = _DrawnReadings.of(numbers, self._headings, self._sure)
         for beams in drawn.fan_beams():
             threads = self._threads_for(len(beams.beams))
-            kernels.count_fans(self._counters, self._map, drawn.grown, beams, subtract=subtract, threads=threads)
+            kernels.in_use().fans.count_fans(
+                self._counters, self._map, drawn.grown, beams, subtract=subtract, threads=threads
+            )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

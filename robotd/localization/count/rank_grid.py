@@ -100,9 +100,9 @@ class RankGrid:
 
     def _count_numbers(self, numbers: NDArray[np.float64], *, subtract: bool) -> None:
         """Count readings ``float64[n, 5]``, for which the counters have room."""
-        beams = kernels.draw_beams(numbers, self._headings, self._how)
+        beams = kernels.in_use().draw.draw_beams(numbers, self._headings, self._how)
         threads = self._threads_for(len(numbers) * len(self.headings_rad))
-        kernels.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
+        kernels.in_use().count.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
 
     def _threads_for(self, beams: int) -> int:
         """Return how many threads are worth starting."""
@@ -140,14 +140,14 @@ class RankGrid:
     @property
     def best_rank(self) -> int:
         """The greatest count (the paper's kappa)."""
-        return kernels.greatest(self._counters)
+        return kernels.in_use().count.greatest(self._counters)
 
     def cells_of_rank(self, least: int) -> NDArray[np.intp]:
         """Return the poses that explain at least so many readings, ``intp[n, 3]`` as ``(heading, row, col)``, in order.
 
         Only free cells are poses, even for a rank of 0.
         """
-        reached = kernels.at_least(self._counters, self._map, max(least, 0))
+        reached = kernels.in_use().count.at_least(self._counters, self._map, max(least, 0))
         if least <= 0:
             reached &= self._map.free[PAD_WORDS:-PAD_WORDS, TILE_ROWS:-TILE_ROWS].T
         heading, row, word = np.nonzero(reached)
@@ -158,7 +158,7 @@ class RankGrid:
 
     def count_of_rank(self, least: int) -> int:
         """Return how many poses explain at least so many readings, one or more."""
-        reached = kernels.at_least(self._counters, self._map, max(least, 1))
+        reached = kernels.in_use().count.at_least(self._counters, self._map, max(least, 1))
         return int(np.unpackbits(reached[reached != 0].view(np.uint8)).sum())
 
     def rank_at(self, poses: NDArray[np.intp]) -> NDArray[np.uint16]:

@@ -156,7 +156,7 @@ def refine_heads(
 ) -> RefinedPoses:
     """Do as :func:`refine` with readings that are used more than once."""
     spec = field.spec
-    fits = kernels.fit_poses(
+    fits = kernels.in_use().fit.fit_poses(
         field.codes,
         DISTANCES[settings.walls],
         heads.at_cells,
@@ -188,7 +188,7 @@ def ranges_along(
     at[:, :2] = spec.positions_at(poses[:, :2])[:, ::-1]
     np.cos(poses[:, 2], at[:, 2])
     np.sin(poses[:, 2], at[:, 3])
-    ways, stops = kernels.cast_beams(field.skips, beams, at, blocked_by)
+    ways, stops = kernels.in_use().cast.cast_beams(field.skips, beams, at, blocked_by)
     ways *= spec.resolution_m
     return ExpectedRanges(ways, stops == ENDS)
 

@@ -179,7 +179,7 @@ class _Search:
         start, lattice = self.prior.start, self._lattice()
         heads = self.heads.at_cells
         part = np.ascontiguousarray(heads[:: max(1, len(heads) // self.settings.heads)])
-        costs, turns = kernels.scan_poses(self.field.codes, _COSTS[self.refinement.walls], part, lattice)
+        costs, turns = kernels.in_use().fit.scan_poses(self.field.codes, _COSTS[self.refinement.walls], part, lattice)
         step_m, wide = lattice.step_cells * self.field.spec.resolution_m, costs.shape[1]
         for _ in range(costs.size):
             row, col = divmod(int(costs.argmin()), wide)

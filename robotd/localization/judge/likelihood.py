@@ -31,7 +31,7 @@ class Sight:
     """Readings, drawn once for all poses."""
 
     beams: NDArray[np.float64]
-    """``float64[m, 8]``, as :func:`~robotd.grid.kernels.weigh_beams` takes them."""
+    """``float64[m, 8]``, as :func:`~robotd.grid.kernels.in_use().weigh.weigh_beams` takes them."""
     elsewhere: NDArray[np.float64]
     """``float64[m]``, how likely each is somewhere in any building."""
     seen_so_far: NDArray[np.float64]
@@ -106,7 +106,7 @@ class Likelihood:
             poses: ``float64[n, 3]``: x, y [m] and heading [rad], map frame.
         """
         at = np.column_stack((self.spec.positions_at(poses[:, :2]), np.cos(poses[:, 2]), np.sin(poses[:, 2])))
-        densities = kernels.weigh_beams(self.chances, at, sight.beams)
+        densities = kernels.in_use().weigh.weigh_beams(self.chances, at, sight.beams)
         densities[:, sight.beams[:, 7] == 0.0] /= self.spec.resolution_m
         densities *= sight.seen_so_far[:, None]
         densities[:, :, IN_UNKNOWN] *= sight.unseen
@@ -128,8 +128,8 @@ class Likelihood:
 def skips_of(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Return how far it is to the next cell of another kind, ``uint8[rows, cols]``, as :class:`ChanceMap` has it."""
     unknown, vacant, none = cells == NO_INFORMATION, cells < NO_INFORMATION, np.zeros(cells.shape, np.bool_)
-    over_vacant = kernels.skip_codes(~vacant, none)[1:-1, 1:-1]
-    over_unknown = kernels.skip_codes(~unknown, none)[1:-1, 1:-1]
+    over_vacant = kernels.in_use().cast.skip_codes(~vacant, none)[1:-1, 1:-1]
+    over_unknown = kernels.in_use().cast.skip_codes(~unknown, none)[1:-1, 1:-1]
     return np.where(vacant, over_vacant, np.where(unknown, over_unknown, 1)).astype(np.uint8)
 
 

@@ -127,7 +127,9 @@ def errors_on(
     """
     wanted = _readings_wanted(readings, share)
     bodies = draw_bodies(numbers_of(readings), heading_rad, the_map.spec)
-    shared = kernels.share_errors(the_map.packed, the_map.distances, the_map.outside, bodies, wanted, threads=threads)
+    shared = kernels.in_use().error_radius.share_errors(
+        the_map.packed, the_map.distances, the_map.outside, bodies, wanted, threads=threads
+    )
     errors = shared.astype(np.float32)
     errors[shared == NEVER] = np.inf
     return errors

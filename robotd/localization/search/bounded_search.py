@@ -35,7 +35,7 @@ class SearchMap:
     @classmethod
     def of(cls, obstacles: Obstacles, spec: GridSpec, error_radius_cells: float) -> "SearchMap":
         """Prepare a map whose obstacles were grown by so much; O(cells)."""
-        return cls(spec, kernels.make_planes(_ground(obstacles, error_radius_cells)))
+        return cls(spec, kernels.in_use().search.make_planes(_ground(obstacles, error_radius_cells)))
 
     def updated(self, obstacles: Obstacles, window: CellWindow) -> "SearchMap":
         """Return the map after cells changed, all of them in a window; O(cells near the window).
@@ -43,7 +43,7 @@ class SearchMap:
         The old map is used up: its arrays become the new one's.
         """
         ground = _ground(obstacles, self.planes.ground.error_radius_cells)
-        return SearchMap(self.spec, kernels.renew_planes(self.planes, ground, window))
+        return SearchMap(self.spec, kernels.in_use().search.renew_planes(self.planes, ground, window))
 
 
 def best_poses(
@@ -91,7 +91,7 @@ def best_poses(
         spans=spans,
         reach_cells=2 * (max(shape) + farthest_m / search_map.spec.resolution_m),
     )
-    return kernels.search_poses(search_map.planes, question, threads=threads)
+    return kernels.in_use().search.search_poses(search_map.planes, question, threads=threads)
 
 
 def _spans(prior: CellDisk | CellWindow, shape: tuple[int, int]) -> tuple[CellWindow, NDArray[np.int32]]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from robotd.grid import kernels
-from robotd.grid.kernels import twins
+from robotd.grid.kernels.twins import TWINS
 from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy
 from robotd.grid.readings import numbers_of
 from tests.benchmarks import workload
@@ -19,9 +19,9 @@ def timings() -> Iterator[Timing]:
         readings, tables = numbers_of(sweep.measured), (grid._lower, grid._raise)
         at_once = policy is UpdatePolicy.PER_SWEEP
         title = f"S, one sweep into the map, {policy}"
-        for name, module in (("in use", kernels), ("NumPy twin", twins)):
+        for name, module in (("in use", kernels.in_use()), ("NumPy twin", TWINS)):
             place = (workload.TRUTH, workload.SPEC, tables)
-            run = partial(module.insert_sweep, grid.cells, readings, *place, at_once=at_once)
+            run = partial(module.insert.insert_sweep, grid.cells, readings, *place, at_once=at_once)
             yield timed(f"{title}: cells, {name}", run, 50)
         blank = [OccupancyGrid(workload.SPEC, settings=GridSettings(policy=policy)) for _ in range(201)]
         first = partial(lambda grids: next(grids).insert(sweep, workload.TRUTH), iter(blank))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid import kernels
-from robotd.grid.kernels import twins
+from robotd.grid.kernels.twins import TWINS
 from robotd.grid.readings import numbers_of
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
@@ -75,8 +75,8 @@ def refining(room: str, field: WallField, queries: list[Query], *, goal_mm: floa
         yield timed(f"{room}, {count} poses: expected_ranges()", ranges, 50)
     start = np.array([at[0] / 0.05 + 0.4, at[1] / 0.05 - 0.3, at[2] + 0.005])
     boxes = np.concatenate((start, start - 1.0, start + 1.0))[None]
-    for name, module in (("in use", kernels), ("NumPy twin", twins)):
-        fit = partial(module.fit_poses, field.codes, DISTANCES[Walls.FACES], heads, boxes, 4.0)
+    for name, module in (("in use", kernels.in_use()), ("NumPy twin", TWINS)):
+        fit = partial(module.fit.fit_poses, field.codes, DISTANCES[Walls.FACES], heads, boxes, 4.0)
         yield timed(f"{room}, one box, kernel, {name}", fit, 20)
 
 

@@ -20,7 +20,7 @@ def test_it_names_versions_and_kernels(
     monkeypatch.setenv("ROBOTD_CONFIG", str(tmp_path / "absent.toml"))
     assert main(["doctor"]) == 0
     said = capsys.readouterr().out
-    for word in (__version__, np.__version__, str(kernels.IN_USE), "absent.toml: not there"):
+    for word in (__version__, np.__version__, str(kernels.in_use().about), "absent.toml: not there"):
         assert word in said
 
 
@@ -32,7 +32,7 @@ def test_json_says_the_same(
     monkeypatch.setenv("ROBOTD_CONFIG", str(file))
     assert main(["doctor", "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
-    assert said["kernels"]["compiled"] == kernels.IN_USE.compiled
+    assert said["kernels"]["compiled"] == kernels.in_use().about.compiled
     assert said["config"] == {"file": str(file), "found": True, "problems": []}
     assert said["numpy"] == np.__version__
 

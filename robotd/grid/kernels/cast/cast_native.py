@@ -9,7 +9,7 @@ from robotd.grid.kernels.shared.buffers import floats, octets
 
 
 def wall_codes(walls: NDArray[np.bool_]) -> NDArray[np.int8]:
-    """See the twin."""
+    """See :class:`.CastKernel`."""
     rows, cols = walls.shape
     codes = np.empty((rows, cols), np.int8)
     scratch = np.empty(2 * walls.size + cols + 2 * REACH_CELLS, np.uint8)
@@ -18,7 +18,7 @@ def wall_codes(walls: NDArray[np.bool_]) -> NDArray[np.int8]:
 
 
 def skip_codes(ends: NDArray[np.bool_], blocks: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """See the twin."""
+    """See :class:`.CastKernel`."""
     rows, cols = ends.shape
     skips = np.empty((rows + 2, cols + 2), np.uint8)
     scratch = octets(np.empty(skips.size + cols + 2 + 2 * SKIP_MAX, np.uint8))
@@ -29,7 +29,7 @@ def skip_codes(ends: NDArray[np.bool_], blocks: NDArray[np.bool_]) -> NDArray[np
 def cast_beams(
     skips: NDArray[np.uint8], beams: NDArray[np.float64], poses: NDArray[np.float64], blocked_by: int
 ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
-    """See the twin."""
+    """See :class:`.CastKernel`."""
     shape = (len(poses), len(beams))
     ways, stops = np.empty(shape), np.empty(shape, np.uint8)
     rows, cols = skips.shape

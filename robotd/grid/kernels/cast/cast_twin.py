@@ -10,22 +10,14 @@ _ALONG = 1e-300
 
 
 def wall_codes(walls: NDArray[np.bool_]) -> NDArray[np.int8]:
-    """Return the squared distances of a map ``bool[rows, cols]``, ``int8[rows, cols]``; nothing lies outside it."""
+    """See :class:`.CastKernel`."""
     outside = _squares(walls, REACH_CELLS)
     inside = _squares(~walls, DEPTH_CELLS)
     return np.where(walls, -inside, outside).astype(np.int8)
 
 
 def skip_codes(ends: NDArray[np.bool_], blocks: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Return how far beams may skip, ``uint8[rows + 2, cols + 2]``, with a ring of ``BLOCKS`` round the map.
-
-    A cell in which nothing stops a beam holds how many steps, over sides or corners, it is to the nearest that does, up
-    to ``SKIP_MAX``: so far round it there is nothing.
-
-    Args:
-        ends: ``bool[rows, cols]``, walls.
-        blocks: ``bool[rows, cols]``, other cells that stop a beam.
-    """
+    """See :class:`.CastKernel`."""
     stops = np.pad(ends | blocks, 1, constant_values=True)
     skips = np.full(stops.shape, SKIP_MAX, np.uint8)
     reached = stops
@@ -41,22 +33,7 @@ def skip_codes(ends: NDArray[np.bool_], blocks: NDArray[np.bool_]) -> NDArray[np
 def cast_beams(
     skips: NDArray[np.uint8], beams: NDArray[np.float64], poses: NDArray[np.float64], blocked_by: int
 ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
-    """Return how far beams go from each pose, exactly, and what stops them.
-
-    Args:
-        skips: ``uint8[rows + 2, cols + 2]``.
-        beams: ``float64[m, 4]``: where each starts, ``(x, y)`` [cells], and the cosine and sine of its bearing, in the
-            robot frame.
-        poses: ``float64[n, 4]``: x, y [cells], cosine and sine of the heading.
-        blocked_by: how many cells a beam must meet to be stopped; where the run of cells began in which it met the last
-            one is how far it goes.
-
-    Returns:
-        ``float64[n, m]`` [cells], 0 for a beam that starts in a cell that stops it, and ``uint8[n, m]``, ``ENDS`` or
-        ``BLOCKS``. Beams from outside the grid go nowhere, those that leave it end at its edge.
-
-    O(n m way / free space round it).
-    """
+    """See :class:`.CastKernel`."""
     x, y, cos, sin = (poses[:, i, None] for i in range(4))
     start = x + (cos * beams[:, 0] - sin * beams[:, 1]), y + (sin * beams[:, 0] + cos * beams[:, 1])
     ahead = cos * beams[:, 2] - sin * beams[:, 3], sin * beams[:, 2] + cos * beams[:, 3]

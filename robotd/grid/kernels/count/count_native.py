@@ -27,7 +27,7 @@ def count_feasible(
     threads: int = 1,
     instructions: str | None = None,
 ) -> None:
-    """See the twin; ``instructions`` is one of ``INSTRUCTION_SETS``, the best one if None.
+    """See :class:`.CountKernel`; ``instructions`` is one of ``INSTRUCTION_SETS``, the best one if None.
 
     Raises:
         ValueError: this processor lacks those instructions.
@@ -47,13 +47,13 @@ def count_feasible(
 
 
 def greatest(counters: Words) -> int:
-    """See the twin."""
+    """See :class:`.CountKernel`."""
     tiles, headings, bits, _ = counters.shape
     return int(lib.greatest(words(counters), tiles * headings, bits))
 
 
 def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
-    """See the twin."""
+    """See :class:`.CountKernel`."""
     tiles, headings, bits, _ = counters.shape
     masks = np.zeros((headings, the_map.rows, the_map.words), np.uint64)
     if least >> bits == 0:

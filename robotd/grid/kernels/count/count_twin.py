@@ -16,18 +16,7 @@ def count_feasible(
     subtract: bool = False,
     threads: int = 1,  # noqa: ARG001  # one thread is all that this needs
 ) -> None:
-    """Count every beam at every cell from which it is feasible, FP = D - E of [BrownDonald2000]_ sec. 2.2.1.
-
-    Args:
-        counters: ``uint64[tiles, headings, bits, 32]``, bit-sliced, changed in place; the caller makes sure that no
-            count outgrows its bits.
-        the_map: the obstacles.
-        beams: drawn for the headings of the counters.
-        subtract: take beams back that were counted before.
-        threads: how many threads share the work, where it can be shared; the result does not depend on it.
-
-    O(cells / 64) for every cell of every chain and for every beam.
-    """
+    """See :class:`.CountKernel`."""
     headings = counters.shape[1]
     for batch in range(len(beams.batches) - 1):
         kept = _walk(the_map, beams, range(*beams.batches[batch : batch + 2].tolist()))
@@ -54,7 +43,7 @@ def _walk(the_map: PackedMap, beams: Beams, groups: range) -> dict[int, Words]:
 
 
 def greatest(counters: Words) -> int:
-    """Return the greatest count."""
+    """See :class:`.CountKernel`."""
     best, value = np.full_like(counters[:, :, 0], ~np.uint64(0)), 0
     for bit in reversed(range(counters.shape[2])):
         better = best & counters[:, :, bit]
@@ -64,13 +53,7 @@ def greatest(counters: Words) -> int:
 
 
 def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
-    """Return where the count is at least so great, ``uint64[headings, rows, words]``; no bit is set outside the tiles.
-
-    Args:
-        counters: ``uint64[tiles, headings, bits, 32]``.
-        the_map: the map that they belong to.
-        least: not negative.
-    """
+    """See :class:`.CountKernel`."""
     _, headings, bits, _ = counters.shape
     masks = np.zeros((headings, the_map.rows, the_map.words), np.uint64)
     if least >> bits:

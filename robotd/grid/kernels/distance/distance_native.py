@@ -11,7 +11,7 @@ from robotd.grid.window import CellWindow
 def squared_distances(
     sources: NDArray[np.bool_], squares: NDArray[np.int32], window: CellWindow, *, limit_cells: int, outside: bool
 ) -> None:
-    """See the twin.
+    """See :class:`.DistanceKernel`.
 
     Raises:
         ValueError: the squares are read-only.

@@ -1,6 +1,7 @@
 """Readings drawn on the grid at all headings: chains of cells, and the beams whose bodies begin them."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,3 +96,22 @@ class Beams:
     def _part(self, number: int) -> NDArray[np.int32]:
         part: NDArray[np.int32] = self.numbers[self.numbers[number] : self.numbers[number + 1]]
         return part
+
+
+class DrawKernel(Protocol):
+    """Drawing readings on the grid."""
+
+    def draw_beams(self, readings: NDArray[np.float64], headings: NDArray[np.float64], how: BeamSettings) -> Beams:
+        """Draw every reading at every heading.
+
+        Each beam has the cells that ``localization/reference/probe.py`` gives it.
+
+        Args:
+            readings: ``float64[n, 5]``: bearing [rad], range [m], x and y of the beam's start [m], all in the robot
+                frame, and 1 for a miss or 0.
+            headings: ``float64[3, headings]`` of :func:`~robotd.grid.kernels.draw.draw_kernel.turned`.
+            how: resolution and error radius.
+
+        Returns:
+            The beams. The kernel in C gives the same beams, in groups and slots that may be numbered otherwise.
+        """

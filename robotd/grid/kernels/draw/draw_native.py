@@ -9,7 +9,7 @@ from robotd.grid.kernels.shared.buffers import floats, ints, longs
 
 
 def draw_beams(readings: NDArray[np.float64], headings: NDArray[np.float64], how: BeamSettings) -> Beams:
-    """See the twin.
+    """See :class:`.DrawKernel`.
 
     Few beams are drawn in no time, so what they take is allocated at once, and nothing is done twice.
     """

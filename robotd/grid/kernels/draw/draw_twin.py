@@ -21,17 +21,7 @@ Ints = NDArray[np.int64]
 
 
 def draw_beams(readings: NDArray[np.float64], headings: NDArray[np.float64], how: BeamSettings) -> Beams:
-    """Draw every reading at every heading, each beam with the cells that ``localization/reference/probe.py`` gives it.
-
-    Args:
-        readings: ``float64[n, 5]``: bearing [rad], range [m], x and y of the beam's start [m], all in the robot frame,
-            and 1 for a miss or 0.
-        headings: ``float64[3, headings]`` of :func:`~robotd.grid.kernels.shared.packed_map.turned`.
-        how: resolution and error radius.
-
-    Returns:
-        The beams. The kernel in C gives the same beams, in groups and slots that may be numbered otherwise.
-    """
+    """See :class:`.DrawKernel`."""
     drawn = _Drawn.of(readings, headings, how)
     keys = np.rint(drawn.bearings_rad * (_DIRECTIONS / (2 * np.pi))).astype(np.int64) % _DIRECTIONS
     chains = _Chains.of(drawn, keys)

@@ -15,7 +15,7 @@ _THREADS_MAX = 16
 def share_errors(
     the_map: PackedMap, distances: NDArray[np.uint16], outside: int, bodies: Bodies, wanted: int, *, threads: int = 1
 ) -> NDArray[np.uint16]:
-    """See the twin."""
+    """See :class:`.ErrorRadiusKernel`."""
     rows, cols = the_map.shape
     errors = np.full(the_map.shape, np.iinfo(np.uint16).max, np.uint16)
     threads = min(threads, _THREADS_MAX, max(1, len(the_map.tiles)))

@@ -21,20 +21,7 @@ def share_errors(
     *,
     threads: int = 1,  # noqa: ARG001  # one thread is all that this needs
 ) -> NDArray[np.uint16]:
-    """Return the smallest whole error radius with which so many readings are feasible, for every cell.
-
-    Args:
-        the_map: where the robot may stand, and what stops a beam; what is grown is not used.
-        distances: ``uint16[rows, cols]``: how far the nearest cell is that ends a beam, rounded up.
-        outside: the same for what lies outside.
-        bodies: the readings, drawn at one heading with an error radius of 0; no length but 65535 is over 32767.
-        wanted: how many readings must be feasible, at least 1.
-        threads: how many threads share the work, where it can be shared; the result does not depend on it.
-
-    Returns:
-        ``uint16[rows, cols]``, 65535 where no radius is large enough and where the robot cannot stand.
-        O(cells / 64) for every cell of a body, and O(cells) for every reading and binary digit of the errors.
-    """
+    """See :class:`.ErrorRadiusKernel`."""
     free = _cells(the_map, the_map.free[PAD_WORDS:-PAD_WORDS, TILE_ROWS:-TILE_ROWS])
     needed = np.empty((len(bodies.readings), np.count_nonzero(free)), np.uint16)
     for number, (first, end, row, col) in enumerate(bodies.readings.tolist()):

@@ -17,7 +17,7 @@ def count_fans(
     subtract: bool = False,
     threads: int = 1,
 ) -> None:
-    """See the twin."""
+    """See :class:`.FansKernel`."""
     tiles, headings, bits, _ = counters.shape
     fans, planes = fan_beams.fans, [words(plane) for plane in grown]
     job = ffi.new("fan_job *")

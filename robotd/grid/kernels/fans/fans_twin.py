@@ -20,19 +20,7 @@ def count_fans(
     subtract: bool = False,
     threads: int = 1,  # noqa: ARG001  # one thread is all that this needs
 ) -> None:
-    """Count every beam at every free cell whose fan lets a path through and whose head may be an obstacle.
-
-    Args:
-        counters: ``uint64[tiles, headings, bits, 32]``, bit-sliced, changed in place; the caller makes sure that no
-            count outgrows its bits.
-        the_map: where the robot may be, and what surely stops a beam; its grown cells are not used.
-        grown: what may end a beam, grown by several radii, packed as the map.
-        fan_beams: the beams.
-        subtract: take beams back that were counted before.
-        threads: how many threads share the tiles, where they can be shared; the result does not depend on it.
-
-    O(cells / 64) for every cell of every window and for every beam.
-    """
+    """See :class:`.FansKernel`."""
     free = seen_from(the_map.free, 0, 0)
     for fan in range(len(fan_beams.fans.lines)):
         beams = fan_beams.beams[fan_beams.lists[fan] : fan_beams.lists[fan + 1]].tolist()

@@ -16,7 +16,7 @@ def fit_poses(
     boxes: NDArray[np.float64],
     outlier_cells: float,
 ) -> Fits:
-    """See the twin."""
+    """See :class:`.FitKernel`."""
     count, beams = len(boxes), len(heads)
     fits = Fits(np.empty((count, 3)), np.empty((count, 3, 3)), np.empty((count, 3)), np.empty((count, beams)))
     errors = np.empty(beams)
@@ -36,7 +36,7 @@ def fit_poses(
 def scan_poses(
     codes: NDArray[np.int8], costs: NDArray[np.int32], heads: NDArray[np.float64], lattice: Lattice
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """See the twin."""
+    """See :class:`.FitKernel`."""
     least, turns = np.empty(lattice.shape, np.int32), np.empty(lattice.shape, np.int32)
     totals = np.empty(lattice.shape, np.int32)
     job = ffi.new("scan_job *")

@@ -30,21 +30,7 @@ def fit_poses(
     boxes: NDArray[np.float64],
     outlier_cells: float,
 ) -> Fits:
-    """Move poses within their boxes so that the heads of the readings come to lie on walls.
-
-    Gauss and Newton's steps on the distance field, interpolated between cell centres, with Tukey's biweight, whose
-    width narrows to ``outlier_cells``. A box binds by its active sides; in it the start is believed a little, so that
-    what the readings do not tell stays where it was.
-
-    Args:
-        codes: ``int8[rows, cols]``, squared distances.
-        distances: ``float64[256]``, the distance [cells] that each code stands for, by ``code + 128``.
-        heads: ``float64[m, 2]``, ``(x, y)`` in the robot frame [cells].
-        boxes: ``float64[n, 9]``: start x, y [cells], heading [rad]; the least they may become; the greatest.
-        outlier_cells: a head so far from any wall has no say.
-
-    O(n m) a step, at most 32 steps.
-    """
+    """See :class:`.FitKernel`."""
     count, beams = len(boxes), len(heads)
     fits = Fits(np.empty((count, 3)), np.empty((count, 3, 3)), np.empty((count, 3)), np.empty((count, beams)))
     for number, box in enumerate(boxes):
@@ -220,19 +206,7 @@ def _sum(values: NDArray[np.float64]) -> float:
 def scan_poses(
     codes: NDArray[np.int8], costs: NDArray[np.int32], heads: NDArray[np.float64], lattice: Lattice
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Return, for each place of a lattice, what the heads cost at its best heading, and which that is.
-
-    Args:
-        codes: ``int8[rows, cols]``, squared distances.
-        costs: ``int32[256]``, what a head costs in a cell, by ``code + 128``; outside the map as far from any wall.
-        heads: ``float64[m, 2]``, ``(x, y)`` in the robot frame [cells].
-        lattice: the poses.
-
-    Returns:
-        Both ``int32[places along y, places along x]``; the heading as its number of steps, the first of equal ones.
-
-    O(poses m).
-    """
+    """See :class:`.FitKernel`."""
     x_first, x_last, y_first, y_last, first, last = lattice.steps.tolist()
     cols = lattice.step_cells * np.arange(x_first, x_last + 1)
     rows = lattice.step_cells * np.arange(y_first, y_last + 1)[:, None]

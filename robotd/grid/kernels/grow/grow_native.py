@@ -15,7 +15,7 @@ _REACH_MAX = 254
 def grow_disk(
     mask: NDArray[np.bool_], grown: NDArray[np.bool_], window: CellWindow, *, radius_cells: float, outside: bool
 ) -> None:
-    """See the twin.
+    """See :class:`.GrowKernel`.
 
     Raises:
         ValueError: the radius is negative or more than 254 cells, or ``grown`` is read-only.

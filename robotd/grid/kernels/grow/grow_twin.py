@@ -10,17 +10,7 @@ from robotd.grid.window import CellWindow
 def grow_disk(
     mask: NDArray[np.bool_], grown: NDArray[np.bool_], window: CellWindow, *, radius_cells: float, outside: bool
 ) -> None:
-    """Work out which cells of a window have a cell of a set within a radius.
-
-    Args:
-        mask: ``bool[rows, cols]``, the set.
-        grown: ``bool[rows, cols]``, changed in the window.
-        window: which cells.
-        radius_cells: at least 0; the kernel in C takes less than 255.
-        outside: whether what lies beyond the grid is in the set.
-
-    O(cells x radius): the cells are those of the window and those within the radius of it.
-    """
+    """See :class:`.GrowKernel`."""
     disk = disk_footprint(radius_cells)
     seen = window.grown(disk.shape[0] // 2, mask.shape)
     row, col = window.first_row - seen.first_row, window.first_col - seen.first_col

@@ -21,7 +21,7 @@ def insert_sweep(
     *,
     at_once: bool,
 ) -> NDArray[np.intp]:
-    """See the twin.
+    """See :class:`.InsertKernel`.
 
     Raises:
         ValueError: the cells are read-only.

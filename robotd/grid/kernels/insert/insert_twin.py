@@ -21,20 +21,7 @@ def insert_sweep(
     *,
     at_once: bool,
 ) -> NDArray[np.intp]:
-    """Change cells by two tables: those that beams run through, and those they end in.
-
-    Args:
-        cells: ``uint8[rows, cols]``, changed in place.
-        readings: ``float64[n, 5]``: bearing [rad], range [m], x and y of the beam's start [m], all in the robot frame,
-            and 1 for a miss or 0.
-        map_from_robot: where the robot stood.
-        spec: where the cells are.
-        tables: for cells that a beam runs through, and for the one that it ends in, which is not one of them.
-        at_once: change each cell at most once, a hit beats all misses; else one beam after the other.
-
-    Returns:
-        Flat indices of the cells whose value changed, ascending. O(beams x cells a beam).
-    """
+    """See :class:`.InsertKernel`."""
     rays, (lower, higher), before = _Rays.of(readings, map_from_robot, spec), tables, cells.copy()
     passed_rays, passed = ray_cells(rays.starts, rays.bearings_rad, rays.lengths_cells, spec.shape)
     flat = cells.reshape(-1)

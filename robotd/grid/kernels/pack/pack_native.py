@@ -10,7 +10,7 @@ from robotd.grid.window import CellWindow
 
 
 def pack_cells(words: Words, mask: NDArray[np.bool_], origin: tuple[int, int], window: CellWindow) -> None:
-    """See the twin.
+    """See :class:`.PackKernel`.
 
     Raises:
         ValueError: the words are read-only.

@@ -8,15 +8,7 @@ from robotd.grid.window import CellWindow
 
 
 def pack_cells(words: Words, mask: NDArray[np.bool_], origin: tuple[int, int], window: CellWindow) -> None:
-    """Pack the cells of a window anew; cells that share a word with them, too.
-
-    Args:
-        words: ``uint64[words + 4, rows + padding]``, from
-            :func:`~robotd.grid.kernels.shared.packed_map.pack` of such a mask and the same origin, changed in place.
-        mask: ``bool[rows, cols]``.
-        origin: row and column, within the first tile, where the mask begins.
-        window: which cells.
-    """
+    """See :class:`.PackKernel`."""
     if window.is_empty:
         return
     outside = bool(words[0, 0])

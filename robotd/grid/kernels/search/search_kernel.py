@@ -1,11 +1,12 @@
 """What the search keeps of a map: bitmaps in windows and in blocks, and distances; filled by the kernels."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.grid.pose_set import PoseSet
 from robotd.grid.window import CellWindow
 
 
@@ -64,3 +65,20 @@ class Question:
     after the last."""
     reach_cells: float
     """Where bodies end at the latest; more than the map is wide and high changes nothing."""
+
+
+class SearchKernel(Protocol):
+    """Searching for the best poses."""
+
+    def make_planes(self, ground: Ground) -> Planes:
+        """Return what the search keeps of a map; the twin reads the map itself and keeps nothing more."""
+
+    def renew_planes(self, planes: Planes, ground: Ground, window: CellWindow) -> Planes:
+        """Return the planes after cells changed, all of them in a window; the old ones are used up."""
+
+    def search_poses(self, planes: Planes, question: Question, *, threads: int = 1) -> PoseSet:
+        """Return the best poses.
+
+        Heading by heading, cells that may hold an answer are kept in a list, and dropped once they have missed too many
+        readings: first by the heads of all beams, then, only where the heads leave a chance, by their bodies.
+        """

@@ -17,7 +17,7 @@ from robotd.grid.window import CellWindow
 
 
 def make_planes(ground: Ground) -> Planes:
-    """See the twin."""
+    """See :class:`.SearchKernel`."""
     key_of = endings(ground.error_radius_cells, ground.blocked_by)
     sizes = _map_of(ground, key_of)
     cells = np.empty(lib.search_cells_size(sizes), np.uint16)
@@ -27,7 +27,9 @@ def make_planes(ground: Ground) -> Planes:
 
 
 def renew_planes(planes: Planes, ground: Ground, window: CellWindow) -> Planes:
-    """See the twin."""
+    """See :class:`.SearchKernel`."""
+    if planes.handle is None:  # a twin's
+        return make_planes(ground)
     return _filled(ground, planes.key_of, (planes.cells, planes.pooled, planes.near), window)
 
 
@@ -48,11 +50,13 @@ def _filled(
 
 
 def search_poses(planes: Planes, question: Question, *, threads: int = 1, instructions: str | None = None) -> PoseSet:
-    """See the twin; ``instructions`` is one of ``INSTRUCTION_SETS``, the best one if None.
+    """See :class:`.SearchKernel`; ``instructions`` is one of ``INSTRUCTION_SETS``, the best one if None.
 
     Raises:
         ValueError: this processor lacks those instructions.
     """
+    if planes.handle is None:  # a twin's
+        planes = make_planes(planes.ground)
     jumping, headings_rad = question.readings[_jumping(len(question.readings))], question.headings_rad
     bearings_rad = headings_rad[:, None] + jumping[:, 0]
     sines, cosines = np.sin(bearings_rad), np.cos(bearings_rad)

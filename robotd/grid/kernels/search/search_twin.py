@@ -15,22 +15,18 @@ _FAR_CELLS = float(1 << 28)
 
 
 def make_planes(ground: Ground) -> Planes:
-    """Return what the search keeps of a map; the twin reads the map itself and keeps nothing more."""
+    """See :class:`.SearchKernel`."""
     key_of = endings(ground.error_radius_cells, ground.blocked_by)
     return Planes(ground, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8), None)
 
 
 def renew_planes(planes: Planes, ground: Ground, window: CellWindow) -> Planes:  # noqa: ARG001  # nothing to renew
-    """Return the planes after cells changed, all of them in a window; the old ones are used up."""
+    """See :class:`.SearchKernel`."""
     return make_planes(ground)
 
 
 def search_poses(planes: Planes, question: Question, *, threads: int = 1) -> PoseSet:  # noqa: ARG001  # one is enough
-    """Return the best poses.
-
-    Heading by heading, cells that may hold an answer are kept in a list, and dropped once they have missed too many
-    readings: first by the heads of all beams, then, only where the heads leave a chance, by their bodies.
-    """
+    """See :class:`.SearchKernel`."""
     ground, around = planes.ground, _Around.of(planes.ground)
     free = np.argwhere(_asked_for(ground.free, question))
     best, least, found = 0, max(1, question.least_rank - question.slack), [np.zeros((0, 4), np.int32)]

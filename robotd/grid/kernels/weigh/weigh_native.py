@@ -9,7 +9,7 @@ from robotd.grid.kernels.weigh.weigh_kernel import ChanceMap
 
 
 def weigh_beams(the_map: ChanceMap, poses: NDArray[np.float64], beams: NDArray[np.float64]) -> NDArray[np.float64]:
-    """See the twin."""
+    """See :class:`.WeighKernel`."""
     chances = np.empty((len(poses), len(beams), 3))
     if chances.size:
         rows, cols = the_map.cells.shape

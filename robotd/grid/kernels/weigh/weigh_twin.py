@@ -17,24 +17,7 @@ _STOPPED = 0.02
 
 
 def weigh_beams(the_map: ChanceMap, poses: NDArray[np.float64], beams: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how likely each beam ended where it did, seen from each pose.
-
-    A beam that is followed through the map is thinned cell by cell, and what is taken from it in a cell is the chance
-    that it ends there; only what is not on the map takes nothing from it. It is sampled as in :mod:`robotd.grid.ray`.
-    Where it meets an obstacle is blurred by Student's t with three degrees of freedom along the beam, and across it by
-    three parallel rays, which have its variance. Obstacle cells side by side are one obstacle, as likely to be there
-    as the likeliest of them.
-
-    Args:
-        the_map: the map.
-        poses: ``float64[n, 4]``: row, column, cosine and sine of the heading, in cells.
-        beams: ``float64[m, 8]``: x and y of the start in the robot frame, cosine and sine of the bearing, the range,
-            its standard deviation along and across the beam, all in cells, and 1 for a miss, 0 for a hit.
-
-    Returns:
-        ``float64[n, m, 3]``: for a hit the density [1 / cell] of its range by where it ends; for a miss the
-        chance that nothing stops it, and two zeros. O(n m obstacles and unknown cells on the way).
-    """
+    """See :class:`.WeighKernel`."""
     chances = np.zeros((len(poses), len(beams), 3))
     row, col, cos, sin = (poses[:, i, None] for i in range(4))
     x, y, bearing_cos, bearing_sin, _, _, across, _ = beams.T

@@ -1,8 +1,6 @@
 """The search against the count of everything: always the same poses, whatever the map and the question."""
 
-import importlib
 import math
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -13,7 +11,7 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.footprints import dilate, disk_footprint
-from robotd.grid.kernels import twins
+from robotd.grid.kernels import Kernels
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import numbers_of
 from robotd.grid.window import CellWindow
@@ -23,12 +21,7 @@ from robotd.localization.reference.probe import probe_of
 from robotd.localization.search import bounded_search as search
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk
-
-try:
-    NATIVE: ModuleType = importlib.import_module("robotd.grid.kernels.native")
-except ImportError:
-    NATIVE = twins
-both = pytest.mark.parametrize("module", {"numpy": twins, "c": NATIVE}.values(), ids=["numpy", "c or numpy"])
+from tests.unit.grid.kernels.tables import both, using
 
 RESOLUTION_M = 0.5
 
@@ -121,7 +114,7 @@ def assert_is(found: PoseSet, ranks: NDArray[np.int64], slack: int, least_rank: 
 @settings(max_examples=150, deadline=None)
 @given(some_obstacles(), readings, headings, priors, st.integers(0, 4), st.integers(0, 8), st.booleans())
 def test_the_answer_is_that_of_counting_everything(
-    module: ModuleType,
+    kernels: Kernels,
     drawn: tuple[Obstacles, float],
     sweep: list[RangeReading],
     headings_rad: list[float],
@@ -132,8 +125,7 @@ def test_the_answer_is_that_of_counting_everything(
 ) -> None:
     obstacles, radius = drawn
     spec = GridSpec(RESOLUTION_M, 0.0, 0.0, obstacles.free.shape)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(search, "kernels", module)
+    with using(kernels), pytest.MonkeyPatch.context() as patch:
         patch.setattr(search, "_FEW_CELLS", 0 if in_blocks else 1 << 30)
         ready = SearchMap.of(obstacles, spec, radius)
         found = best_poses(

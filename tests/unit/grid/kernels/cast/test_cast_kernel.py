@@ -1,6 +1,5 @@
 """Wall fields are what they say, beams go as far as one small step after the other would, and C does as NumPy does."""
 
-import importlib
 import math
 
 import numpy as np
@@ -10,13 +9,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from robotd.grid.distance import distance_transform
-from robotd.grid.kernels import twins
 from robotd.grid.kernels.cast.cast_kernel import BLOCKS, DEPTH_CELLS, ENDS, REACH_CELLS, SKIP_MAX
-
-try:
-    native = importlib.import_module("robotd.grid.kernels.native")
-except ImportError:
-    native = twins
+from robotd.grid.kernels.twins import TWINS
+from tests.unit.grid.kernels.tables import NATIVE
 
 Masks = tuple[NDArray[np.bool_], NDArray[np.bool_]]
 
@@ -35,18 +30,18 @@ def masks(draw: st.DrawFn) -> Masks:
 @given(masks())
 def test_codes_are_squared_distances_and_c_agrees(drawn: Masks) -> None:
     walls, _ = drawn
-    codes = twins.wall_codes(walls)
+    codes = TWINS.cast.wall_codes(walls)
     outside = np.minimum(distance_transform(walls), REACH_CELLS) ** 2
     inside = np.minimum(distance_transform(~walls), DEPTH_CELLS) ** 2
     np.testing.assert_array_equal(codes, np.rint(np.where(walls, -inside, outside)))
-    np.testing.assert_array_equal(native.wall_codes(walls), codes)
+    np.testing.assert_array_equal(NATIVE.cast.wall_codes(walls), codes)
 
 
 @settings(max_examples=100, deadline=None)
 @given(masks())
 def test_skips_never_pass_what_stops_a_beam_and_c_agrees(drawn: Masks) -> None:
     walls, blocks = drawn
-    skips = twins.skip_codes(walls, blocks)
+    skips = TWINS.cast.skip_codes(walls, blocks)
     stops = np.pad(walls | blocks, 1, constant_values=True)
     assert ((skips == ENDS) == np.pad(walls, 1)).all()
     assert ((skips == BLOCKS) == (stops & ~np.pad(walls, 1))).all()
@@ -54,7 +49,7 @@ def test_skips_never_pass_what_stops_a_beam_and_c_agrees(drawn: Masks) -> None:
         for reach in range(SKIP_MAX):
             near = stops[max(0, row - reach) : row + reach + 1, max(0, col - reach) : col + reach + 1]
             assert near.any() == (skips[row, col] <= reach)
-    np.testing.assert_array_equal(native.skip_codes(walls, blocks), skips)
+    np.testing.assert_array_equal(NATIVE.cast.skip_codes(walls, blocks), skips)
 
 
 places = st.tuples(st.integers(-1_000, 41_000), st.integers(-1_000, 41_000)).map(lambda at: (at[0] / 1e3, at[1] / 1e3))
@@ -66,12 +61,12 @@ headings = st.one_of(st.floats(-4.0, 4.0), st.integers(-4, 4).map(lambda k: k * 
 def test_c_casts_beams_to_the_last_bit_as_numpy_does(
     drawn: Masks, starts: list[tuple[float, float]], bearings: list[float], blocked_by: int
 ) -> None:
-    skips = twins.skip_codes(*drawn)
+    skips = TWINS.cast.skip_codes(*drawn)
     beams = np.array([(0.3, -0.2, math.cos(bearing), math.sin(bearing)) for bearing in bearings])
     poses = np.array([(x, y, math.cos(0.2 * x), math.sin(0.2 * x)) for x, y in starts])
     for one, other in zip(
-        native.cast_beams(skips, beams, poses, blocked_by),
-        twins.cast_beams(skips, beams, poses, blocked_by),
+        NATIVE.cast.cast_beams(skips, beams, poses, blocked_by),
+        TWINS.cast.cast_beams(skips, beams, poses, blocked_by),
         strict=True,
     ):
         np.testing.assert_array_equal(one, other)
@@ -82,9 +77,11 @@ def test_c_casts_beams_to_the_last_bit_as_numpy_does(
 def test_a_beam_goes_as_far_as_small_steps_take_it(
     drawn: Masks, start: tuple[float, float], bearing: float, blocked_by: int
 ) -> None:
-    skips = twins.skip_codes(*drawn)
+    skips = TWINS.cast.skip_codes(*drawn)
     beams = np.array([(0.0, 0.0, math.cos(bearing), math.sin(bearing))])
-    (way,), (stop,) = (found[0] for found in twins.cast_beams(skips, beams, np.array([(*start, 1.0, 0.0)]), blocked_by))
+    (way,), (stop,) = (
+        found[0] for found in TWINS.cast.cast_beams(skips, beams, np.array([(*start, 1.0, 0.0)]), blocked_by)
+    )
     expected = stepped(skips, start, bearing, blocked_by)
     # A step may miss a corner that the beam cuts by less.
     if expected is not None:

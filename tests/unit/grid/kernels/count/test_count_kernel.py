@@ -1,9 +1,9 @@
 """The kernels in C against their NumPy twins, and both against beams that are drawn one by one."""
 
-import importlib
 import itertools
 import math
-from types import ModuleType
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,19 +15,14 @@ from numpy.typing import NDArray
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid import kernels as kernels_in_use
 from robotd.grid.footprints import dilate, disk_footprint
-from robotd.grid.kernels import twins
+from robotd.grid.kernels import Kernels
 from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS, NO_HEAD, Beams, BeamSettings, turned
 from robotd.grid.kernels.shared.packed_map import TILE_ROWS, WORD_CELLS, PackedMap, Words, pack
+from robotd.grid.kernels.twins import TWINS
 from robotd.grid.readings import numbers_of
 from robotd.localization.count.rank_grid import even_headings
 from robotd.localization.reference.probe import probe_of
-
-try:
-    NATIVE: ModuleType = importlib.import_module("robotd.grid.kernels.native")
-except ImportError:
-    NATIVE = twins
-both = pytest.mark.parametrize("kernels", {"numpy": twins, "c": NATIVE}.values(), ids=["numpy", "c or numpy"])
-needs_native = pytest.mark.skipif(NATIVE is twins, reason="robotd was installed without a compiler")
+from tests.unit.grid.kernels.tables import NATIVE, both, needs_native, using
 
 RADIUS = 1.5
 HOW = BeamSettings(resolution_m=0.5, error_radius_cells=RADIUS, reach_cells=70)
@@ -127,38 +122,38 @@ def expected_beams(
 @settings(max_examples=40, deadline=None)
 @given(work)
 def test_beams_are_the_probes_one_by_one(
-    kernels: ModuleType, drawn: tuple[list[RangeReading], NDArray[np.float64]]
+    kernels: Kernels, drawn: tuple[list[RangeReading], NDArray[np.float64]]
 ) -> None:
     readings, headings = drawn
-    assert listed(kernels.draw_beams(numbers_of(readings), turned(headings), HOW), len(headings)) == expected_beams(
-        readings, headings
-    )
+    assert listed(
+        kernels.draw.draw_beams(numbers_of(readings), turned(headings), HOW), len(headings)
+    ) == expected_beams(readings, headings)
 
 
 @both
-def test_even_headings_and_bearings_share_one_chain_for_each_direction(kernels: ModuleType) -> None:
+def test_even_headings_and_bearings_share_one_chain_for_each_direction(kernels: Kernels) -> None:
     readings = [RangeReading(0, math.tau * k / 60, ReadingStatus.OK, 3.0 + k) for k in range(60)]
-    beams = kernels.draw_beams(numbers_of(readings), turned(np.array(even_headings(60))), HOW)
+    beams = kernels.draw.draw_beams(numbers_of(readings), turned(np.array(even_headings(60))), HOW)
     assert len(beams.groups) - 1 == 60
 
 
 @both
-def test_directions_that_differ_by_a_hair_share_a_chain_only_as_far_as_it_is_the_same(kernels: ModuleType) -> None:
+def test_directions_that_differ_by_a_hair_share_a_chain_only_as_far_as_it_is_the_same(kernels: Kernels) -> None:
     """Where a slope is one half, every other cell is a tie, and a hair decides it."""
     ties = [RangeReading(0, math.atan2(1, 2) + hair, ReadingStatus.OK, 9.0) for hair in (0.0, 1e-12, -1e-12)]
     plain = [RangeReading(0, 0.3 + hair, ReadingStatus.OK, 9.0) for hair in (0.0, 1e-12, -1e-12)]
     for readings, least, most in ((ties, 2, 3), (plain, 1, 1)):
-        beams = kernels.draw_beams(numbers_of(readings), turned(np.zeros(1)), HOW)
+        beams = kernels.draw.draw_beams(numbers_of(readings), turned(np.zeros(1)), HOW)
         assert listed(beams, 1) == expected_beams(readings, np.zeros(1))
         used = len(np.unique(beams.groups)) - 1  # a group that was split up is left without cells
         assert least <= used <= most
 
 
 @both
-def test_a_sweep_too_large_for_one_batch_is_taken_in_several(kernels: ModuleType) -> None:
+def test_a_sweep_too_large_for_one_batch_is_taken_in_several(kernels: Kernels) -> None:
     readings = [RangeReading(0, 0.01 * k, ReadingStatus.OK, 0.3 + 0.01 * k) for k in range(1200)]
     headings = np.array([0.0, 0.5, 1.1, 2.2])
-    beams = kernels.draw_beams(numbers_of(readings), turned(headings), HOW)
+    beams = kernels.draw.draw_beams(numbers_of(readings), turned(headings), HOW)
     assert len(beams.batches) > 2
     assert listed(beams, 4) == expected_beams(readings, headings)
 
@@ -202,35 +197,35 @@ random_counters = st.integers(0, 2**32).map(
 @settings(max_examples=20, deadline=None)
 @given(random_counters, st.integers(0, 17))
 def test_the_greatest_count_and_the_counts_that_reach_a_threshold(
-    kernels: ModuleType, counters: Words, least: int
+    kernels: Kernels, counters: Words, least: int
 ) -> None:
     the_map = packed(np.zeros((64, 64), np.bool_))
-    assert kernels.greatest(counters) == values(counters).max()
-    reached = kernels.at_least(counters, the_map, least)
+    assert kernels.count.greatest(counters) == values(counters).max()
+    reached = kernels.count.at_least(counters, the_map, least)
     bits = np.unpackbits(reached.view(np.uint8), axis=-1, bitorder="little")
     assert np.array_equal(bits, (values(counters) >= least).transpose(1, 0, 2, 3).reshape(3, 64, 64))
 
 
 @both
-def test_no_count_of_the_largest_numbers_is_lost(kernels: ModuleType) -> None:
+def test_no_count_of_the_largest_numbers_is_lost(kernels: Kernels) -> None:
     counters = np.full((1, 1, 16, TILE_ROWS), ~np.uint64(0))
     the_map = packed(np.zeros((32, 64), np.bool_))
-    assert kernels.greatest(counters) == 65535
-    assert kernels.at_least(counters, the_map, 65535).all()
-    assert not kernels.at_least(counters, the_map, 65536).any()
+    assert kernels.count.greatest(counters) == 65535
+    assert kernels.count.at_least(counters, the_map, 65535).all()
+    assert not kernels.count.at_least(counters, the_map, 65536).any()
 
 
 def counted(
-    kernels: ModuleType,
+    kernels: Kernels,
     readings: list[RangeReading],
     headings: NDArray[np.float64],
     the_map: PackedMap,
     counters: Words,
-    **how: object,
+    **how: Any,
 ) -> Words:
-    beams = kernels.draw_beams(numbers_of(readings), turned(headings), HOW)
+    beams = kernels.draw.draw_beams(numbers_of(readings), turned(headings), HOW)
     counters = counters.copy()
-    kernels.count_feasible(counters, the_map, beams, **how)
+    kernels.count.count_feasible(counters, the_map, beams, **how)
     return counters
 
 
@@ -241,11 +236,11 @@ def test_what_is_taken_back_was_never_counted(
 ) -> None:
     readings, headings = drawn
     blank = the_map.blank_counters(len(headings), 4)
-    first = counted(twins, readings[:2], headings, the_map, blank)
-    both_parts = counted(twins, readings[2:], headings, the_map, first) if readings[2:] else first
-    assert np.array_equal(both_parts, counted(twins, readings, headings, the_map, blank))
-    back = counted(twins, readings[:2], headings, the_map, both_parts, subtract=True)
-    assert np.array_equal(back, counted(twins, readings[2:], headings, the_map, blank) if readings[2:] else blank)
+    first = counted(TWINS, readings[:2], headings, the_map, blank)
+    both_parts = counted(TWINS, readings[2:], headings, the_map, first) if readings[2:] else first
+    assert np.array_equal(both_parts, counted(TWINS, readings, headings, the_map, blank))
+    back = counted(TWINS, readings[:2], headings, the_map, both_parts, subtract=True)
+    assert np.array_equal(back, counted(TWINS, readings[2:], headings, the_map, blank) if readings[2:] else blank)
 
 
 @needs_native
@@ -258,7 +253,7 @@ def test_every_instruction_set_counts_what_numpy_counts(
     readings, headings = drawn
     start = the_map.blank_counters(len(headings), 5)
     start[:, :, 3] = ~np.uint64(0)
-    expected = counted(twins, readings, headings, the_map, start, subtract=subtract)
+    expected = counted(TWINS, readings, headings, the_map, start, subtract=subtract)
     try:
         found = counted(NATIVE, readings, headings, the_map, start, subtract=subtract, instructions=instructions)
     except ValueError:
@@ -283,6 +278,21 @@ def test_the_number_of_threads_changes_nothing(threads: int) -> None:
 
 
 def test_the_kernels_in_use_are_named_with_a_reason() -> None:
-    assert kernels_in_use.IN_USE.compiled == (NATIVE is not twins)
-    assert kernels_in_use.IN_USE.instructions in {"numpy", "portable", "avx2", "avx512"}
-    assert kernels_in_use.IN_USE.reason in str(kernels_in_use.IN_USE)
+    assert kernels_in_use.in_use().about.compiled == (NATIVE is not TWINS)
+    assert kernels_in_use.in_use().about.instructions in {"numpy", "portable", "avx2", "avx512"}
+    assert kernels_in_use.in_use().about.reason in str(kernels_in_use.in_use().about)
+
+
+def test_what_is_chosen_computes_until_something_else_is() -> None:
+    """A table of mixed rows stands for a processor that does one thing better."""
+    own, mixed = kernels_in_use.in_use(), replace(TWINS, draw=NATIVE.draw)
+    readings = [RangeReading(0, 0.1 * k, ReadingStatus.OK, 2.0 + k) for k in range(9)]
+    headings, the_map = np.array(even_headings(5)), packed(np.eye(100, dtype=np.bool_))
+    blank = the_map.blank_counters(5, 4)
+    with using(mixed):
+        assert kernels_in_use.in_use() is mixed
+        found = counted(kernels_in_use.in_use(), readings, headings, the_map, blank)
+    assert kernels_in_use.in_use() is own
+    assert found.any()
+    for others in kernels_in_use.AVAILABLE:
+        assert np.array_equal(found, counted(others, readings, headings, the_map, blank))

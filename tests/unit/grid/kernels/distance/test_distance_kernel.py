@@ -1,23 +1,14 @@
 """The distance transform in C against its twin, in any window and up to any limit."""
 
-import importlib
-from types import ModuleType
-
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from robotd.grid.kernels import twins
+from robotd.grid.kernels import Kernels
 from robotd.grid.kernels.distance.distance_kernel import NOWHERE
 from robotd.grid.window import CellWindow
-
-try:
-    NATIVE: ModuleType = importlib.import_module("robotd.grid.kernels.native")
-except ImportError:
-    NATIVE = twins
-both = pytest.mark.parametrize("kernels", {"numpy": twins, "c": NATIVE}.values(), ids=["numpy", "c or numpy"])
+from tests.unit.grid.kernels.tables import both
 
 
 def drawn_sources(seed: int, rows: int, cols: int, share: float) -> NDArray[np.bool_]:
@@ -54,28 +45,30 @@ def slow_squares(sources: NDArray[np.bool_], limit: int, *, outside: bool) -> ND
 @settings(max_examples=150, deadline=None)
 @given(sources_of_any_kind, st.sampled_from([0, 1, 2, 5, 20, 1 << 14]), st.booleans(), st.data())
 def test_squares_are_right_in_the_window_and_left_alone_elsewhere(
-    kernels: ModuleType, sources: NDArray[np.bool_], limit: int, outside: bool, data: st.DataObject
+    kernels: Kernels, sources: NDArray[np.bool_], limit: int, outside: bool, data: st.DataObject
 ) -> None:
     window = data.draw(windows_of(sources.shape))
     squares = np.full(sources.shape, -1, np.int32)
-    kernels.squared_distances(sources, squares, window, limit_cells=limit, outside=outside)
+    kernels.distance.squared_distances(sources, squares, window, limit_cells=limit, outside=outside)
     expected = np.full(sources.shape, -1)
     expected[window.slices] = slow_squares(sources, limit, outside=outside)[window.slices]
     assert np.array_equal(squares, expected)
 
 
 @both
-def test_an_empty_window_changes_nothing(kernels: ModuleType) -> None:
+def test_an_empty_window_changes_nothing(kernels: Kernels) -> None:
     squares = np.full((3, 3), -1, np.int32)
-    kernels.squared_distances(np.ones((3, 3), np.bool_), squares, CellWindow(1, 1, 0, 3), limit_cells=2, outside=False)
+    kernels.distance.squared_distances(
+        np.ones((3, 3), np.bool_), squares, CellWindow(1, 1, 0, 3), limit_cells=2, outside=False
+    )
     assert (squares == -1).all()
 
 
 @both
-def test_the_longest_grid_overflows_nowhere(kernels: ModuleType) -> None:
+def test_the_longest_grid_overflows_nowhere(kernels: Kernels) -> None:
     sources = np.zeros((1, 8192), np.bool_)
     sources[0, 0] = True
     squares = np.empty(sources.shape, np.int32)
     window = CellWindow(0, 1, 8180, 8192)
-    kernels.squared_distances(sources, squares, window, limit_cells=1 << 14, outside=False)
+    kernels.distance.squared_distances(sources, squares, window, limit_cells=1 << 14, outside=False)
     assert squares[0, 8180:].tolist() == [col**2 for col in range(8180, 8192)]

@@ -1,23 +1,18 @@
 """The smallest error of every cell: in C what it is in NumPy."""
 
-import importlib
-
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
-from robotd.grid.kernels import twins
+from robotd.grid.kernels import AVAILABLE
 from robotd.grid.kernels.draw.draw_kernel import NO_HEAD
 from robotd.grid.kernels.error_radius.error_radius_kernel import Bodies
 from robotd.grid.kernels.shared.packed_map import PackedMap
+from tests.unit.grid.kernels.tables import needs_native
 
-try:
-    native = importlib.import_module("robotd.grid.kernels.native")
-except ImportError:
-    pytest.skip("no C kernels here", allow_module_level=True)
+pytestmark = needs_native
 
 masks = hnp.arrays(
     np.int8, hnp.array_shapes(min_dims=2, max_dims=2, max_side=80), elements=st.sampled_from([0, 0, 0, 1, 2])
@@ -49,6 +44,6 @@ def test_c_finds_what_numpy_finds_60_cases(
     distances = (np.abs(mask.astype(np.int32)) * 7 % 5).astype(np.uint16)
     wanted = min(wanted, len(drawn.readings))
     one, other = (
-        module.share_errors(packed, distances, 3, drawn, wanted, threads=threads) for module in (native, twins)
+        kernels.error_radius.share_errors(packed, distances, 3, drawn, wanted, threads=threads) for kernels in AVAILABLE
     )
     assert np.array_equal(one, other)

@@ -1,20 +1,15 @@
 """Fans counted in C are the ones counted in NumPy, added or taken back, by one thread or two."""
 
-import importlib
-
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robotd.grid.fans import FanBeams, direction_keys, draw_fans, start_keys
-from robotd.grid.kernels import twins
 from robotd.grid.kernels.shared.packed_map import PackedMap, pack
+from robotd.grid.kernels.twins import TWINS
+from tests.unit.grid.kernels.tables import NATIVE, needs_native
 
-try:
-    native = importlib.import_module("robotd.grid.kernels.native")
-except ImportError:
-    pytest.skip("robotd was installed without a compiler", allow_module_level=True)
+pytestmark = needs_native
 
 HEADINGS = 3
 
@@ -41,12 +36,12 @@ def test_the_same_counts_30_cases(seed: int, density: float, outside: bool, thre
     grown = [pack(random.random(shape) < share, the_map.origin, outside=True) for share in (0.3, 0.8)]
     beams = beams_of(random, 25, len(grown))
     one, other = (the_map.blank_counters(HEADINGS, 6) for _ in range(2))
-    native.count_fans(one, the_map, grown, beams, threads=threads)
-    twins.count_fans(other, the_map, grown, beams)
+    NATIVE.fans.count_fans(one, the_map, grown, beams, threads=threads)
+    TWINS.fans.count_fans(other, the_map, grown, beams)
     assert np.array_equal(one, other)
     some = beams_of(random, 1, len(grown))
-    native.count_fans(one, the_map, grown, some)
-    native.count_fans(one, the_map, grown, some, subtract=True)
+    NATIVE.fans.count_fans(one, the_map, grown, some)
+    NATIVE.fans.count_fans(one, the_map, grown, some, subtract=True)
     assert np.array_equal(one, other)
-    twins.count_fans(other, the_map, grown, beams, subtract=True)
+    TWINS.fans.count_fans(other, the_map, grown, beams, subtract=True)
     assert not other.any()

@@ -1,7 +1,5 @@
 """Sweeps inserted in C change the cells that NumPy changes, to the same values, under both policies."""
 
-import importlib
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,13 +7,11 @@ from hypothesis import strategies as st
 
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.grid.kernels import twins
+from robotd.grid.kernels.twins import TWINS
 from robotd.grid.tables import lower_table, raise_table
+from tests.unit.grid.kernels.tables import NATIVE, needs_native
 
-try:
-    native = importlib.import_module("robotd.grid.kernels.native")
-except ImportError:
-    pytest.skip("robotd was installed without a compiler", allow_module_level=True)
+pytestmark = needs_native
 
 SHAPE = (23, 31)
 TABLES = (lower_table(0.15), raise_table(0.3))
@@ -36,8 +32,8 @@ def test_the_same_cells_change_to_the_same_values(
     one = np.random.default_rng(seed).integers(0, 256, SHAPE, np.uint8)
     other = one.copy()
     with np.errstate(over="ignore"):  # a beam may be longer than any number of cells
-        expected = twins.insert_sweep(other, numbers, pose, SPEC, TABLES, at_once=at_once)
-    changed = native.insert_sweep(one, numbers, pose, SPEC, TABLES, at_once=at_once)
+        expected = TWINS.insert.insert_sweep(other, numbers, pose, SPEC, TABLES, at_once=at_once)
+    changed = NATIVE.insert.insert_sweep(one, numbers, pose, SPEC, TABLES, at_once=at_once)
     assert changed.tolist() == expected.tolist()
     assert np.array_equal(one, other)
 
@@ -46,4 +42,4 @@ def test_a_grid_that_nobody_may_change_is_refused() -> None:
     cells = np.zeros(SHAPE, np.uint8)
     cells.flags.writeable = False
     with pytest.raises(ValueError, match="read-only"):
-        native.insert_sweep(cells, np.zeros((1, 5)), IDENTITY, SPEC, TABLES, at_once=True)
+        NATIVE.insert.insert_sweep(cells, np.zeros((1, 5)), IDENTITY, SPEC, TABLES, at_once=True)

@@ -1,22 +1,13 @@
 """Packing a window anew leaves what packing all of it would."""
 
-import importlib
-from types import ModuleType
-
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.grid.kernels import twins
+from robotd.grid.kernels import Kernels
 from robotd.grid.kernels.shared.packed_map import pack
 from robotd.grid.window import CellWindow
-
-try:
-    NATIVE: ModuleType = importlib.import_module("robotd.grid.kernels.native")
-except ImportError:
-    NATIVE = twins
-both = pytest.mark.parametrize("kernels", {"numpy": twins, "c": NATIVE}.values(), ids=["numpy", "c or numpy"])
+from tests.unit.grid.kernels.tables import both
 
 
 @both
@@ -28,7 +19,7 @@ both = pytest.mark.parametrize("kernels", {"numpy": twins, "c": NATIVE}.values()
     st.booleans(),
 )
 def test_a_window_packed_anew_is_as_if_all_was(
-    kernels: ModuleType, seed: int, shape: tuple[int, int], origin: tuple[int, int], outside: bool
+    kernels: Kernels, seed: int, shape: tuple[int, int], origin: tuple[int, int], outside: bool
 ) -> None:
     random = np.random.default_rng(seed)
     before = random.random(shape) < 0.5
@@ -36,5 +27,5 @@ def test_a_window_packed_anew_is_as_if_all_was(
     after = before.copy()
     after[window.slices] = random.random(window.shape) < 0.5
     words = pack(before, origin, outside=outside)
-    kernels.pack_cells(words, after, origin, window)
+    kernels.pack.pack_cells(words, after, origin, window)
     assert np.array_equal(words, pack(after, origin, outside=outside))

@@ -1,9 +1,8 @@
 """The search kernels: planes renewed in a window are planes made anew; every way to search gives the same poses."""
 
 import functools
-import importlib
 import math
-from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,17 +11,12 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from robotd.grid.footprints import dilate, disk_footprint
-from robotd.grid.kernels import twins
+from robotd.grid.kernels import Kernels
 from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question
+from robotd.grid.kernels.twins import TWINS
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.window import CellWindow
-
-try:
-    NATIVE: ModuleType = importlib.import_module("robotd.grid.kernels.native")
-except ImportError:
-    NATIVE = twins
-both = pytest.mark.parametrize("kernels", {"numpy": twins, "c": NATIVE}.values(), ids=["numpy", "c or numpy"])
-needs_native = pytest.mark.skipif(NATIVE is twins, reason="robotd was installed without a compiler")
+from tests.unit.grid.kernels.tables import NATIVE, both, needs_native
 
 RADIUS = 1.5
 
@@ -83,8 +77,8 @@ def test_planes_renewed_in_a_window_are_planes_made_anew(
     if len(changed):
         (row_first, col_first), (row_last, col_last) = changed.min(axis=0).tolist(), changed.max(axis=0).tolist()
         window = CellWindow(row_first, row_last + 1, col_first, col_last + 1)
-    planes = NATIVE.renew_planes(NATIVE.make_planes(old), new, window)
-    anew: Planes = NATIVE.make_planes(new)
+    planes = NATIVE.search.renew_planes(NATIVE.search.make_planes(old), new, window)
+    anew: Planes = NATIVE.search.make_planes(new)
     assert np.array_equal(planes.near, anew.near)
     assert np.array_equal(planes.cells, anew.cells)
     assert np.array_equal(planes.pooled, anew.pooled)
@@ -94,7 +88,7 @@ def test_planes_renewed_in_a_window_are_planes_made_anew(
 def test_near_is_the_chebyshev_distance_to_what_blocks() -> None:
     solid = building(3, (150, 170))
     for outside in (False, True):
-        near: NDArray[np.uint8] = NATIVE.make_planes(ground_of(solid, outside)).near
+        near: NDArray[np.uint8] = NATIVE.search.make_planes(ground_of(solid, outside)).near
         for distance in (1, 2, 5, 17, 40, 63):
             reached = dilate(solid, np.ones((2 * distance - 1, 2 * distance - 1), np.bool_), outside=outside)
             assert np.array_equal(near < distance, reached)
@@ -108,18 +102,19 @@ def case(seed: int) -> tuple[Ground, Question]:
 @functools.cache
 def found_by_numpy(seed: int) -> PoseSet:
     ground, question = case(seed)
-    return twins.search_poses(twins.make_planes(ground), question)
+    return TWINS.search.search_poses(TWINS.search.make_planes(ground), question)
 
 
 @needs_native
 @pytest.mark.parametrize("threads", [1, 2, 5])
 @pytest.mark.parametrize("instructions", ["portable", "avx2", "avx512"])
 def test_every_way_to_search_finds_what_numpy_finds(threads: int, instructions: str) -> None:
+    native: Any = NATIVE.search
     for seed in range(3):
         ground, question = case(seed)
         try:
-            found = NATIVE.search_poses(
-                NATIVE.make_planes(ground), question, threads=threads, instructions=instructions
+            found = native.search_poses(
+                native.make_planes(ground), question, threads=threads, instructions=instructions
             )
         except ValueError:
             pytest.skip(f"this processor has no {instructions}")
@@ -129,13 +124,23 @@ def test_every_way_to_search_finds_what_numpy_finds(threads: int, instructions: 
 
 @both
 @pytest.mark.parametrize("limit", [0, 1, 50, 300])
-def test_more_poses_than_the_limit_are_cut_at_a_rank(kernels: ModuleType, limit: int) -> None:
+def test_more_poses_than_the_limit_are_cut_at_a_rank(kernels: Kernels, limit: int) -> None:
     shape = (40, 100)
-    planes = kernels.make_planes(ground_of(building(5, shape)))
-    everything = kernels.search_poses(planes, question_of(shape, 5, slack=20))
+    planes = kernels.search.make_planes(ground_of(building(5, shape)))
+    everything = kernels.search.search_poses(planes, question_of(shape, 5, slack=20))
     ranks = everything.ranks
     assert len(everything) > 300
-    found = kernels.search_poses(planes, question_of(shape, 5, slack=20, limit=limit))
+    found = kernels.search.search_poses(planes, question_of(shape, 5, slack=20, limit=limit))
     assert (found.best_rank, found.is_all) == (everything.best_rank, False)
     assert np.array_equal(found.poses, everything.poses[ranks >= found.least_rank])
     assert len(found.poses) <= limit < (ranks >= found.least_rank - 1).sum()
+
+
+@needs_native
+def test_planes_that_the_twin_made_are_searched_and_renewed() -> None:
+    """So kernels may be chosen again while maps are ready to be searched."""
+    ground, question = case(1)
+    planes = TWINS.search.make_planes(ground)
+    assert_same(NATIVE.search.search_poses(planes, question), found_by_numpy(1))
+    renewed = NATIVE.search.renew_planes(planes, ground, CellWindow.whole(ground.free.shape))
+    assert_same(NATIVE.search.search_poses(renewed, question), found_by_numpy(1))

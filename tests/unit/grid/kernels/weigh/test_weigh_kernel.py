@@ -1,17 +1,16 @@
 """Beams are weighed in C as in NumPy, to the last bit; and what is weighed is a density."""
 
-import importlib
-from importlib.util import find_spec
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from robotd.grid.kernels import twins, weigh_beams
+from robotd.grid.kernels import Kernels, in_use
+from robotd.grid.kernels.twins import TWINS
 from robotd.grid.kernels.weigh.weigh_kernel import AS_MAPPED, IN_UNKNOWN, IN_VACANT, ChanceMap
 from robotd.localization.judge.likelihood import skips_of
+from tests.unit.grid.kernels.tables import NATIVE, both, needs_native
 
 VALUES = np.array([0, 60, 127, 128, 129, 190, 255], np.uint8)
 STOPS = np.where(np.arange(256) > 128, np.minimum(np.arange(256) / 255, 0.9), 0.001)
@@ -33,22 +32,21 @@ def random_case(seed: int) -> tuple[NDArray[np.uint8], NDArray[np.float64], NDAr
     return cells, poses, beams
 
 
-@pytest.mark.skipif(find_spec("robotd.grid.kernels._native") is None, reason="robotd was installed without a compiler")
+@needs_native
 @settings(max_examples=100, deadline=None)
 @given(st.integers(0, 2**32))
 def test_the_same_chances_to_the_last_bit(seed: int) -> None:
-    native = importlib.import_module("robotd.grid.kernels.native")
     cells, poses, beams = random_case(seed)
-    one = native.weigh_beams(chance_map(cells), poses, beams)
-    assert np.array_equal(one, twins.weigh_beams(chance_map(cells), poses, beams))
+    one = NATIVE.weigh.weigh_beams(chance_map(cells), poses, beams)
+    assert np.array_equal(one, TWINS.weigh.weigh_beams(chance_map(cells), poses, beams))
     assert (one >= 0.0).all()
 
 
-def test_nothing_is_weighed_without_poses_or_beams() -> None:
+@both
+def test_nothing_is_weighed_without_poses_or_beams(kernels: Kernels) -> None:
     cells, poses, beams = random_case(0)
-    for kernels in (twins, importlib.import_module("robotd.grid.kernels")):
-        assert kernels.weigh_beams(chance_map(cells), poses[:0], beams).shape == (0, 12, 3)
-        assert kernels.weigh_beams(chance_map(cells), poses, beams[:0]).shape == (4, 0, 3)
+    assert kernels.weigh.weigh_beams(chance_map(cells), poses[:0], beams).shape == (0, 12, 3)
+    assert kernels.weigh.weigh_beams(chance_map(cells), poses, beams[:0]).shape == (4, 0, 3)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -62,7 +60,7 @@ def test_a_beam_ends_somewhere_once(seed: int) -> None:
     every = np.repeat(beams[:1], len(ranges) + 1, axis=0)
     every[:, 4:] = np.column_stack((np.append(ranges, end), np.full((len(every), 2), (0.5, 0.7)), np.zeros(len(every))))
     every[-1, 7] = 1.0
-    chances = weigh_beams(chance_map(cells, np.where(np.arange(256) < 128, 0.0, STOPS)), poses, every)
+    chances = in_use().weigh.weigh_beams(chance_map(cells, np.where(np.arange(256) < 128, 0.0, STOPS)), poses, every)
     whole = chances[:, :-1].sum(axis=(1, 2)) * step + chances[:, -1, AS_MAPPED]
     # Student's tails are cut, and what is nearly stopped is dropped.
     assert ((whole > 0.98) & (whole < 1.001)).all(), whole
@@ -74,9 +72,9 @@ def test_a_range_is_as_likely_as_the_way_there_is_free() -> None:
     pose = np.array([[2.5, 0.5, 1.0, 0.0]])
     ranges = np.array([10.0, 20.0, 30.0, 40.0, 55.0])
     beams = np.column_stack((np.tile([0, 0, 1, 0], (5, 1)), ranges, np.full((5, 2), 0.5), np.zeros(5)))
-    near, first, between, second, beyond = weigh_beams(chance_map(cells), pose, beams)[0]
+    near, first, between, second, beyond = in_use().weigh.weigh_beams(chance_map(cells), pose, beams)[0]
     cells[:, 20:41] = 0
-    assert weigh_beams(chance_map(cells), pose, beams)[0, 4].argmax() == IN_UNKNOWN
+    assert in_use().weigh.weigh_beams(chance_map(cells), pose, beams)[0, 4].argmax() == IN_UNKNOWN
     assert near.argmax() == IN_VACANT
     assert first.argmax() == AS_MAPPED
     assert between.argmax() == IN_VACANT
@@ -90,6 +88,6 @@ def test_a_thick_wall_stops_no_more_than_a_thin_one() -> None:
     pose = np.array([[2.5, 0.5, 1.0, 0.0]])
     miss = np.array([[0.0, 0.0, 1.0, 0.0, 50.0, 0.5, 0.5, 1.0]])
     no_rates = np.where(STOPS < 0.5, 0.0, STOPS)
-    through = weigh_beams(chance_map(thin, no_rates), pose, miss)[0, 0, AS_MAPPED]
+    through = in_use().weigh.weigh_beams(chance_map(thin, no_rates), pose, miss)[0, 0, AS_MAPPED]
     assert through == pytest.approx(0.1)
-    assert weigh_beams(chance_map(thick, no_rates), pose, miss)[0, 0, AS_MAPPED] == pytest.approx(0.1)
+    assert in_use().weigh.weigh_beams(chance_map(thick, no_rates), pose, miss)[0, 0, AS_MAPPED] == pytest.approx(0.1)
