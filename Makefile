@@ -49,8 +49,8 @@ exact: .venv/.dev  ## The exact algorithm measured, and the paper's figures of i
 faults: .venv/.dev  ## Everything that can go wrong on a serial line, in every state of the daemon: a table (two minutes)
 	@$(BIN)/python -m tests.faults.run $(if $(ONLY),--only $(ONLY))
 
-replay-many: .venv/.dev  ## Random sessions with faults, stalls and dying clients, each replayed: COUNT=500
-	@$(BIN)/python -m tests.replay_many.run --count $(or $(COUNT),500)
+replay-many: .venv/.dev  ## Random sessions with faults, stalls, kills and dying clients, each replayed: COUNT=500 REAL=20 (real ones: minutes)
+	@$(BIN)/python -m tests.replay_many.run --count $(or $(COUNT),500) --real $(or $(REAL),20)
 
 firmware-test: .venv/.dev  ## The boards' C against Python under the sanitizers: vectors, random frames, random lives
 	@$(BIN)/python -m pytest -q tests/firmware

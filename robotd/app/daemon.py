@@ -22,7 +22,7 @@ from robotd.core.log import LONGEST_LINE, configure
 from robotd.core.text import printable
 from robotd.grid import kernels
 from robotd.mission.compute import ThreadCompute
-from robotd.recording.entries import CAUSES_ARE_NOTED, RecordingHeader
+from robotd.recording.entries import CAUSES_ARE_NOTED, SILENCES_ARE_NOTED, RecordingHeader
 from robotd.recording.preroll import PrerollJournal
 from robotd.server.health import Notifier, feed_watchdog, watchdog_s
 from robotd.server.server import Server
@@ -161,7 +161,7 @@ def new_journal(config: Config) -> PrerollJournal:
         started_ns=now_ns(),
     )
     journal = PrerollJournal(header, config.recording.preroll_bytes)
-    journal.cause(header.started_ns, CAUSES_ARE_NOTED, {})
+    journal.cause(header.started_ns, CAUSES_ARE_NOTED, {SILENCES_ARE_NOTED: True})
     return journal
 
 

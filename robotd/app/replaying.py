@@ -7,6 +7,7 @@ from typing import Any
 
 from robotd.app.compose import Daemon, compose
 from robotd.config import Config, loads
+from robotd.core.attention import attention
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RecordingError, RobotdError
 from robotd.hardware.devices.catalogue import request_words
@@ -123,6 +124,7 @@ async def _play(recording: Recording, config: Config, journal: PrerollJournal) -
         daemon.causes.repeat(entry.name, entry.arguments)
 
     playback = Playback(recording, carry_out, take_up)
+    attention().are_led = recording.notes_silences
     connects = {device: playback.line(device).connect for device in DEVICES}
     daemon = compose(config, connects, playback.compute, journal, leases_end_by_causes=recording.notes_causes)
     async with asyncio.TaskGroup() as group:

@@ -1,8 +1,9 @@
-"""The one timer of silence: it does not count the time for which we ourselves stood still."""
+"""The one timer of silence: it does not count the time for which we ourselves stood still, and a replay can lead it."""
 
 import asyncio
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from functools import partial
 
 from robotd.core.attention import attention
 
@@ -10,8 +11,27 @@ from robotd.core.attention import attention
 class Silence:
     """Calls ``fell_silent`` once, unless it is renewed in time or ended."""
 
-    def __init__(self, lasts_s: float, fell_silent: Callable[[], None], *, begins: bool = True) -> None:
-        """Begin to wait, or only at the first :meth:`renew`."""
+    def __init__(
+        self,
+        lasts_s: float,
+        fell_silent: Callable[[], None],
+        *,
+        of: str = "",
+        begins: bool = True,
+        counts_stalls: bool = False,
+    ) -> None:
+        """Wait for a silence.
+
+        Args:
+            lasts_s: how long it must last.
+            fell_silent: called then.
+            of: whose silence it is, for the journal; one without a name is noted by its owner.
+            begins: whether it begins now, or only at the first :meth:`renew`.
+            counts_stalls: whether the time counts for which we did not listen: it does where a robot must not go on.
+        """
+        self._counts_stalls = counts_stalls
+        self.of = of
+        self.due_s = 0.0
         self._lasts_s = lasts_s
         self._fell_silent = fell_silent
         self._attention = attention()
@@ -29,29 +49,55 @@ class Silence:
         """Call nobody any more."""
         if self._timer is not None:
             self._timer.cancel()
+        self._attention.give_up(self)
+
+    def fall(self) -> None:
+        """Call who waits for it, now."""
+        if self.of:
+            self._attention.fell(self.of)
+        self._fell_silent()
 
     def _set(self, due_s: float) -> None:
         self._missed_s = self._attention.missed_s
-        self._due_s = due_s
-        self._timer = self._loop.call_at(due_s, self._due)
+        self.due_s = due_s
+        if self.of and self._attention.are_led:
+            self._attention.wait_for(self)
+        else:
+            self._timer = self._loop.call_at(due_s, self._due)
 
     def _due(self) -> None:
         self._attention.look()
         missed_s = self._attention.missed_s - self._missed_s
-        if missed_s > 0.0:
+        if missed_s > 0.0 and not self._counts_stalls:
             # What came meanwhile waits to be read. Counted from when it was due, not from now: a replay fires it later.
-            self._set(self._due_s + missed_s)
+            self._set(self.due_s + missed_s)
         else:
-            self._fell_silent()
+            self.fall()
 
 
 @asynccontextmanager
-async def within(seconds: float, *, begins: bool = True) -> AsyncIterator[Silence]:
-    """Give the block so long, not counting stalls of ours, from now or the first renewal on; else TimeoutError."""
+async def within(
+    seconds: float, *, of: str, begins: bool = True, counts_stalls: bool = False
+) -> AsyncIterator[Silence]:
+    """Give the block so long from now or the first renewal on, else TimeoutError; see :class:`Silence`."""
     async with asyncio.timeout(None) as limit:
-        loop = asyncio.get_running_loop()
-        silence = Silence(seconds, lambda: limit.reschedule(loop.time()), begins=begins)
+        fell_silent = partial(_end_now, limit)
+        silence = Silence(seconds, fell_silent, of=of, begins=begins, counts_stalls=counts_stalls)
         try:
             yield silence
         finally:
             silence.end()
+
+
+async def idle(seconds: float, *, of: str) -> None:
+    """Let some time pass, not counting stalls of ours."""
+    over = asyncio.Event()
+    silence = Silence(seconds, over.set, of=of)
+    try:
+        await over.wait()
+    finally:
+        silence.end()
+
+
+def _end_now(limit: asyncio.Timeout) -> None:
+    limit.reschedule(asyncio.get_running_loop().time())

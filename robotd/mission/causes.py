@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from robotd.core.attention import attention
 from robotd.core.clock import now_ns
 from robotd.core.errors import RecordingError
 from robotd.mission.safety.hold import Stall
@@ -19,6 +20,8 @@ STALL = "stall"
 LEASE = "lease"
 GO_ON = "go_on"
 GIVE_UP = "give_up"
+SILENCE = "silence"
+"""A time ran out in which something should have come, of whatever its argument ``of`` says."""
 _ARGUMENTS: dict[str, tuple[str, tuple[type, ...]]] = {
     STALL: ("stood_still_s", (float, int)),
     LEASE: ("mission_id", (int,)),
@@ -32,6 +35,10 @@ class Causes:
     def __init__(self, supervisor: Supervisor, journal: Journal) -> None:
         self._supervisor = supervisor
         self._journal = journal
+        attention().fell = self._fell
+
+    def _fell(self, of: str) -> None:
+        self._journal.cause(now_ns(), SILENCE, {"of": of})
 
     def stalled(self, stall: Stall) -> None:
         """Take up that the event loop stood still; see :meth:`robotd.mission.safety.holding.Holding.stalled`."""
@@ -65,6 +72,8 @@ class Causes:
             self.give_up()
         elif name == LEASE:
             self._supervisor.lease_expired(arguments["mission_id"])
+        elif name == SILENCE:
+            attention().let_fall(arguments["of"])
 
 
 def check_cause(name: str, arguments: dict[str, Any]) -> None:
@@ -79,6 +88,8 @@ def check_cause(name: str, arguments: dict[str, Any]) -> None:
         raise RecordingError(f"cause {name!r}: expected a number {key!r}, got {str(arguments)[:80]}")
     if name == STALL:
         _check_stall(arguments)
+    if name == SILENCE and type(arguments.get("of")) is not str:
+        raise RecordingError(f"cause {SILENCE!r}: expected a text 'of', got {str(arguments)[:80]}")
 
 
 def _check_stall(arguments: dict[str, Any]) -> None:

@@ -201,7 +201,7 @@ class Control:
                 raise MissionError("there is no odometry yet to tie to the map")
             place.tie(msgspec.convert(arguments["robot_in_map"], Pose2), here.in_odom)
         self._supervisor.require_replaceable_map()
-        self._journal.note(replace(command, time_ns=now_ns()))
+        self._journal.asked(replace(command, time_ns=now_ns()))
         self._supervisor.use(place)
 
     async def start_recording(self, path: str | None) -> str:

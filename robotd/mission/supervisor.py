@@ -155,7 +155,7 @@ class Supervisor:
         """
         devices = self.require_armable()
         try:
-            async with within(_DEVICE_TIMEOUT_S):
+            async with within(_DEVICE_TIMEOUT_S, of="arming"):
                 await self._arm_devices(devices)
         except TimeoutError:
             self.halt(Occasion.STOP, "arming took too long")

@@ -9,6 +9,10 @@ CAUSES_ARE_NOTED = "begun"
 """The first cause in a recording that notes all of them; one without it is older, and its replay has to guess."""
 
 
+SILENCES_ARE_NOTED = "silences"
+"""An argument of that cause, true where each silence that fell is noted as well."""
+
+
 LINE_BROKE = "line_broke"
 """A cause: a read from the line of ``device`` failed for a ``reason``."""
 

@@ -53,7 +53,11 @@ class Journal(ABC):
 
     def command(self, time_ns: int, name: str, arguments: dict[str, Any]) -> None:
         """Note what a client asked for; ``arguments`` must fit into JSON."""
-        self._note_in_turn(CommandEntry(time_ns, name, arguments))
+        self.asked(CommandEntry(time_ns, name, arguments))
+
+    def asked(self, entry: CommandEntry) -> None:
+        """Note what a client asked for, as an entry that was made already."""
+        self._note_in_turn(entry)
 
     def computed(self, time_ns: int, name: str, index: int) -> None:
         """Note that the ``index``-th job called ``name`` was handed back to the loop."""

@@ -39,7 +39,7 @@ SETTLE_S = 0.001
 """How long after the last entry its effects are waited for."""
 
 _ADDED_JOBS = {"begin map"}
-"""Jobs that were no jobs when the first recordings were made: in a recording that knows none, they take no time."""
+"""Jobs that were no jobs when the first recordings were made: there they take no time."""
 
 T = TypeVar("T")
 
@@ -251,9 +251,8 @@ class RecordedCompute:
 
     def __init__(self, recording: Recording) -> None:
         jobs = {(e.name, e.index): e.time_ns for e in recording.entries if isinstance(e, ComputedEntry)}
-        self._names = {name for name, _ in jobs}
         self._times_ns = jobs
-        self._notes_failures = recording.notes_causes
+        self._is_first_format = not recording.notes_causes
         self._released = {job: asyncio.Event() for job in jobs}
         self._ended = asyncio.Event()
         self._done: Counter[str] = Counter()
@@ -267,14 +266,14 @@ class RecordedCompute:
         try:
             result = function(*args)
         except Exception:
-            if self._notes_failures:
+            if not self._is_first_format:
                 await self._wait(name)
             raise
         await self._wait(name)
         return result
 
     async def _wait(self, name: str) -> None:
-        if name in _ADDED_JOBS - self._names:
+        if self._is_first_format and name in _ADDED_JOBS:
             return
         async with self._turns[name]:
             job = name, self._done[name]

@@ -19,6 +19,7 @@ from robotd.core.errors import RecordingError
 from robotd.recording.encoding import HEADER_TOPIC, decode, decode_header
 from robotd.recording.entries import (
     CAUSES_ARE_NOTED,
+    SILENCES_ARE_NOTED,
     BytesEntry,
     CauseEntry,
     Entry,
@@ -53,7 +54,17 @@ class Recording:
     @property
     def notes_causes(self) -> bool:
         """Whether it holds what the daemon's own clocks and threads decided, as all do since 0.2."""
-        return any(isinstance(entry, CauseEntry) and entry.name == CAUSES_ARE_NOTED for entry in self.entries[:1])
+        return self._begun is not None
+
+    @property
+    def notes_silences(self) -> bool:
+        """Whether each silence that fell is among them."""
+        return self._begun is not None and self._begun.arguments.get(SILENCES_ARE_NOTED) is True
+
+    @property
+    def _begun(self) -> CauseEntry | None:
+        first = self.entries[0] if self.entries else None
+        return first if isinstance(first, CauseEntry) and first.name == CAUSES_ARE_NOTED else None
 
     @property
     def devices(self) -> tuple[str, ...]:

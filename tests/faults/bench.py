@@ -120,7 +120,11 @@ class Bench:
 
 @contextlib.asynccontextmanager
 async def bench(
-    directory: Path, dialects: Dialects, readings: int = 60, silence_s: float = 1.0
+    directory: Path,
+    dialects: Dialects,
+    readings: int = 60,
+    silence_s: float = 1.0,
+    worker: Compute | None = None,
 ) -> AsyncIterator[Bench]:
     """Bring a daemon to life that records from its first moment."""
     said = dialects.settings()
@@ -130,7 +134,7 @@ async def bench(
     config = replace(config, recording=replace(config.recording, preroll_bytes=_PREROLL_BYTES))
     robot = SimulatedRobot(load_world("laboratory"), seed=4, dialects=dialects)
     journal = new_journal(config)
-    compute: Compute = AtOnce()  # type: ignore[assignment]  # object for any T: it hands back what it is given
+    compute: Compute = worker or AtOnce()  # type: ignore[assignment]  # object for any T: it hands back what it is given
     async with cables(robot) as laid:
         daemon = compose(config, connects_of(laid), compute, journal)
         await daemon.control.start_recording(None)

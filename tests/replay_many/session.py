@@ -5,12 +5,11 @@ import contextlib
 import random
 import tempfile
 from collections.abc import Callable, Coroutine
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robotd.app.replaying import ReplayReport, replay_recording
-from robotd.app.stall_guard import STALL_S
+from robotd.app.replaying import replay_recording
+from robotd.app.stall_guard import LATE_S, STALL_S
 from robotd.contract.events import MissionProgress
 from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission
 from robotd.contract.modes import Mode
@@ -19,8 +18,11 @@ from robotd.core.errors import RobotdError
 from robotd.mission.safety.hold import Stall
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.catalogue import FAULTS
+from robotd.sim.faults.fault import Fault
 from robotd.sim.robot import DEVICES
 from tests.faults.bench import Bench, bench
+from tests.replay_many.outcome import Outcome, difference
+from tests.replay_many.weather import Rechunked, Slowly, block
 
 _LEASE_S = 0.5
 _PAUSE_MAX_S = 2.0
@@ -38,18 +40,6 @@ _MAPS_FIRST = 0.5
 """Share of the sessions that begin with a map."""
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What became of a session."""
-
-    seed: int
-    done: tuple[str, ...]
-    """What was done to the daemon, in order."""
-    differs: str | None
-    """The first difference of its replay; None if there is none."""
-    results: int
-
-
 def run_session(seed: int, actions: int, dialects: Dialects | None = None) -> Outcome:
     """Live through a session of a robot (with our own boards, if none is said) on the virtual clock, and replay it."""
     with tempfile.TemporaryDirectory(prefix="robotd-replays-") as directory:
@@ -57,15 +47,7 @@ def run_session(seed: int, actions: int, dialects: Dialects | None = None) -> Ou
         run_virtual(session.run(Path(directory), actions))
         (file,) = (Path(directory) / "recordings").glob("*.mcap")
         report = replay_recording(file)
-    return Outcome(seed, tuple(session.done), _difference(report), report.results)
-
-
-def _difference(report: ReplayReport) -> str | None:
-    if report.differences:
-        return str(report.differences[0])
-    if not report.complete:
-        return "the recording is not complete"
-    return None if report.digest == report.recorded_digest else "the digests of the results differ"
+    return Outcome(seed, tuple(session.done), difference(report), report.results)
 
 
 class _Session:
@@ -73,9 +55,14 @@ class _Session:
         self._rng = rng
         self._dialects = dialects
         self.done: list[str] = []
+        self._calm: type[Fault] = Fault
+        """What a cable has while nothing is wrong with it."""
 
     async def run(self, directory: Path, actions: int) -> None:
-        async with bench(directory, self._dialects) as it:
+        worker = self._rng.choice((None, Slowly(self._rng)))
+        async with bench(directory, self._dialects, worker=worker) as it:  # type: ignore[arg-type]  # as it is there
+            self._calm = self._rng.choice((Fault, Rechunked))
+            self._calm_down(it)
             if self._rng.random() < _MAPS_FIRST:
                 await self._make_a_map(it)
             for _ in range(actions):
@@ -83,10 +70,13 @@ class _Session:
                     self._rng.choice((self._rng.uniform(0, _FEW_MS), self._rng.uniform(0, _PAUSE_MAX_S)))
                 )
                 await self._act(it)
-            for cable in it.cables.values():
-                cable.mend()
+            self._calm_down(it)
             await asyncio.sleep(0.2)
             await it.daemon.control.stop_recording()  # before the lines are taken down
+
+    def _calm_down(self, it: Bench) -> None:
+        for cable in it.cables.values():
+            cable.set_fault(self._calm(self._rng))
 
     async def _act(self, it: Bench) -> None:
         name, act = self._rng.choice(tuple(self._acts(it).items()))
@@ -107,6 +97,7 @@ class _Session:
             "stop": lambda: it.daemon.control.stop("enough"),
             "clear": it.daemon.control.clear,
             "stall": lambda: self._stall(it),
+            "block": lambda: self._block(it),
             "fault": lambda: self._fault(it),
             "fault and stop": lambda: self._fault_and_stop(it),
             "arm and stop": lambda: self._arm_and_stop(it),
@@ -131,12 +122,22 @@ class _Session:
             it.daemon.robot.stop_past_loop()  # as the guard's thread does
         it.daemon.causes.stalled(Stall(now_ns(), STALL_S, was_driven, "the log"))
 
+    async def _block(self, it: Bench) -> None:
+        """Let the loop stand still, often for less than is noticed."""
+        stood_still_s = self._rng.choice((self._rng.uniform(0.0, LATE_S), self._rng.uniform(0.0, 3 * STALL_S)))
+        was_driven = it.daemon.robot.drive.is_driven and stood_still_s > STALL_S
+        if was_driven:
+            it.daemon.robot.stop_past_loop()  # as the guard's thread does
+        block(stood_still_s)
+        if stood_still_s >= LATE_S:
+            it.daemon.causes.stalled(Stall(now_ns(), stood_still_s, was_driven, "the log"))
+
     async def _fault(self, it: Bench) -> None:
         device, fault = self._rng.choice(DEVICES), self._rng.choice(tuple(FAULTS))
         self.done.append(f"{fault} on {device}")
         it.cables[device].set_fault(FAULTS[fault](self._rng))
         await asyncio.sleep(self._rng.uniform(0, _FAULT_MAX_S))
-        it.cables[device].mend()
+        it.cables[device].set_fault(self._calm(self._rng))
 
     async def _arm_and_stop(self, it: Bench) -> None:
         """Let a stop come some turns of the loop after arming began, before or after it is answered."""
@@ -171,4 +172,4 @@ class _Session:
         await asyncio.sleep(self._rng.uniform(0, 0.002))
         await it.daemon.control.stop("enough")
         await asyncio.sleep(self._rng.uniform(0, _FAULT_MAX_S))
-        cable.mend()
+        cable.set_fault(self._calm(self._rng))

@@ -1,7 +1,10 @@
 """A few random sessions: none replays to anything else."""
 
+from pathlib import Path
+
 import pytest
 
+from tests.replay_many.real import run_real_session
 from tests.replay_many.session import VENDOR_ROBOTS, run_session
 
 pytestmark = pytest.mark.slow
@@ -18,4 +21,12 @@ def test_a_random_session_replays(seed: int) -> None:
 def test_a_random_session_of_vendor_devices_replays(seed: int, robot: int) -> None:
     outcome = run_session(seed, 12, VENDOR_ROBOTS[robot])
     assert outcome.differs is None, f"seed {seed} of robot {robot} after {outcome.done}"
+    assert outcome.results > 0
+
+
+@pytest.mark.real_clock
+def test_a_real_session_replays(tmp_path: Path) -> None:
+    """A mission, and nothing beside it: more, and beside busy programs, is for ``make replay-many``."""
+    outcome = run_real_session(3, actions=1, kept=tmp_path)
+    assert outcome.differs is None, f"{outcome.kept} after {outcome.done}"
     assert outcome.results > 0

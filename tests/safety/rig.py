@@ -67,24 +67,11 @@ class Rig:
         self, program: tuple[str, ...] = DAEMON, config: str = "robotd.toml", more: tuple[str, ...] = ()
     ) -> AsyncIterator[asyncio.subprocess.Process]:
         """Start a daemon and wait until its devices are ready; kill it in the end if it still lives."""
-        process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            *program,
-            str(self.directory / config),
-            *more,
-            stdout=asyncio.subprocess.PIPE,
-            cwd=_ROOT,
-            start_new_session=True,
-        )
-        give_precedence(process.pid)
-        try:
+        async with program_of(*program, str(self.directory / config), *more) as process:
+            give_precedence(process.pid)
             async with AsyncClient(self.runtime_dir) as client:
                 await until_ready(client)
             yield process
-        finally:
-            if process.returncode is None:
-                process.send_signal(signal.SIGKILL)
-            await process.wait()
 
     def expect_stops(self) -> None:
         """Look out for stops from here on."""
@@ -97,6 +84,20 @@ class Rig:
             for watch in self.watches:
                 await watch.arrived.wait()
         return max(watch.last_ns for watch in self.watches)
+
+
+@contextlib.asynccontextmanager
+async def program_of(*arguments: str, stderr: int | None = None) -> AsyncIterator[asyncio.subprocess.Process]:
+    """Start a Python program in a session of its own; kill it in the end if it still lives."""
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, *arguments, stdout=asyncio.subprocess.PIPE, stderr=stderr, cwd=_ROOT, start_new_session=True
+    )
+    try:
+        yield process
+    finally:
+        if process.returncode is None:
+            process.send_signal(signal.SIGKILL)
+        await process.wait()
 
 
 def give_precedence(pid: int) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from robotd.app.daemon import run
 from robotd.config import load
-from robotd.core.clock import now_ns
+from robotd.core.clock import now_ns, run_counting
 
 STALL_S = 0.4
 
@@ -29,4 +29,4 @@ async def _main() -> None:
 
 
 if __name__ == "__main__":
-    asyncio.run(_main())
+    run_counting(_main())

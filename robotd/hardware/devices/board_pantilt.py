@@ -73,7 +73,7 @@ class BoardPanTilt(BoardDevice):
             session = self._talk()
             with self._reports.subscribe() as reports:
                 try:
-                    async with within(timeout_s):
+                    async with within(timeout_s, of=f"{self.name} aim"):
                         done = await self._done(session, await session.command(aim), reports)
                 except TimeoutError:
                     self.stop_now()
@@ -97,7 +97,7 @@ class BoardPanTilt(BoardDevice):
     async def _next_report(self, session: Session, reports: Subscription[Report | None]) -> Report:
         """Return the next report, or ask for one if none comes: telemetry may be lost."""
         try:
-            async with asyncio.timeout(self._quiet_s):
+            async with within(self._quiet_s, of=f"{self.name} report"):
                 report = await reports.get()
         except TimeoutError:
             return await session.ask(proto.ReadAim(), proto.AimReadback)

@@ -73,7 +73,7 @@ class DynamixelPanTilt(BoughtDevice[Message]):
                 self._tilt: _counts(tilt_of_head_rad),
             }
             try:
-                async with within(timeout_s):
+                async with within(timeout_s, of=f"{self.name} aim"):
                     for servo, goal in goals.items():
                         await self._write(dialogue, servo, dynamixel.GOAL_POSITION, goal, 4)
                     return await self._arrived(dialogue, goals)

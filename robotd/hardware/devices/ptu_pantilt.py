@@ -80,7 +80,7 @@ class PtuPanTilt(BoughtDevice[Message]):
             pan = round(self._pan_of_head(pan_rad) * axes.pan_steps_per_rad)
             tilt = round((tilt_rad - self._mount.tilt_zero_rad) * axes.tilt_steps_per_rad)
             try:
-                async with within(timeout_s):
+                async with within(timeout_s, of=f"{self.name} aim"):
                     await self._order(dialogue, command("PP", pan))
                     await self._order(dialogue, command("TP", tilt))
                     time_ns = await self._arrived(dialogue, pan, tilt)

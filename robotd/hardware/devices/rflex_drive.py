@@ -18,6 +18,7 @@ from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
+from robotd.core.silence import within
 from robotd.hardware.devices.bought_device import BoughtDevice, is_a
 from robotd.hardware.devices.credible import IMPLAUSIBLE, check_battery, check_twist, implausible
 from robotd.hardware.devices.drive import DriveReadout
@@ -157,7 +158,8 @@ class RflexDrive(BoughtDevice[Message]):
                 await self._new_set_point.wait()
                 continue
             try:
-                async with asyncio.timeout(max(0.0, (self._deadline_ns - now_ns()) / NS_PER_S)):
+                left_s = max(0.0, (self._deadline_ns - now_ns()) / NS_PER_S)
+                async with within(left_s, of=f"{self.name} set-point", counts_stalls=True):
                     await self._new_set_point.wait()
             except TimeoutError:
                 sent = STANDSTILL

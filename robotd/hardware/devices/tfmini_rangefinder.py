@@ -14,6 +14,7 @@ from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
+from robotd.core.silence import within
 from robotd.hardware.devices.bought_device import BoughtDevice
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
@@ -109,7 +110,7 @@ class TfminiRangefinder(BoughtDevice[Message]):
         """Return the first frame of the stream that was measured from now on; LinkTimeout if there is none."""
         try:
             with self._streamed.subscribe() as frames:
-                async with asyncio.timeout(min(timeout_s, _STREAMS_S)):
+                async with within(min(timeout_s, _STREAMS_S), of=f"{self.name} stream"):
                     for _ in range(stale):
                         await frames.get()
                     return await frames.get()

@@ -20,7 +20,7 @@ from typing import Generic, NoReturn, Protocol, Self, TypeVar
 
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RobotdError, TransportError
-from robotd.core.silence import within
+from robotd.core.silence import idle, within
 from robotd.hardware.link.tapped import TappedLine
 
 M = TypeVar("M")
@@ -166,7 +166,7 @@ class Dialogue(Generic[M]):
                 given_up_ns = now_ns() + round(timeout_s * NS_PER_S)
                 try:
                     self._line.write(data)
-                    async with within(timeout_s):
+                    async with within(timeout_s, of=f"{self._device} answer"):
                         return await request.answer
                 except TimeoutError:
                     self._unsettled_ns = given_up_ns
@@ -216,7 +216,7 @@ class Dialogue(Generic[M]):
                 break
             self._message_came.clear()
             try:
-                async with within(silence_s):
+                async with within(silence_s, of=f"{self._device} line"):
                     came = asyncio.create_task(self._message_came.wait())
                     try:
                         await asyncio.wait({came, self._reader}, return_when=asyncio.FIRST_COMPLETED)
@@ -237,7 +237,7 @@ class Dialogue(Generic[M]):
                 missing_s = seconds - (now_ns() - self._answered_ns) / NS_PER_S
             if missing_s <= 0.0:
                 return
-            await asyncio.sleep(missing_s)
+            await idle(missing_s, of=f"{self._device} talk")
 
     async def _settle_down(self) -> None:
         """Let late answers to what was given up go by, as reports; what never falls silent is not waited for."""
@@ -249,7 +249,7 @@ class Dialogue(Generic[M]):
                 break
             self._bytes_came.clear()
             with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(missing_s):
+                async with within(missing_s, of=f"{self._device} quiet"):
                     await self._bytes_came.wait()
         self._unsettled_ns = None
 

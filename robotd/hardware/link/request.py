@@ -21,7 +21,7 @@ class Request:
     async def wait(self, timeout_s: float) -> Received | None:
         """Return the reply, or None if there is none yet after ``timeout_s``; raise what it failed with."""
         try:
-            async with within(timeout_s):
+            async with within(timeout_s, of=f"{self._device} answer"):
                 return await asyncio.shield(self._reply)  # the next try waits for the same reply
         except TimeoutError:
             return None

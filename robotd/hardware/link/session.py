@@ -215,7 +215,7 @@ class Session:
 
     async def _read(self) -> NoReturn:
         try:
-            async with within(self._silence_s, begins=False) as silence:
+            async with within(self._silence_s, of=f"{self.device} line", begins=False) as silence:
                 while True:
                     chunk = await self._line.read()
                     for received in self._wire.feed(chunk.data):

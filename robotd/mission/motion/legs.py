@@ -138,7 +138,7 @@ async def _approach(
 async def _within(stream: Subscription[Odometry], silence_s: float) -> AsyncIterator[Odometry]:
     while True:
         try:
-            async with within(silence_s):
+            async with within(silence_s, of="odometry"):
                 now = await stream.get()
         except TimeoutError:
             raise FellSilent(f"drive: no odometry for {silence_s:g} s") from None

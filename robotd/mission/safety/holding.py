@@ -134,7 +134,7 @@ class Holding:
     async def _go_on(self) -> None:
         devices = self._armed()
         try:
-            async with within(_ARM_TIMEOUT_S):
+            async with within(_ARM_TIMEOUT_S, of="going on"):
                 for device in devices:
                     if device.status.faults == _DEADMAN:
                         await device.clear_faults()

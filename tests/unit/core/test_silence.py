@@ -5,7 +5,7 @@ import asyncio
 import pytest
 
 from robotd.core.attention import attention
-from robotd.core.silence import Silence, within
+from robotd.core.silence import Silence, idle, within
 
 
 async def test_it_is_told_once_unless_renewed_or_ended() -> None:
@@ -62,7 +62,7 @@ async def test_a_silence_may_begin_with_the_first_word() -> None:
 
 
 async def _wait_in_vain(first_word_s: float | None = None) -> None:
-    async with within(1.0, begins=first_word_s is None) as silence:
+    async with within(1.0, of="a test", begins=first_word_s is None) as silence:
         if first_word_s is not None:
             await asyncio.sleep(first_word_s)
             silence.renew()
@@ -78,3 +78,46 @@ async def test_a_timer_that_fires_late_counts_from_when_it_was_due() -> None:
     loop.call_at(began_s + 1.125, silence._due)
     await asyncio.sleep(2.0)
     assert fell == [pytest.approx(1.25)]
+
+
+async def test_who_fell_silent_is_told_before_it_has_an_effect() -> None:
+    told: list[str] = []
+    attention().fell = told.append
+    Silence(1.0, lambda: told.append("effect"), of="drive line")
+    Silence(2.0, lambda: told.append("its own affair"))
+    await asyncio.sleep(3.0)
+    assert told == ["drive line", "effect", "its own affair"]
+
+
+async def test_a_silence_that_is_led_falls_when_it_is_let_and_the_one_due_first_does() -> None:
+    attention().are_led = True
+    fell: list[str] = []
+    late = Silence(2.0, lambda: fell.append("late"), of="drive answer")
+    Silence(1.0, lambda: fell.append("soon"), of="drive answer")
+    Silence(1.0, lambda: fell.append("another's"), of="pantilt answer")
+    Silence(0.5, lambda: fell.append("ended"), of="drive answer").end()
+    await asyncio.sleep(10.0)
+    assert fell == []
+    attention().let_fall("drive answer")
+    assert fell == ["soon"]
+    late.renew()
+    attention().let_fall("drive answer")
+    attention().let_fall("drive answer")
+    attention().let_fall("nobody")
+    assert fell == ["soon", "late"]
+
+
+async def test_time_may_count_for_which_we_did_not_listen() -> None:
+    fell: list[float] = []
+    loop = asyncio.get_running_loop()
+    began_s = loop.time()
+    Silence(1.0, lambda: fell.append(loop.time() - began_s), of="set-point", counts_stalls=True)
+    attention().miss(5.0)
+    await asyncio.sleep(10.0)
+    assert fell == [pytest.approx(1.0)]
+
+
+async def test_an_idle_time_passes() -> None:
+    began_s = asyncio.get_running_loop().time()
+    await idle(1.5, of="drive talk")
+    assert asyncio.get_running_loop().time() - began_s == pytest.approx(1.5)

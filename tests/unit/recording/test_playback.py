@@ -17,7 +17,16 @@ from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.word import Repeat, Word
 from robotd.recording.comparison import compare, results_digest
-from robotd.recording.entries import BytesEntry, CommandEntry, ComputedEntry, Entry, LineEntry, RecordingHeader
+from robotd.recording.entries import (
+    CAUSES_ARE_NOTED,
+    BytesEntry,
+    CauseEntry,
+    CommandEntry,
+    ComputedEntry,
+    Entry,
+    LineEntry,
+    RecordingHeader,
+)
 from robotd.recording.journal import Journal, MemoryJournal
 from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback, RecordedCompute
@@ -296,12 +305,24 @@ async def test_results_of_computing_come_no_earlier_than_recorded_and_in_order()
 
 @recorded
 async def test_a_job_that_was_none_when_it_was_recorded_takes_no_time() -> None:
-    old, new = (RecordedCompute(recording_of(ComputedEntry(5, name, 0))) for name in ("insert", "begin map"))
+    begun = CauseEntry(1, CAUSES_ARE_NOTED, {})
+    old = RecordedCompute(recording_of(ComputedEntry(5, "insert", 0)))
+    new = RecordedCompute(recording_of(begun, ComputedEntry(5, "begin map", 0)))
     assert await old.run("begin map", lambda: 7) == 7
     waiting = asyncio.create_task(new.run("begin map", lambda: 7))
     await asyncio.sleep(0)
     assert not waiting.done()
     new.release(ComputedEntry(5, "begin map", 0))
+    assert await waiting == 7
+
+
+@recorded
+async def test_a_map_whose_beginning_was_stopped_never_begins() -> None:
+    compute = RecordedCompute(recording_of(CauseEntry(1, CAUSES_ARE_NOTED, {})))
+    waiting = asyncio.create_task(compute.run("begin map", lambda: 7))
+    await asyncio.sleep(1.0)
+    assert not waiting.done()
+    compute.release_all()
     assert await waiting == 7
 
 
