@@ -20,12 +20,19 @@ class Outcome:
     """Where its recording is kept, if it is."""
 
 
-def difference(report: ReplayReport, *, was_cut: bool = False) -> str | None:
-    """Return the first difference in words; a recording that was cut may have lost what its last inputs led to."""
+def difference(report: ReplayReport, *, was_cut: bool = False, was_ended: bool = False) -> str | None:
+    """Return the first difference in words.
+
+    Args:
+        report: of the replay.
+        was_cut: the daemon was killed, and the recording is not complete.
+        was_ended: the daemon ended before the recording did: it may have had no time for what its last inputs led to,
+            and then the replay has more results than the recording, which is no difference.
+    """
     if report.differences:
         return str(report.differences[0])
-    if was_cut:
-        return None
-    if not report.complete:
+    if not report.complete and not was_cut:
         return "the recording is not complete"
+    if was_cut or was_ended:
+        return None
     return None if report.digest == report.recorded_digest else "the digests of the results differ"

@@ -52,7 +52,8 @@ def run_real_session(seed: int, actions: int, kept: Path) -> Outcome:
         asyncio.run(session.run(actions))
         (file,) = (Path(directory) / "recordings").glob("*.mcap")
         report = replay_recording(file)
-        differs = difference(report, was_cut=Ends.KILLED in session.done)
+        end = session.done[-1]
+        differs = difference(report, was_cut=end == Ends.KILLED, was_ended=end in Ends.SIGNALS)
         copy = None if differs is None else _kept(file, kept / f"real-{seed}.mcap")
     return Outcome(seed, tuple(session.done), differs, report.results, copy)
 
