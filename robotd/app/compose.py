@@ -18,7 +18,7 @@ from robotd.mission.causes import Causes
 from robotd.mission.compute import Compute, NotedCompute
 from robotd.mission.context import MissionContext
 from robotd.mission.control import Control
-from robotd.mission.results import note_result
+from robotd.mission.news import News
 from robotd.mission.robot import Robot
 from robotd.mission.safety.lease import EndlessLease, Lease
 from robotd.mission.settings import MissionSettings
@@ -72,10 +72,10 @@ def compose(
     )
     noted = NotedCompute(compute, lambda name, index: journal.computed(now_ns(), name, index))
     settings = mission_settings(config)
+    news = News(journal.note)
     supervisor = Supervisor(
-        robot,
-        lambda publish: MissionContext(robot, settings, noted, publish),
-        lambda event, place, made: note_result(journal, event, place, made),
+        MissionContext(robot, settings, noted, news.publish),
+        news,
         lambda: None if journal.path is None or journal.error is not None else str(journal.path),
         battery_min_v=config.drive.battery_min_v,
         note_cause=lambda name, arguments: journal.cause(now_ns(), name, arguments),

@@ -2,15 +2,13 @@
 
 from dataclasses import replace
 
-from robotd.contract.events import Event, MissionProgress
+from robotd.contract.events import MissionProgress
 from robotd.mission.whereabouts.map_in_use import MapInUse
 
 
-def with_advice(event: Event, place: MapInUse | None) -> Event:
-    """Return an event as it is told; the journal has it as it was, for what is saved a replay does not know."""
-    if not isinstance(event, MissionProgress) or event.kind != "map" or not event.is_last:
-        return event
-    if place is None or not place.is_unsaved:
+def with_advice(event: MissionProgress, place: MapInUse | None) -> MissionProgress:
+    """Return a step of a mission as it is told; the journal has it as it was: a replay does not know what is saved."""
+    if event.kind != "map" or not event.is_last or place is None or not place.is_unsaved:
         return event
     advice = f"the map {place.name} is not saved yet: robotctl map save"
     return replace(event, message=f"{event.message}; {advice}" if event.message else advice)

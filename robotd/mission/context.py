@@ -1,19 +1,21 @@
 """What a mission works with, handed to it by the supervisor."""
 
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepDone, SweepProgress
 from robotd.core.clock import now_ns
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.core.text import printable
 from robotd.mission.compute import Compute
+from robotd.mission.news import Publish
+from robotd.mission.results import result_of
 from robotd.mission.robot import Robot
 from robotd.mission.safety.hold import Hold
 from robotd.mission.settings import MissionSettings
 from robotd.mission.stop_and_sweep import Sweeper
-from robotd.recording.entries import ResultEntry
+from robotd.mission.whereabouts.whereabouts import Whereabouts
 
 _PROGRESS_EVERY = 10
 _LONGEST_MESSAGE = 500
@@ -26,32 +28,33 @@ class Reporter:
     mission_id: int
     kind: str
     stops: int
-    publish: Callable[[Event], None]
+    publish: Publish
+    advise: Callable[[MissionProgress], MissionProgress] = lambda last: last
+    """Adds to the last word what people should do now: for the world, not for the journal, which does not know what is
+    saved."""
     stop: int = 0
 
     def at(self, phase: MissionPhase, stop: int | None = None, message: str = "") -> None:
         """Report a step of the mission, at the same stop as the last unless another is named."""
         self.stop = self.stop if stop is None else stop
         words = printable(message, _LONGEST_MESSAGE)
-        self.publish(MissionProgress(now_ns(), self.mission_id, self.kind, phase, self.stop, self.stops, words))
-
-
-class Publish(Protocol):
-    """Hands an event to the world, and to the journal; ``made`` is its entry there if that was made already."""
-
-    def __call__(self, event: Event, made: ResultEntry | None = None) -> None:
-        """Return at once."""
+        step = MissionProgress(now_ns(), self.mission_id, self.kind, phase, self.stop, self.stops, words)
+        self.publish(self.advise(step), result_of(step))
 
 
 @dataclass(frozen=True, slots=True)
 class MissionContext:
-    """Robot, settings, worker and ear of the world."""
+    """Robot, settings, worker, ear of the world, and where the robot is on which map."""
 
     robot: Robot
     settings: MissionSettings
     compute: Compute
     publish: Publish
+    whereabouts: Whereabouts = field(default_factory=Whereabouts)
     hold: Hold = field(default_factory=Hold)
+    sweep_numbers: Iterator[int] = field(default_factory=itertools.count)
+    """The next sweep's number is drawn where an attempt at one begins: odd ones go round the other way, so a sweep that
+    was given up counts, and a replay counts it too."""
 
     @property
     def sweeper(self) -> Sweeper:

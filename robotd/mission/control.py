@@ -37,6 +37,7 @@ from robotd.mission.noted import (
 )
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.tie import Tie
 from robotd.recording.encoding import encoded
 from robotd.recording.entries import CommandEntry
 from robotd.recording.place import make_place
@@ -69,7 +70,7 @@ class Control:
     @property
     def events(self) -> Broadcast[Event]:
         """Everything that happens."""
-        return self._supervisor.events
+        return self._supervisor.news.events
 
     @property
     def status(self) -> Status:
@@ -158,7 +159,7 @@ class Control:
         created_ns = now_ns() + wall_offset_ns()
         wanted, save = name or place.name, self._store.save
         entry = await self._compute.run("save map", save, wanted, place.grid, metadata, created_ns, place.stops)
-        place.settled_generation = max(place.settled_generation, metadata["generation"])
+        place.saved(metadata["generation"])
         log.info("map %s was saved as version %d of %s (%s)", place.name, entry.version, entry.name, entry.digest)
         self._changed()
         return entry
@@ -173,7 +174,7 @@ class Control:
         place = self._place()
         self._supervisor.require_replaceable_map()
         log.info("what was not saved of map %s (%d changes) was given up", place.name, place.generation)
-        place.settled_generation = place.generation
+        place.given_up()
         self._changed()
 
     async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
@@ -195,14 +196,15 @@ class Control:
 
     def _use(self, command: CommandEntry, place: MapInUse) -> None:
         arguments = command.arguments
+        tie: Tie | None = None
         here = self._supervisor.robot.drive.odometry.latest
         if arguments["robot_in_map"] is not None:
             if here is None:
                 raise MissionError("there is no odometry yet to tie to the map")
-            place.tie(msgspec.convert(arguments["robot_in_map"], Pose2), here.in_odom)
+            tie = Tie.between(msgspec.convert(arguments["robot_in_map"], Pose2), here.in_odom)
         self._supervisor.require_replaceable_map()
         self._journal.asked(replace(command, time_ns=now_ns()))
-        self._supervisor.use(place)
+        self._supervisor.use(place, tie)
 
     async def start_recording(self, path: str | None) -> str:
         """Record from the daemon's start on, to a file below the directory of recordings; return it.
@@ -248,27 +250,27 @@ class Control:
                 self.start(mission_of(start), start.lease_s)
             case "use_map":
                 noted = noted_as(NotedMap, name, arguments)
-                place = MapInUse(noted.map_id, noted.name, grid_of(noted), None)
+                place = MapInUse(noted.map_id, noted.name, grid_of(noted))
                 self._use(CommandEntry(now_ns(), name, arguments), place)
             case _:
                 raise RecordingError(f"unknown request {name!r}")
 
     def _place(self) -> MapInUse:
-        place = self._supervisor.place
+        place = self._supervisor.whereabouts.map_in_use
         if place is None:
             raise MapError("no map is in use: make one, or load one")
         return place
 
     def _changed(self) -> None:
-        self._supervisor.publish(self._supervisor.status)
+        self._supervisor.publish_status()
 
 
 def _place_of(stored: StoredMap) -> MapInUse:
     """Return a stored map as one to use, made of what it was made of; nothing ties odometry to it yet."""
     entry = stored.entry
-    place = MapInUse(entry.digest, entry.name, stored.grid, None, entry.digest, stored.stops)
+    place = MapInUse(entry.digest, entry.name, stored.grid, entry.digest, stored.stops)
     if entry.is_unsaved:
-        place.settled_generation, place.kept_version = -1, entry.version
+        place.found_unsaved(entry.version)
     return place
 
 

@@ -27,11 +27,12 @@ async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: fl
 
 async def _drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: float, legs: Legs) -> Odometry:
     here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
-    start = place.pose_of(here)
-    if start is None or place.map_from_odom is None:
+    tie = context.whereabouts.believed
+    if tie is None:
         raise MissionError("cannot drive on this map: the robot is not localized on it")
+    start = tie.in_map(here.in_odom)
     waypoints_m = ((x_m, y_m),) if legs is Legs.STRAIGHT else await _planned(context, place, start, (x_m, y_m))
-    odom_from_map = place.map_from_odom.inverse()
+    odom_from_map = tie.map_from_odom.inverse()
     for waypoint_m in waypoints_m:
         point_m = odom_from_map.transform(*waypoint_m)
         here = await drive_leg(context.robot.drive, *point_m, context.settings.driving, context.hold)
@@ -61,6 +62,6 @@ async def run_driving(context: MissionContext, place: MapInUse, mission: DriveMi
     """Carry out a :class:`DriveMission`; return what to tell the client."""
     report.at(MissionPhase.DRIVING)
     arrived = await drive_to(context, place, mission.x_m, mission.y_m, mission.legs)
-    pose = place.pose_of(arrived)
+    pose = context.whereabouts.pose_of(arrived)
     assert pose is not None  # drive_to refuses to start without
     return f"arrived at ({pose.x_m:.2f}, {pose.y_m:.2f}) m"

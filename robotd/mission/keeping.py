@@ -35,16 +35,16 @@ class Keeping:
 
     async def run(self) -> None:
         """Keep the map at the end of every mission that changed it, until cancelled."""
-        with self._supervisor.events.subscribe() as events:
+        with self._supervisor.news.events.subscribe() as events:
             async for _ in events:  # whichever: those missed while the disk was busy are no loss
-                place = self._supervisor.place
+                place = self._supervisor.whereabouts.map_in_use
                 if place is not None and self._supervisor.mode not in UNDER_WAY and self._tried != _state_of(place):
                     await self.keep()
 
     async def keep(self) -> str | None:
         """Bring what nobody saved of the map in use to the store; return why that cannot be done, None if it was."""
         async with self._turn:
-            while (place := self._supervisor.place) is not None and place.is_at_risk:
+            while (place := self._supervisor.whereabouts.map_in_use) is not None and place.is_at_risk:
                 self._tried = _state_of(place)
                 try:
                     entry = await self._kept(place)
@@ -52,7 +52,7 @@ class Keeping:
                     log.error("the unsaved map %s is in memory alone: %s", place.name, error)  # noqa: TRY400  # foreseen
                     return str(error)
                 log.info("map %s is not saved, but kept as version %d: robotctl map save", entry.name, entry.version)
-                self._supervisor.publish(self._supervisor.status)
+                self._supervisor.publish_status()
             return None
 
     async def make_way(self) -> None:
@@ -64,7 +64,7 @@ class Keeping:
         if self._supervisor.mode in UNDER_WAY:
             return  # then no other comes in its place
         why = await self.keep()
-        place = self._supervisor.place
+        place = self._supervisor.whereabouts.map_in_use
         if why is not None and place is not None:
             raise MissionError(
                 f"the unsaved map {place.name} would be lost, for it cannot be kept: {why}; "
@@ -85,7 +85,7 @@ class Keeping:
         created_ns = now_ns() + wall_offset_ns()
         save = self._store.save
         entry = await self._compute.run("keep map", save, place.name, place.grid, metadata, created_ns, place.stops)
-        place.kept_generation, place.kept_version = generation, entry.version
+        place.kept(generation, entry.version)
         return entry
 
 

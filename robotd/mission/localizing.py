@@ -7,7 +7,7 @@ on how fast this machine happens to be.
 import asyncio
 import math
 
-from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import LocalizeMission, PriorHeading
 from robotd.core.angles import wrap_rad
@@ -19,7 +19,6 @@ from robotd.localization.localizer import Localizer
 from robotd.mission.compute import cores
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.results import result_of
-from robotd.mission.settings import MissionSettings
 from robotd.mission.stop_and_sweep import faults_text, standing
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.entries import ResultEntry
@@ -36,7 +35,7 @@ async def run_localizing(
     """Carry out a :class:`LocalizeMission`: sweep, estimate, and tie odometry to the map if the answer is unique."""
     settings = context.settings
     here = await context.hold.through(lambda: standing(context.robot, settings.sweep.settle_s, settings.driving))
-    headings_rad = _headings(context, place, mission, here)
+    headings_rad = _headings(context, mission, here)
     report.at(MissionPhase.SWEEPING)
     narrowing = await Narrowing.begin(context, place, mission, headings_rad)
     narrowed = asyncio.create_task(narrowing.run(), name="narrowing")
@@ -49,30 +48,25 @@ async def run_localizing(
         narrowed.cancel()
         await asyncio.wait((narrowed,))
     if mission.tie and context.robot.has_base:
-        _learn(place, sweep.in_odom, estimate, context.settings)
+        _learn(context, sweep.in_odom, estimate)
     return estimate
 
 
-def _learn(place: MapInUse, in_odom: Pose2, estimate: PoseEstimate, settings: MissionSettings) -> None:
-    """Tie odometry to the map where the robot was found; doubt the tie if it was found nowhere near that."""
-    if estimate.state is PoseState.LOCALIZED and estimate.best is not None:
-        place.tie(estimate.best, in_odom)
-    elif place.map_from_odom is not None and (estimate.regions or estimate.state is PoseState.LOST):
-        believed = place.map_from_odom @ in_odom
-        near_m, near_rad = settings.judgement.second_look.same_within_m, settings.localization.heading_error_rad
-        place.is_doubted |= not any(
-            region.extent.holds(believed, near_m=near_m, near_rad=near_rad) for region in estimate.regions
-        )
+def _learn(context: MissionContext, in_odom: Pose2, estimate: PoseEstimate) -> None:
+    """Let the whereabouts know; what is told apart as two places is not near either."""
+    near_m = context.settings.judgement.second_look.same_within_m
+    near_rad = context.settings.localization.heading_error_rad
+    context.whereabouts.looked(estimate, in_odom, near_m=near_m, near_rad=near_rad)
 
 
-def _headings(context: MissionContext, place: MapInUse, mission: LocalizeMission, here: Odometry) -> tuple[float, ...]:
+def _headings(context: MissionContext, mission: LocalizeMission, here: Odometry) -> tuple[float, ...]:
     """Return the headings to try, ascending."""
     settings = context.settings.localization
     if mission.heading is PriorHeading.UNKNOWN:
         return settings.headings_all_round()
     if mission.heading_rad is not None:
         return settings.headings_near(wrap_rad(mission.heading_rad))
-    heading_rad = place.heading_of(here)
+    heading_rad = context.whereabouts.heading_of(here)
     if heading_rad is None:
         raise MissionError(
             "the heading is unknown: odometry is not tied to this map; give heading_rad, or heading = unknown"
@@ -125,6 +119,7 @@ class Narrowing:
             batch = await self._batches.get()
             final = batch is None
             estimate, made = await self._context.compute.run("narrow", self._narrow, batch or (), now_ns(), final)
+            self._context.whereabouts.said(estimate)
             self._context.publish(estimate, made)
             if final:
                 return estimate

@@ -1,16 +1,19 @@
 """Make a map: at each stop sweep and insert, then go on."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import MapMission
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
+from robotd.core.pose import Pose2
+from robotd.core.reading import Sweep
 from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.driving import drive_to
 from robotd.mission.looking_again import looking_again
+from robotd.mission.results import map_result
 from robotd.mission.stop_and_sweep import faults_text
+from robotd.mission.whereabouts.laying import lay
 from robotd.mission.whereabouts.map_in_use import MapInUse
 
 
@@ -30,9 +33,7 @@ class MappingResult:
         return f"{self.swept} stops swept{missed}{failed}"
 
 
-async def run_mapping(
-    context: MissionContext, place: MapInUse, mission: MapMission, report: Reporter, take_number: Callable[[], int]
-) -> MappingResult:
+async def run_mapping(context: MissionContext, place: MapInUse, mission: MapMission, report: Reporter) -> MappingResult:
     """Carry out a :class:`MapMission` on a fresh map that odometry is already tied to.
 
     A stop that cannot be reached is said at once, left out, and named in the result.
@@ -49,10 +50,20 @@ async def run_mapping(
                 report.at(MissionPhase.DRIVING, message=unreachable[-1])
                 continue
         report.at(MissionPhase.SWEEPING, stop)
-        sweep = await looking_again(context, report, lambda: context.sweep(take_number()))
+        sweep = await looking_again(context, report, lambda: context.sweep(next(context.sweep_numbers)))
         faulty += [f"stop {stop}: {text}" for text in [faults_text(sweep)] if text]
         report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
-        laid = await context.compute.run("insert", place.grid_with, sweep)
+        laid = await context.compute.run(
+            "insert", lay, place.grid, place.latest, place.stops, sweep, _taken_at(context, sweep)
+        )
         place.take(laid)
-        context.publish(place.changes(now_ns(), laid.cells))
+        change = place.changes(now_ns(), laid.cells)
+        context.publish(change, map_result(change, laid.digest))
     return MappingResult(1 + len(mission.stops_m) - len(unreachable), tuple(unreachable), tuple(faulty))
+
+
+def _taken_at(context: MissionContext, sweep: Sweep) -> Pose2:
+    """Return where a sweep began on the map: odometry's word alone, which is all a map in the making has."""
+    tie = context.whereabouts.tie
+    assert tie is not None  # the map began with one, which may be doubted but is never dropped
+    return tie.in_map(sweep.in_odom)

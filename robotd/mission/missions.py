@@ -18,6 +18,7 @@ from robotd.mission.mapping import run_mapping
 from robotd.mission.modes import Occasion
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.tie import Tie
 
 _MARGIN_M = 3.0
 """A map reaches at least this far beyond its stops, and farther unless the stops fill it."""
@@ -26,13 +27,8 @@ _MARGIN_M = 3.0
 class Host(Protocol):
     """What a mission needs of the one that runs it."""
 
-    place: MapInUse | None
-
-    def adopt(self, place: MapInUse) -> None:
-        """Make this the map in use."""
-
-    def take_sweep_number(self) -> int:
-        """Return the next number of a sweep."""
+    def adopt(self, place: MapInUse, tie: Tie | None) -> None:
+        """Make this the map in use, and tell everybody."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,26 +57,27 @@ async def carry_out(host: Host, context: MissionContext, mission: Mission, repor
     """
     match mission:
         case MapMission():
-            place = await _begin_map(context, mission, report)
-            host.adopt(place)
-            return str(await run_mapping(context, place, mission, report, host.take_sweep_number))
+            place, tie = await _begin_map(context, mission, report)
+            host.adopt(place, tie)
+            return str(await run_mapping(context, place, mission, report))
         case LocalizeMission():
-            place = _place(host)
+            place = _place(context)
             estimate = await looking_again(
-                context, report, lambda: run_localizing(context, place, mission, report, host.take_sweep_number())
+                context, report, lambda: run_localizing(context, place, mission, report, next(context.sweep_numbers))
             )
             return describe(estimate)
         case DriveMission():
-            return await run_driving(context, _place(host), mission, report)
+            return await run_driving(context, _place(context), mission, report)
 
 
-def _place(host: Host) -> MapInUse:
-    if host.place is None:
+def _place(context: MissionContext) -> MapInUse:
+    place = context.whereabouts.map_in_use
+    if place is None:
         raise MissionError("no map is in use: make one, or load one")
-    return host.place
+    return place
 
 
-async def _begin_map(context: MissionContext, mission: MapMission, report: Reporter) -> MapInUse:
+async def _begin_map(context: MissionContext, mission: MapMission, report: Reporter) -> tuple[MapInUse, Tie]:
     settings = context.settings.grid
     points_m = ((mission.start.x_m, mission.start.y_m), *mission.stops_m)
     try:
@@ -90,9 +87,8 @@ async def _begin_map(context: MissionContext, mission: MapMission, report: Repor
     grid, digest = await context.compute.run("begin map", _blank, spec, settings)
     silence_s = context.settings.driving.silence_s
     here = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
-    place = MapInUse(f"new-{report.mission_id}", mission.name, grid, None, digest, MapStops(settings))
-    place.tie(mission.start, here.in_odom)
-    return place
+    place = MapInUse(f"new-{report.mission_id}", mission.name, grid, digest, MapStops(settings))
+    return place, Tie.between(mission.start, here.in_odom)
 
 
 def _blank(spec: GridSpec, settings: GridSettings) -> tuple[OccupancyGrid, str]:

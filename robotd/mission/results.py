@@ -12,30 +12,26 @@ import msgspec
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import Event, MapChanged, MissionProgress, SweepDone
 from robotd.core.reading import Sweep
-from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.encoding import encoded
 from robotd.recording.entries import ResultEntry
-from robotd.recording.journal import Journal
 
 
-def note_result(journal: Journal, event: Event, place: MapInUse | None, made: ResultEntry | None = None) -> None:
-    """Note an event in the journal if it is a result; ``made`` is its entry if that was made already."""
-    if isinstance(event, MapChanged):
-        if place is not None:
-            content = {"map_id": event.map_id, "generation": event.generation}
-            journal.result(event.time_ns, "map", content, place.digest)
-        return
-    entry = result_of(event) if made is None else made
-    if entry is not None:
-        journal.note(entry)
+def map_result(event: MapChanged, digest: str) -> ResultEntry:
+    """Return the entry of a map that changed; ``digest`` is that of its whole grid, which the event does not carry."""
+    return ResultEntry(event.time_ns, "map", {"map_id": event.map_id, "generation": event.generation}, digest)
 
 
 def result_of(event: Event) -> ResultEntry | None:
     """Return the entry of a sweep, an estimate or the end of a mission, encoded; None for what is no such result.
 
     Takes milliseconds for an estimate of many large regions: those are made where they are computed.
+
+    Raises:
+        ValueError: the event is a map's: its entry needs the digest of the grid, see :func:`map_result`.
     """
     match event:
+        case MapChanged():
+            raise ValueError("a changed map is noted by its digest: publish it with map_result")
         case SweepDone():
             return _result(event.time_ns, "sweep", _sweep(event.sweep))
         case PoseEstimate() if event.state is not PoseState.PREDICTED:

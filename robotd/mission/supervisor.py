@@ -10,11 +10,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from robotd.contract.device_status import DeviceStatus, LinkState
-from robotd.contract.estimate import PoseEstimate, PoseState
-from robotd.contract.events import Event, MissionPhase, Status
+from robotd.contract.events import MissionPhase, MissionProgress, Status
 from robotd.contract.missions import Mission
 from robotd.contract.modes import Mode
-from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import LinkTimeout, MissionError, RobotdError
 from robotd.core.log_limit import LogLimit
@@ -24,16 +22,17 @@ from robotd.core.text import printable
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import Device
 from robotd.mission.advice import with_advice
-from robotd.mission.context import MissionContext, Publish, Reporter
+from robotd.mission.context import MissionContext, Reporter
 from robotd.mission.missions import KINDS, carry_out
 from robotd.mission.modes import UNDER_WAY, Occasion, next_mode
-from robotd.mission.robot import Robot
+from robotd.mission.news import News
+from robotd.mission.results import map_result
 from robotd.mission.safety.battery import low_battery
 from robotd.mission.safety.holding import Holding
 from robotd.mission.safety.lease import Lease
 from robotd.mission.whereabouts.map_in_use import MapInUse, in_place_of
-from robotd.mission.whereabouts.prediction import Predictor, unlocalized
-from robotd.recording.entries import ResultEntry
+from robotd.mission.whereabouts.tie import Tie
+from robotd.mission.whereabouts.whereabouts import unlocalized
 
 _DEVICE_TIMEOUT_S = 5.0
 _LONGEST_REASON = 500
@@ -46,9 +45,8 @@ class Supervisor:
 
     def __init__(
         self,
-        robot: Robot,
-        make_context: Callable[[Publish], MissionContext],
-        note: Callable[[Event, MapInUse | None, ResultEntry | None], None],
+        context: MissionContext,
+        news: News,
         recording: Callable[[], str | None] = lambda: None,
         *,
         battery_min_v: float = 0.0,
@@ -58,32 +56,27 @@ class Supervisor:
         """Prepare; nothing happens before :meth:`run`.
 
         Args:
-            robot: what to watch over.
-            make_context: makes what missions work with, given where to publish.
-            note: told every event, the map in use at that moment, and the journal's entry if it was made already,
-                before the world is.
+            context: what missions work with, and what to watch over.
+            news: where events are told.
             recording: says which file is being recorded to.
             battery_min_v: below it, stop and latch a fault.
             note_cause: told what stops the robot by a clock of the daemon, before it does.
             make_lease: makes what calls a function once so many seconds have passed.
         """
-        self.robot = robot
-        self.events: Broadcast[Event] = Broadcast()
-        self.place: MapInUse | None = None
+        self.robot = context.robot
+        self.news = news
+        self.whereabouts = context.whereabouts
         self._recording = recording
         self._battery_min_v = battery_min_v
         self._note_cause = note_cause
         self._make_lease = make_lease
-        self._context = make_context(self.publish)
-        self._note = note
+        self._context = context
         self.holding = Holding(self, self._context.hold, lambda: self._armed, self._arm_devices)
         self._mode = Mode.DISARMED
         self._reason = "started"
         self._mission: asyncio.Task[None] | None = None
         self._mission_id = 0
-        self._sweeps = 0
         self._lease: Lease | None = None
-        self._predictor = Predictor()
         self.halts = 0
         """How often the robot was stopped."""
         self._stopped_by = ""
@@ -100,6 +93,7 @@ class Supervisor:
     @property
     def status(self) -> Status:
         """The whole robot in one look."""
+        place = self.whereabouts.map_in_use
         readout = self.robot.drive.readouts.latest if self.robot.has_base else None  # what was is not what is
         return Status(
             time_ns=now_ns(),
@@ -109,12 +103,12 @@ class Supervisor:
             battery_v=readout.battery_v if readout else None,
             bumpers_rad=readout.bumpers_rad if readout else (),
             mission_id=self._mission_id if self._mode in UNDER_WAY else None,
-            map_id=self.place.map_id if self.place else None,
-            map_name=self.place.name if self.place else None,
+            map_id=place.map_id if place else None,
+            map_name=place.name if place else None,
             recording=self._recording(),
             held=self.holding.hold.cause,
-            map_unsaved=self.place is not None and self.place.is_unsaved,
-            map_kept_version=self.place.kept_as if self.place else None,
+            map_unsaved=place is not None and place.is_unsaved,
+            map_kept_version=place.kept_as if place else None,
         )
 
     @property
@@ -126,17 +120,14 @@ class Supervisor:
     def _busy(self) -> bool:
         return self._mission is not None and not self._mission.done()
 
-    def publish(self, event: Event, made: ResultEntry | None = None) -> None:
-        """Hand an event to the world, and to the journal."""
-        if isinstance(event, PoseEstimate) and event.state is PoseState.LOCALIZED and event.final:
-            self._predictor.said = event.best
-        self._note(event, self.place, made)
-        self.events.publish(with_advice(event, self.place))
+    def publish_status(self) -> None:
+        """Tell everybody how the whole robot is."""
+        self.news.publish(self.status)
 
     async def run(self) -> None:
         """Watch the devices until cancelled; whatever ends it stops the robot."""
         try:
-            self.publish(unlocalized(now_ns(), ""))
+            self.news.publish(unlocalized(now_ns(), ""))
             async with asyncio.TaskGroup() as group:
                 for device in self.robot.devices:
                     group.create_task(self._watch(device))
@@ -233,7 +224,7 @@ class Supervisor:
             raise MissionError(f"cannot {kind.name}: the drive is not armed; it can only localize where it stands")
         self._mission_id += 1
         mission_id = self._mission_id
-        report = Reporter(mission_id, kind.name, kind.stops(mission), self.publish)
+        report = Reporter(mission_id, kind.name, kind.stops(mission), self.news.publish, self._advised)
         lease = self._lease = self._make_lease(lease_s, lambda: self.lease_expired(mission_id))
         self._apply(kind.occasion, f"mission {mission_id}")
         self._mission = asyncio.create_task(self._run_mission(mission, report), name=f"mission {mission_id}")
@@ -247,34 +238,29 @@ class Supervisor:
             raise MissionError(f"mission {mission_id} is not under way{why}")
         self._lease.renew()
 
-    def use(self, place: MapInUse) -> None:
+    def use(self, place: MapInUse, tie: Tie | None = None) -> None:
         """Make another map the one in use.
 
         Raises:
             MissionError: a mission is under way.
         """
         self.require_replaceable_map()
-        self.adopt(place)
+        self.adopt(place, tie)
 
     def require_replaceable_map(self) -> None:
         """Raise MissionError if the map in use cannot be changed now."""
         if self._busy:
             raise MissionError("the map cannot be changed while a mission is under way")
 
-    def adopt(self, place: MapInUse) -> None:
+    def adopt(self, place: MapInUse, tie: Tie | None) -> None:
         """Take over a map, from a mission or from the store, and tell everybody."""
-        log.info("map %s (%s) is in use%s", place.name, place.map_id, in_place_of(self.place))
-        self.place = place
-        self._predictor.said = None
-        self.publish(place.whole(now_ns()))
-        if place.map_from_odom is None:
-            self.publish(unlocalized(now_ns(), place.map_id))
-        self.publish(self.status)
-
-    def take_sweep_number(self) -> int:
-        """Return the next number of a sweep."""
-        self._sweeps += 1
-        return self._sweeps - 1
+        log.info("map %s (%s) is in use%s", place.name, place.map_id, in_place_of(self.whereabouts.map_in_use))
+        self.whereabouts.adopt(place, tie)
+        whole = place.whole(now_ns())
+        self.news.publish(whole, map_result(whole, place.digest))
+        if tie is None:
+            self.news.publish(unlocalized(now_ns(), place.map_id))
+        self.publish_status()
 
     def halt(self, occasion: Occasion, reason: str) -> None:
         """Stop first, then everything else."""
@@ -303,7 +289,7 @@ class Supervisor:
         if is_news and (line := self._changes.line(f"{self._mode} -> {mode}: {reason}")):
             log.info("%s", line)
         self._mode, self._reason = mode, reason
-        self.publish(self.status)
+        self.publish_status()
 
     def _fail(self, reason: str, occasion: Occasion = Occasion.STOP) -> str:
         reason = self.holding.blamed(reason)
@@ -334,6 +320,9 @@ class Supervisor:
             self._apply(Occasion.FINISH, message)
             report.at(MissionPhase.DONE, report.stops, message)
 
+    def _advised(self, last: MissionProgress) -> MissionProgress:
+        return with_advice(last, self.whereabouts.map_in_use)
+
     def _mission_ended(self, task: asyncio.Task[None], lease: Lease, report: Reporter) -> None:
         """Take the lease back; a mission may be cancelled before its first step, and that is an end too."""
         lease.end()
@@ -350,19 +339,19 @@ class Supervisor:
         if status.name == self.robot.drive.name and (status.link is LinkState.ABSENT or IMPLAUSIBLE in status.faults):
             self._doubt()
         if self.holding.explains(status) and not self._is_left_out(status):
-            self.publish(self.status)
+            self.publish_status()
         elif status.faults and self._mode is not Mode.FAULT:
             why = f": {status.detail}" if IMPLAUSIBLE in status.faults else ""
             self._fail(f"{status.name}: {', '.join(status.faults)}{why}", Occasion.FAULT)
         elif self._mode in {Mode.DISARMED, Mode.FAULT}:
-            self.publish(self.status)
+            self.publish_status()
         elif status.link is not LinkState.READY and not self._is_left_out(status):
             self._fail(f"{status.name} is gone: {status.detail}", Occasion.DEVICE_LOST)
         elif status.link is LinkState.READY and not status.armed:
             why = "there again: arm anew" if self._is_left_out(status) else "no longer armed"
             self.halt(Occasion.STOP, f"{status.name} is {why}")
         else:
-            self.publish(self.status)
+            self.publish_status()
 
     async def _watch_battery(self) -> None:
         with self.robot.drive.readouts.subscribe() as readouts:
@@ -375,12 +364,10 @@ class Supervisor:
         return status.name not in {device.name for device in self._armed}
 
     def _doubt(self) -> None:
-        """Believe odometry no longer: nobody saw where the base went while its line was down, or it told nonsense."""
-        if self.place is None or self.place.map_from_odom is None or self.place.is_doubted:
-            return
-        self.place.is_doubted = True
-        self._predictor.said = None
-        self.publish(unlocalized(now_ns(), self.place.map_id))
+        """Say at once that odometry is believed no longer; without a map there is nothing to be lost on."""
+        place = self.whereabouts.map_in_use
+        if self.whereabouts.doubt() and place is not None:
+            self.news.publish(unlocalized(now_ns(), place.map_id))
 
     async def _follow_odometry(self) -> None:
         with self.robot.drive.odometry.subscribe() as stream:
@@ -388,13 +375,13 @@ class Supervisor:
                 self._moved(odometry)
 
     def _moved(self, odometry: Odometry) -> None:
-        self.publish(odometry)
-        if self.place is None or self._mode is Mode.LOCALIZING:
+        self.news.publish(odometry)
+        if self._mode is Mode.LOCALIZING:
             return  # while it looks for itself, what it finds is the better word
-        if (estimate := self._predictor.predict(odometry, self.place)) is not None:
-            self.publish(estimate)
+        if (estimate := self.whereabouts.moved(odometry)) is not None:
+            self.news.publish(estimate)
 
     async def _repeat_status(self) -> None:
         while True:
             await asyncio.sleep(1.0)
-            self.publish(self.status)
+            self.publish_status()

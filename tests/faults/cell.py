@@ -129,7 +129,7 @@ class _Cell:
 
     async def _check_map(self, it: Bench) -> None:
         """Nothing that was on the map is lost, and it can be saved."""
-        place = it.daemon.supervisor.place
+        place = it.daemon.supervisor.whereabouts.map_in_use
         if place is None:
             return
         if self._state.startswith("map"):
@@ -137,8 +137,8 @@ class _Cell:
         digest = place.grid.digest()
         entry = await it.daemon.control.save_map("kept")
         await it.daemon.control.load_map(entry.name, None, None)
-        self._check(it.daemon.supervisor.place is not place, "the saved map did not come into use")
-        loaded = it.daemon.supervisor.place
+        self._check(it.daemon.supervisor.whereabouts.map_in_use is not place, "the saved map did not come into use")
+        loaded = it.daemon.supervisor.whereabouts.map_in_use
         self._check(loaded is not None and loaded.grid.digest() == digest, "the saved map is another one")
 
     async def _check_arming(self, it: Bench) -> None:

@@ -61,8 +61,8 @@ async def test_a_weak_rangefinder_leaves_a_map_and_it_is_said_how_many_readings_
     spoil(robot, good=4, of=5)
     async with live(robot, QUICK) as it:
         said = await it.done(MapMission("office", robot.stops_m[:1], robot.start))
-        assert it.daemon.supervisor.place is not None
-        assert it.daemon.supervisor.place.generation == 2
+        assert it.daemon.supervisor.whereabouts.map_in_use is not None
+        assert it.daemon.supervisor.whereabouts.map_in_use.generation == 2
     assert [text for text in messages(said) if "stop" not in text] == [
         "22 of 120 readings failed",
         "24 of 120 readings failed",
@@ -78,12 +78,12 @@ async def test_a_rangefinder_that_fails_too_often_ends_the_mission_not_the_map(l
     async with live(robot, QUICK) as it:
         await it.done(MapMission("office", (), robot.start))
         board = spoil(robot, good=1, of=5)
-        place = it.daemon.supervisor.place
+        place = it.daemon.supervisor.whereabouts.map_in_use
         said, end = await it.do(LocalizeMission())
         assert end.phase is MissionPhase.FAILED
         assert end.message == "the rangefinder failed at 61 of 86 readings, the last was weak"
         assert it.daemon.supervisor.mode is Mode.IDLE
-        assert it.daemon.supervisor.place is place
+        assert it.daemon.supervisor.whereabouts.map_in_use is place
         await asyncio.sleep(0.1)
         assert not board._lit
     assert max(event.rejected for event in said if isinstance(event, SweepProgress)) >= 50
@@ -122,8 +122,8 @@ async def test_a_head_that_loses_steps_is_reset_and_the_sweep_taken_again(live: 
         losing = asyncio.create_task(lose_steps(it, 2))
         said = await it.done(MapMission("office", (), robot.start))
         await losing
-        assert it.daemon.supervisor.place is not None
-        assert it.daemon.supervisor.place.generation == 1
+        assert it.daemon.supervisor.whereabouts.map_in_use is not None
+        assert it.daemon.supervisor.whereabouts.map_in_use.generation == 1
         again = [text for text in messages(said) if "met its stop" in text]
         assert [text.rpartition("; ")[2] for text in again] == [
             "it is reset and the sweep taken again (1 of 2)",
@@ -167,16 +167,15 @@ async def test_without_a_base_it_still_says_where_it_stands(tmp_path: Path) -> N
         await asyncio.sleep(1.0)
         assert daemon.supervisor.mode is Mode.DISARMED
         await daemon.control.arm()
-        place = daemon.supervisor.place
-        assert place is not None
-        tie = place.map_from_odom
+        tie = daemon.supervisor.whereabouts.tie
+        assert tie is not None
         said = await ended(daemon, daemon.control.start(LocalizeMission(), 1e4))
         estimate = [event for event in said if isinstance(event, PoseEstimate) and event.final][-1]
         assert estimate.state is PoseState.LOCALIZED
         assert estimate.best is not None
         assert estimate.best.distance_m(robot.truth) < 0.15
         assert 200 < estimate.readings < 300  # those that the head reaches without a turn of the base
-        assert place.map_from_odom is tie
+        assert daemon.supervisor.whereabouts.tie is tie
         with pytest.raises(MissionError, match="it can only localize where it stands"):
             daemon.control.start(MapMission("again", (), robot.start), 1e4)
         laid["drive"].plug()

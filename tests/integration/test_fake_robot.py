@@ -38,7 +38,7 @@ async def record(live: Any, path: Path) -> tuple[str, list[Sweep]]:
     async with live(robot, QUICK) as it:
         await it.daemon.control.start_recording(str(path))
         said = await it.done(MapMission("office", STOPS_M, robot.start, Legs.STRAIGHT))
-        digest = it.daemon.supervisor.place.grid.digest()
+        digest = it.daemon.supervisor.whereabouts.map_in_use.grid.digest()
         said += await it.done(LocalizeMission())
         await it.daemon.control.stop_recording()
     assert len(sweeps(said)) == 1 + len(STOPS_M) + 1
@@ -54,7 +54,7 @@ async def repeat(live: Any, recording: Recording, *, dawdle_s: float) -> tuple[s
         await it.daemon.control.arm()
         await asyncio.sleep(dawdle_s)
         said = await it.done(MapMission("office", STOPS_M, robot.start, Legs.STRAIGHT))
-        digest = it.daemon.supervisor.place.grid.digest()
+        digest = it.daemon.supervisor.whereabouts.map_in_use.grid.digest()
         await asyncio.sleep(dawdle_s)
         said += await it.done(LocalizeMission())
         mismatches = fake.mismatches

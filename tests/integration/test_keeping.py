@@ -18,6 +18,7 @@ from robotd.core.errors import MissionError
 from robotd.maps import atomic
 from robotd.maps.store import MapStore
 from robotd.mission.stop_and_sweep import SweepSettings
+from robotd.mission.whereabouts.laying import lay
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
 from tests.integration.conftest import Live
@@ -52,8 +53,8 @@ async def kept(it: Living) -> Status:
 
 
 def digest_in_use(it: Living) -> str:
-    assert it.daemon.supervisor.place is not None
-    return it.daemon.supervisor.place.grid.digest()
+    assert it.daemon.supervisor.whereabouts.map_in_use is not None
+    return it.daemon.supervisor.whereabouts.map_in_use.grid.digest()
 
 
 def fill(disk: pytest.MonkeyPatch) -> None:
@@ -97,12 +98,12 @@ async def test_mapping_stopped_after_two_of_five_stops_is_kept(live: Live) -> No
         await it.daemon.control.stop("enough")
         status = await kept(it)
         assert status.map_kept_version == 1
-        assert it.daemon.supervisor.place is not None
-        assert it.daemon.supervisor.place.generation == 2
+        assert it.daemon.supervisor.whereabouts.map_in_use is not None
+        assert it.daemon.supervisor.whereabouts.map_in_use.generation == 2
         stored = MapStore(Path(it.daemon.control._store._root)).load("office")
         grid, entry = stored.grid, stored.entry
         assert (entry.metadata["generation"], grid.digest()) == (2, digest_in_use(it))
-        assert stored.stops == it.daemon.supervisor.place.stops
+        assert stored.stops == it.daemon.supervisor.whereabouts.map_in_use.stops
         assert entry.stops == 2
 
 
@@ -111,14 +112,14 @@ async def test_a_map_that_is_loaded_takes_its_stops_along(live: Live) -> None:
     async with live(robot, QUICK) as it:
         control = it.daemon.control
         await it.done(MapMission("office", robot.stops_m[:1], robot.start))
-        assert it.daemon.supervisor.place is not None
-        made = it.daemon.supervisor.place.stops
+        assert it.daemon.supervisor.whereabouts.map_in_use is not None
+        made = it.daemon.supervisor.whereabouts.map_in_use.stops
         await control.save_map(None)
         await control.load_map("office", None, robot.start)
-        place = it.daemon.supervisor.place
+        place = it.daemon.supervisor.whereabouts.map_in_use
         assert place.stops == made
         assert made is not None
-        laid = place.grid_with(made.stops[0].sweep)
+        laid = lay(place.grid, place.latest, place.stops, made.stops[0].sweep, robot.start)
         place.take(laid)
         saved = await control.save_map("hall")
         assert saved.stops == 3

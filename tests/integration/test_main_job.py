@@ -28,8 +28,8 @@ pytestmark = pytest.mark.slow
 
 
 def place(it: Living) -> MapInUse:
-    assert it.daemon.supervisor.place is not None
-    return it.daemon.supervisor.place
+    assert it.daemon.supervisor.whereabouts.map_in_use is not None
+    return it.daemon.supervisor.whereabouts.map_in_use
 
 
 def final_estimates(said: list[Event]) -> list[PoseEstimate]:
@@ -225,7 +225,7 @@ async def test_a_robot_that_nobody_knows_the_heading_of_is_found_and_drives_on(l
         # The base turns between the parts of a sweep; odometry, tied to the map, has followed it.
         here = it.daemon.supervisor.robot.drive.odometry.latest
         assert here is not None
-        believed = place(it).pose_of(here)
+        believed = it.daemon.supervisor.whereabouts.pose_of(here)
         assert believed is not None
         assert believed.distance_m(robot.truth) < 0.05
         assert abs(wrap_rad(believed.heading_rad - robot.truth.heading_rad)) < 0.02

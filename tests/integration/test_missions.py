@@ -35,8 +35,8 @@ async def test_a_stop_that_cannot_be_reached_is_left_out_and_named(live: Live) -
     robot = office()
     async with live(robot, QUICK) as it:
         said = await it.done(MapMission("office", ((-3.0, -3.0), robot.stops_m[0]), robot.start))
-        assert it.daemon.supervisor.place is not None
-        generation = it.daemon.supervisor.place.generation
+        assert it.daemon.supervisor.whereabouts.map_in_use is not None
+        generation = it.daemon.supervisor.whereabouts.map_in_use.generation
     progress = [event for event in said if isinstance(event, MissionProgress)]
     assert progress[-1].message.startswith("2 stops swept; not reached: stop 1: (-3.00, -3.00) m cannot be reached")
     assert [event.stop for event in progress if event.phase is MissionPhase.SWEEPING] == [0, 2]
@@ -58,7 +58,7 @@ async def test_stops_too_far_apart_for_one_map_are_refused_before_anything_moves
     async with live(office(), QUICK) as it:
         _, end = await it.do(MapMission("world", ((5000.0, 0.0),)))
         assert "do not fit on one map" in end.message
-        assert it.daemon.supervisor.place is None
+        assert it.daemon.supervisor.whereabouts.map_in_use is None
 
 
 async def test_requests_are_noted_so_that_they_can_be_asked_again(live: Live) -> None:
@@ -90,19 +90,19 @@ async def test_a_map_taken_into_use_comes_whole_out_of_the_journal(live: Live) -
         await it.done(MapMission("office", (), robot.start))
         await control.save_map("kept")
         await control.load_map("kept", None, robot.start)
-        loaded, noted = supervisor.place, last_command(it)
+        loaded, tie, noted = supervisor.whereabouts.map_in_use, supervisor.whereabouts.tie, last_command(it)
         assert loaded is not None
         await control.repeat(noted.name, noted.arguments)
-        again = supervisor.place
+        again = supervisor.whereabouts.map_in_use
         assert again is not None
         assert again is not loaded
         assert (again.map_id, again.name, again.grid.spec) == (loaded.map_id, loaded.name, loaded.grid.spec)
         assert np.array_equal(again.grid.cells, loaded.grid.cells)
-        assert again.map_from_odom == loaded.map_from_odom
+        assert supervisor.whereabouts.tie == tie is not None
         control.start(LocalizeMission(), 1000.0)
         with pytest.raises(MissionError, match="while a mission is under way"):
             await control.load_map("kept", None, None)
-        assert supervisor.place is again
+        assert supervisor.whereabouts.map_in_use is again
 
 
 async def test_what_is_not_there_is_refused(live: Live, tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.mission.compute import Compute
 from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.tie import Tie
 from robotd.recording.entries import BytesEntry
 from robotd.recording.preroll import PrerollJournal
 from robotd.sim.body import Body
@@ -185,10 +186,8 @@ async def idle(rig: Rig) -> None:
 def use_blank_map(rig: Rig) -> None:
     start, here = rig.robot.start, rig.daemon.robot.drive.odometry.latest
     grid = OccupancyGrid(GridSettings().spec_covering(((start.x_m, start.y_m),), 3.0))
-    place = MapInUse("blank", "blank", grid, None)
     assert here is not None
-    place.tie(start, here.in_odom)
-    rig.daemon.supervisor.use(place)
+    rig.daemon.supervisor.use(MapInUse("blank", "blank", grid), Tie.between(start, here.in_odom))
 
 
 async def driving(rig: Rig) -> None:

@@ -19,6 +19,7 @@ from robotd.hardware.devices.bought_device import BoughtDevice
 from robotd.mission.modes import UNDER_WAY
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.tie import Tie
 from robotd.sim.robot import own_board
 from tests.faults.bench import Bench
 from tests.integration.living import until_ready
@@ -260,6 +261,4 @@ async def _use_blank_map(it: Bench) -> None:
     start = it.robot.start
     here = await next_odometry(it.daemon.robot.drive, 1.0)
     grid = OccupancyGrid(GridSettings().spec_covering(((start.x_m, start.y_m),), 3.0))
-    place = MapInUse("blank", "blank", grid, None)
-    place.tie(it.robot.truth, here.in_odom)
-    it.daemon.supervisor.use(place)
+    it.daemon.supervisor.use(MapInUse("blank", "blank", grid), Tie.between(it.robot.truth, here.in_odom))

@@ -69,10 +69,9 @@ async def _mission(world: World, stops_m: tuple[Point, ...], seed: int, director
     robot = SimulatedRobot(world, seed)
     async with living(directory, robot, config) as it:
         said = await it.done(MapMission(world.name, stops_m, robot.start, Legs.STRAIGHT))
-        place = it.daemon.supervisor.place
-    assert place is not None
-    assert place.map_from_odom is not None
-    return Tour(tuple(event.sweep for event in said if isinstance(event, SweepDone)), place.map_from_odom)
+        tie = it.daemon.supervisor.whereabouts.tie
+    assert tie is not None
+    return Tour(tuple(event.sweep for event in said if isinstance(event, SweepDone)), tie.map_from_odom)
 
 
 def probes_at(world: World, pose: Pose2, count: int, seed: int) -> tuple[RangeReading, ...]:

@@ -9,6 +9,7 @@ from robotd.contract.missions import DriveMission, Legs, MapMission
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.tie import Tie
 from tests.stops.rig import Rig, start
 
 _FAST_MPS, _FAST_RADPS = 0.2, 0.3
@@ -56,9 +57,8 @@ async def _on_the_way(
     await daemon.control.arm()
     here = rig.robot.truth
     grid = OccupancyGrid(GridSettings().spec_covering(((here.x_m, here.y_m),), 4.0))
-    place = MapInUse("blank", "blank", grid, None)
-    place.tie(here, (await next_odometry(daemon.robot.drive, 1.0)).in_odom)
-    daemon.supervisor.use(place)
+    tie = Tie.between(here, (await next_odometry(daemon.robot.drive, 1.0)).in_odom)
+    daemon.supervisor.use(MapInUse("blank", "blank", grid), tie)
     way_rad = here.heading_rad + bearing_rad
     goal_m = here.x_m + 1.2 * math.cos(way_rad), here.y_m + 1.2 * math.sin(way_rad)
     client = await start(daemon, DriveMission(*goal_m, Legs.STRAIGHT))

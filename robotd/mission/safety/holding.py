@@ -10,7 +10,6 @@ from collections.abc import Awaitable, Callable
 from typing import Protocol
 
 from robotd.contract.device_status import DeviceStatus, LinkState
-from robotd.contract.events import Event, Status
 from robotd.contract.modes import Mode
 from robotd.core.attention import attention
 from robotd.core.clock import NS_PER_S, now_ns
@@ -43,15 +42,11 @@ class Host(Protocol):
     def mode(self) -> Mode:
         """What the robot is allowed to do now."""
 
-    @property
-    def status(self) -> Status:
-        """The whole robot in one look."""
-
     def halt(self, occasion: Occasion, reason: str) -> None:
         """Stop first, then end the mission."""
 
-    def publish(self, event: Event) -> None:
-        """Tell everybody."""
+    def publish_status(self) -> None:
+        """Tell everybody how the whole robot is."""
 
 
 class Holding:
@@ -146,7 +141,7 @@ class Holding:
         if self.hold.cause is not None:
             log.info("the mission goes on: all has been well for a while")
             self.hold.end()
-            self._host.publish(self._host.status)
+            self._host.publish_status()
 
     def _wait_for_base(self, error: FellSilent) -> None:
         """Hold the mission until the base is heard again.
@@ -170,7 +165,7 @@ class Holding:
             return False
         log.warning("held: %s", cause)
         self._host.robot.stop_now()
-        self._host.publish(self._host.status)
+        self._host.publish_status()
         return True
 
     def _recent(self) -> Stall | None:

@@ -1,4 +1,4 @@
-"""The map the robot lives on now, and where odometry lies on it."""
+"""The map the robot lives on now, and how much of it is on the disk."""
 
 from dataclasses import dataclass, field, replace
 
@@ -6,47 +6,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.contract.events import MapChanged
-from robotd.core.map_stop import MapStop
-from robotd.core.pose import Odometry, Pose2
-from robotd.core.reading import Sweep
-from robotd.grid.binary import BinaryMap
-from robotd.grid.latest import latest_with
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.window import CellWindow
+from robotd.mission.whereabouts.laying import Laid
 from robotd.mission.whereabouts.readiness import Readiness
 
 _NO_CELLS: NDArray[np.intp] = np.empty(0, dtype=np.intp)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Laid:
-    """A grid with one more sweep in it."""
-
-    grid: OccupancyGrid
-    cells: NDArray[np.intp]
-    """Those that changed, as flat indices, ascending."""
-    latest: NDArray[np.uint8]
-    """As :attr:`MapInUse.latest`, of this grid."""
-    digest: str
-    """Of the grid."""
-    stops: MapStops | None
-    """What the grid is made of, if that is known."""
-
-
 @dataclass(slots=True)
 class MapInUse:
-    """One map and its ties; the supervisor has one at a time.
+    """One map: its cells, how often they changed, and what of it is on the disk.
 
-    The grid is never changed, only replaced, and on the loop: whoever holds one, on whatever thread, holds a snapshot.
+    The grid is never changed, only replaced, and on the loop: who holds one, on any thread, holds a snapshot. Where the
+    robot is on it is another matter, see :class:`robotd.mission.whereabouts.whereabouts.Whereabouts`.
     """
 
     map_id: str
     """Digest of its content when it was loaded or begun."""
     name: str
     grid: OccupancyGrid
-    map_from_odom: Pose2 | None
-    """Where the odometry frame lies on the map; None while nothing ties them."""
     digest: str = ""
     """Of the grid as it is now; made where the grid was, since for the largest it takes a tenth of a second."""
     stops: MapStops | None = None
@@ -64,9 +44,6 @@ class MapInUse:
     """The change up to which it is in the store, though unsaved."""
     kept_version: int | None = None
     """Which version of its name that is."""
-    is_doubted: bool = False
-    """Whether the tie is no longer believed: a robot that looked and did not find itself, or was out of sight of
-    its wheels, does not know where it is, though it may still know which way it looks."""
 
     def __post_init__(self) -> None:
         """Make the digest, unless somebody did; nothing was said of any cell yet."""
@@ -90,35 +67,23 @@ class MapInUse:
         """The version as which all that nobody saved is kept; None if some is not, or everything was saved."""
         return self.kept_version if self.is_unsaved and not self.is_at_risk else None
 
-    def pose_of(self, odometry: Odometry) -> Pose2 | None:
-        """Return where odometry places the robot on the map, if anything ties them that is believed."""
-        return None if self.map_from_odom is None or self.is_doubted else self.map_from_odom @ odometry.in_odom
+    def saved(self, generation: int) -> None:
+        """Take note that somebody saved it as it was after that change."""
+        self.settled_generation = max(self.settled_generation, generation)
 
-    def heading_of(self, odometry: Odometry) -> float | None:
-        """Return the robot's heading in the map frame [rad], if anything ever tied odometry to the map."""
-        return None if self.map_from_odom is None else (self.map_from_odom @ odometry.in_odom).heading_rad
+    def given_up(self) -> None:
+        """Take note that nobody wants what is not saved of it."""
+        self.settled_generation = self.generation
 
-    def tie(self, map_from_robot: Pose2, in_odom: Pose2) -> None:
-        """Note that the robot was at ``map_from_robot`` when odometry placed it at ``in_odom``."""
-        self.map_from_odom = map_from_robot @ in_odom.inverse()
-        self.is_doubted = False
+    def kept(self, generation: int, version: int) -> None:
+        """Take note that it is in the store, though unsaved, as it was after that change."""
+        self.kept_generation, self.kept_version = generation, version
 
-    def grid_with(self, sweep: Sweep) -> "Laid":
-        """Return the grid with a sweep laid in where odometry places it.
+    def found_unsaved(self, version: int) -> None:
+        """Take note that it came from a version of the store that nobody had saved."""
+        self.settled_generation, self.kept_version = -1, version
 
-        Raises:
-            ValueError: nothing ties odometry to the map.
-        """
-        if self.map_from_odom is None:
-            raise ValueError("a sweep cannot be inserted: odometry is not tied to the map")
-        grid = OccupancyGrid(self.grid.spec, self.grid.cells, self.grid.settings)
-        map_from_robot = self.map_from_odom @ sweep.in_odom
-        changed = grid.insert(sweep, map_from_robot)
-        latest = latest_with(self.latest, grid.usable(sweep), map_from_robot, grid.spec)
-        stops = None if self.stops is None else self.stops.with_stop(MapStop(sweep, map_from_robot))
-        return Laid(grid, changed, latest, grid.digest(), stops)
-
-    def take(self, laid: "Laid") -> None:
+    def take(self, laid: Laid) -> None:
         """Go on with the grid that a sweep was laid in."""
         self.grid, self.latest, self.digest, self.stops = laid.grid, laid.latest, laid.digest, laid.stops
         self.generation += 1
@@ -133,10 +98,6 @@ class MapInUse:
         """Return the event that carries every cell."""
         event = self.changes(time_ns, _NO_CELLS)
         return replace(event, whole=True, values=self.grid.cells)
-
-    def binary(self) -> BinaryMap:
-        """Return the thresholded map."""
-        return BinaryMap.from_grid(self.grid)
 
 
 def in_place_of(place: MapInUse | None) -> str:

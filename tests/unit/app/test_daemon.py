@@ -178,9 +178,9 @@ async def test_a_map_that_nobody_saved_outlives_sigterm(short: Path, monkeypatch
         running = asyncio.create_task(run(config_in(short)))
         daemon = await captured.composed
         await until_ready(daemon)
-        place = MapInUse("new-1", "lab", grid, None)
+        place = MapInUse("new-1", "lab", grid)
         place.generation = 2
-        daemon.supervisor.adopt(place)
+        daemon.supervisor.adopt(place, None)
         os.kill(os.getpid(), signal.SIGTERM)
         await asyncio.wait_for(running, 5.0)
     stored = MapStore(short / "maps").load("lab")

@@ -26,7 +26,7 @@ async def test_every_tenth_reading_and_the_last_are_told_by_kind() -> None:
 @pytest.mark.parametrize("last", [MissionPhase.STOPPED, MissionPhase.FAILED])
 async def test_a_mission_ends_at_the_stop_where_it_was(last: MissionPhase) -> None:
     said: list[Event] = []
-    report = Reporter(7, "map", 5, said.append)
+    report = Reporter(7, "map", 5, lambda event, made=None: said.append(event))
     report.at(MissionPhase.STARTED)
     report.at(MissionPhase.SWEEPING, 3)
     report.at(MissionPhase.COMPUTING)

@@ -2,14 +2,18 @@
 
 from dataclasses import replace
 
+import pytest
+
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepDone
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.mission.results import note_result, result_of
+from robotd.mission.news import News
+from robotd.mission.results import map_result, result_of
+from robotd.mission.whereabouts.laying import lay
 from robotd.mission.whereabouts.map_in_use import MapInUse
-from robotd.mission.whereabouts.prediction import unlocalized
+from robotd.mission.whereabouts.whereabouts import unlocalized
 from robotd.recording.entries import ResultEntry
 from robotd.recording.journal import MemoryJournal
 
@@ -18,16 +22,16 @@ SWEEP = Sweep(0, IDENTITY, (READING, RangeReading(20, 1.5, ReadingStatus.WEAK, N
 END = MissionProgress(1, 7, "map", MissionPhase.DONE, 2, 2, "2 stops swept")
 
 
-def noted(event: Event, place: MapInUse | None = None) -> ResultEntry | None:
+def noted(event: Event, made: ResultEntry | None = None) -> ResultEntry | None:
     journal = MemoryJournal()
-    note_result(journal, event, place)
+    News(journal.note).publish(event, made)
     entries = [entry for entry in journal.entries if isinstance(entry, ResultEntry)]
     assert len(entries) <= 1
     return entries[0] if entries else None
 
 
-def digest(event: Event, place: MapInUse | None = None) -> str:
-    entry = noted(event, place)
+def digest(event: Event, made: ResultEntry | None = None) -> str:
+    entry = noted(event, made)
     assert entry is not None
     return entry.digest
 
@@ -42,23 +46,26 @@ def test_times_are_left_out_of_a_digest_and_everything_else_is_in_it() -> None:
 
 
 def test_a_map_is_noted_whenever_it_changes() -> None:
-    place = MapInUse(
-        "m", "m", OccupancyGrid(GridSettings(rows=60, cols=60).spec_covering(((0.0, 0.0),), 1.0)), IDENTITY
-    )
-    before = digest(place.whole(1), place)
-    laid = place.grid_with(SWEEP)
+    place = MapInUse("m", "m", OccupancyGrid(GridSettings(rows=60, cols=60).spec_covering(((0.0, 0.0),), 1.0)))
+    before = noted(place.whole(1), map_result(place.whole(1), place.digest))
+    laid = lay(place.grid, place.latest, None, SWEEP, IDENTITY)
     place.take(laid)
-    assert digest(place.changes(2, laid.cells), place) == place.grid.digest() != before
+    change = place.changes(2, laid.cells)
+    after = noted(change, map_result(change, laid.digest))
+    assert before is not None
+    assert after == ResultEntry(2, "map", {"map_id": "m", "generation": 1}, place.grid.digest())
+    assert after.digest != before.digest
+    with pytest.raises(ValueError, match="noted by its digest"):
+        noted(change)
 
 
 def test_an_entry_that_was_made_where_the_estimate_was_is_noted_as_it_is() -> None:
     event = unlocalized(1, "m")
-    journal, made = MemoryJournal(), result_of(event)
+    made = result_of(event)
     assert made is not None
     assert made.encoded is not None
-    note_result(journal, event, None, made)
-    assert journal.entries == [noted(event)]
-    assert journal.entries[0] is made
+    assert noted(event, made) is made
+    assert noted(event) == made
 
 
 def test_what_is_no_result_is_not_noted() -> None:

@@ -25,10 +25,12 @@ from robotd.hardware.devices.rangefinder import Shot
 from robotd.mission.compute import ThreadCompute
 from robotd.mission.context import MissionContext
 from robotd.mission.modes import Occasion
+from robotd.mission.news import News
 from robotd.mission.robot import Robot
 from robotd.mission.settings import MissionSettings
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.tie import Tie
 
 TELEMETRY_S = 0.04
 GONE = {"link": LinkState.ABSENT, "armed": False, "detail": "the line was cut"}
@@ -156,7 +158,7 @@ class Rig:
 
     def use_map(self) -> None:
         grid = OccupancyGrid(GridSettings(rows=40, cols=40).spec_covering(((0.0, 0.0),), 0.5))
-        self.supervisor.use(MapInUse("m", "m", grid, IDENTITY))
+        self.supervisor.use(MapInUse("m", "m", grid), Tie(IDENTITY))
 
 
 @asynccontextmanager
@@ -165,13 +167,10 @@ async def rig(*, armed: bool = True, talking: bool = True, battery_min_v: float 
     robot = Robot(drive, pantilt, rangefinder)
     compute = ThreadCompute()
     settings = MissionSettings(HeadMount(), RangefinderCalibration())
-    supervisor = Supervisor(
-        robot,
-        lambda say: MissionContext(robot, settings, compute, say),
-        lambda event, place, made: None,
-        battery_min_v=battery_min_v,
-    )
-    with supervisor.events.subscribe(10_000) as events:
+    news = News(lambda _: None)
+    context = MissionContext(robot, settings, compute, news.publish)
+    supervisor = Supervisor(context, news, battery_min_v=battery_min_v)
+    with news.events.subscribe(10_000) as events:
         tasks = [asyncio.create_task(supervisor.run())]
         if talking:
             tasks.append(asyncio.create_task(drive.talk()))
@@ -451,7 +450,7 @@ async def test_without_odometry_nothing_begins() -> None:
         assert (end.phase, end.message) == (MissionPhase.FAILED, "drive: no odometry for 0.5 s")
         assert now_ns() - began_ns < NS_PER_S
         assert r.mode is Mode.DISARMED
-        assert r.supervisor.place is None
+        assert r.supervisor.whereabouts.map_in_use is None
         assert r.drive.told == []
 
 
@@ -515,8 +514,8 @@ async def test_one_mission_at_a_time_under_a_lease_that_only_it_renews() -> None
 async def test_a_pose_is_never_predicted_where_nothing_ties_odometry_to_the_map() -> None:
     async with rig(armed=False, talking=False) as r:
         grid = OccupancyGrid(GridSettings(rows=40, cols=40).spec_covering(((0.0, 0.0),), 0.5))
-        with r.supervisor.events.subscribe() as events:
-            r.supervisor.use(MapInUse("m", "m", grid, None))
+        with r.supervisor.news.events.subscribe() as events:
+            r.supervisor.use(MapInUse("m", "m", grid))
             r.drive.odometry.publish(Odometry(now_ns(), Pose2(1.0, 2.0, 0.0), STANDSTILL))
             await turns()
             said = [await events.get() for _ in range(4)]

@@ -5,12 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from robotd.core.pose import IDENTITY, Pose2
+from robotd.core.pose import IDENTITY
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.binary import FREE_MAX
 from robotd.grid.latest import HIT, NOTHING, PASSED
 from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy
 from robotd.mission.driving import _plan
+from robotd.mission.whereabouts.laying import lay
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.planning.path import Path, PlanningSettings
 
@@ -23,7 +24,12 @@ SLOW_TO_BELIEVE = GridSettings(rows=120, cols=120, raise_alpha=0.9)
 
 
 def place(settings: GridSettings) -> MapInUse:
-    return MapInUse("m", "room", OccupancyGrid(settings.spec_covering(((0.0, 0.0),), 1.0), settings=settings), IDENTITY)
+    return MapInUse("m", "room", OccupancyGrid(settings.spec_covering(((0.0, 0.0),), 1.0), settings=settings))
+
+
+def see(here: MapInUse, seen: Sweep) -> None:
+    """Lay a sweep into the map, taken at its origin."""
+    here.take(lay(here.grid, here.latest, None, seen, IDENTITY))
 
 
 def sweep(leg_beams: int = 0) -> Sweep:
@@ -52,17 +58,17 @@ def test_a_thin_leg_hit_once_is_gone_round_until_it_is_seen_through(
 ) -> None:
     here = place(GridSettings(rows=120, cols=120, raise_alpha=alpha, policy=policy))
     for _ in range(3):
-        here.take(here.grid_with(sweep()))
+        see(here, sweep())
     assert keeps_off_m(here) < 0.01
-    here.take(here.grid_with(sweep(beams)))
+    see(here, sweep(beams))
     assert keeps_off_m(here) >= 0.3 - here.grid.spec.resolution_m
-    here.take(here.grid_with(sweep()))
+    see(here, sweep())
     assert keeps_off_m(here) < 0.01
 
 
 def test_a_leg_that_was_there_from_the_beginning_is_gone_round_too() -> None:
     here = place(GridSettings(rows=120, cols=120))
-    here.take(here.grid_with(sweep(1)))
+    see(here, sweep(1))
     assert keeps_off_m(here) >= 0.3 - here.grid.spec.resolution_m
 
 
@@ -70,11 +76,11 @@ def test_what_was_said_last_is_kept_beside_the_grid_and_every_snapshot_is_left_a
     here = place(SLOW_TO_BELIEVE)
     leg, beyond = here.grid.spec.cell_at(LEG_M, 0.0), here.grid.spec.cell_at(LEG_M + 0.5, 0.0)
     assert here.latest[leg] == NOTHING
-    here.take(here.grid_with(sweep()))
-    here.take(here.grid_with(sweep()))
+    see(here, sweep())
+    see(here, sweep())
     before = here.latest
     assert before[leg] == before[beyond] == PASSED
-    here.take(here.grid_with(sweep(1)))
+    see(here, sweep(1))
     assert (before[leg], here.latest[leg], here.latest[beyond]) == (PASSED, HIT, PASSED)
     assert here.grid.cells[leg] <= FREE_MAX
 
@@ -83,7 +89,7 @@ def test_a_map_that_comes_from_the_store_has_its_cells_and_nothing_else() -> Non
     """One hit on unknown or free ground makes a cell an obstacle with the settings that are the default; that stays."""
     here = place(GridSettings(rows=120, cols=120))
     for beams in (0, 0, 1):
-        here.take(here.grid_with(sweep(beams)))
-    loaded = MapInUse("m", "room", here.grid, Pose2(0.0, 0.0, 0.0))
+        see(here, sweep(beams))
+    loaded = MapInUse("m", "room", here.grid)
     assert not loaded.latest.any()
     assert keeps_off_m(loaded) >= 0.3 - here.grid.spec.resolution_m

@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robotd.core.pose import IDENTITY, Pose2
+from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.whereabouts import readiness
+from robotd.mission.whereabouts.laying import lay
 from robotd.mission.whereabouts.map_in_use import MapInUse
 
 SETTINGS = LocalizationSettings()
@@ -26,13 +27,12 @@ def swept(place: MapInUse, x_m: float) -> Sweep:
 
 
 def place() -> MapInUse:
-    return MapInUse(
-        "m", "office", OccupancyGrid(GridSettings(rows=90, cols=120).spec_covering(((0, 0),), 1.0)), IDENTITY
-    )
+    return MapInUse("m", "office", OccupancyGrid(GridSettings(rows=90, cols=120).spec_covering(((0, 0),), 1.0)))
 
 
 def insert(here: MapInUse, x_m: float) -> None:
-    here.take(here.grid_with(swept(here, x_m)))
+    sweep = swept(here, x_m)
+    here.take(lay(here.grid, here.latest, None, sweep, sweep.in_odom))
 
 
 def arrays(ready: ReadyMap) -> list[Any]:

@@ -1,0 +1,110 @@
+"""Where the robot believes it is: known here, and written nowhere else.
+
+Theory of operation: one map is in use at a time, and one :class:`Tie` says how the odometry frame lies on it. The tie
+comes with the map (:meth:`Whereabouts.adopt`) or is made where a look round finds the robot. It is doubted where a look
+round finds it nowhere near (:meth:`Whereabouts.looked`), and where nobody saw what its wheels did
+(:meth:`Whereabouts.doubt`); odometry carries it on in between (:meth:`Whereabouts.moved`). Another map begins with
+nothing: what was believed on the last one says nothing of this one.
+
+All of it happens on the loop, and nothing here reads a clock, waits, moves or stops anything: a replay that is told the
+same comes to the same. What is believed beyond one tie, as the places that a robot carries along while it is ambiguous,
+belongs here too.
+"""
+
+from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.core.angles import wrap_rad
+from robotd.core.pose import Odometry, Pose2
+from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.tie import Tie
+
+_MOVED_M = 0.02
+_TURNED_RAD = 0.02
+
+
+class Whereabouts:
+    """The map in use, and where the robot is on it."""
+
+    def __init__(self) -> None:
+        self._map: MapInUse | None = None
+        self._tie: Tie | None = None
+        self._said: Pose2 | None = None
+        """The pose that was said last; a prediction is news only if it lies far enough from there."""
+
+    @property
+    def map_in_use(self) -> MapInUse | None:
+        """The map that poses are told on."""
+        return self._map
+
+    @property
+    def tie(self) -> Tie | None:
+        """How odometry lies on that map, believed or not; None while nothing ever tied them."""
+        return self._tie
+
+    @property
+    def believed(self) -> Tie | None:
+        """The tie, if it is believed: what is not must not move the robot."""
+        return None if self._tie is None or self._tie.is_doubted else self._tie
+
+    def adopt(self, another: MapInUse, tie: Tie | None = None) -> None:
+        """Take another map into use, with what ties odometry to it, if anything does."""
+        self._map, self._tie, self._said = another, tie, None
+
+    def pose_of(self, odometry: Odometry) -> Pose2 | None:
+        """Return where odometry places the robot on the map, if anything ties them that is believed."""
+        believed = self.believed
+        return None if believed is None else believed.in_map(odometry.in_odom)
+
+    def heading_of(self, odometry: Odometry) -> float | None:
+        """Return the robot's heading in the map frame [rad], if anything ever tied odometry to the map.
+
+        A doubted tie will do: a robot that does not know where it is may still know which way it looks.
+        """
+        return None if self._tie is None else self._tie.in_map(odometry.in_odom).heading_rad
+
+    def said(self, estimate: PoseEstimate) -> None:
+        """Take note of an estimate that is told: what is predicted next is measured against it."""
+        if estimate.final and estimate.state is PoseState.LOCALIZED:
+            self._said = estimate.best
+
+    def looked(self, estimate: PoseEstimate, in_odom: Pose2, *, near_m: float, near_rad: float) -> None:
+        """Learn from a look round that began at ``in_odom``: tie odometry where the robot was found, or doubt the tie.
+
+        A tie is doubted if no region comes within ``near_m`` and ``near_rad`` of where it puts the robot. Readings that
+        allow no answer at all, as in a fog of failed ones, say nothing against it.
+        """
+        if estimate.state is PoseState.LOCALIZED and estimate.best is not None:
+            self._tie = Tie.between(estimate.best, in_odom)
+            return
+        says_something = estimate.regions or estimate.state is PoseState.LOST
+        if self._tie is None or not says_something:
+            return
+        believed = self._tie.in_map(in_odom)
+        if not any(region.extent.holds(believed, near_m=near_m, near_rad=near_rad) for region in estimate.regions):
+            self._tie = self._tie.doubted()
+
+    def doubt(self) -> bool:
+        """Believe odometry no longer: nobody saw what the wheels did, or they told nonsense; return whether it was."""
+        believed = self.believed
+        if believed is None:
+            return False
+        self._tie, self._said = believed.doubted(), None
+        return True
+
+    def moved(self, odometry: Odometry) -> PoseEstimate | None:
+        """Return the estimate that odometry leads to, if the robot has moved since the last one said, else None."""
+        pose = self.pose_of(odometry)
+        if self._map is None or pose is None or not self._has_moved(pose):
+            return None
+        self._said = pose
+        return PoseEstimate(odometry.time_ns, PoseState.PREDICTED, pose, (), 0, 0, True, self._map.map_id)
+
+    def _has_moved(self, pose: Pose2) -> bool:
+        if self._said is None:
+            return True
+        turned_rad = abs(wrap_rad(pose.heading_rad - self._said.heading_rad))
+        return pose.distance_m(self._said) > _MOVED_M or turned_rad > _TURNED_RAD
+
+
+def unlocalized(time_ns: int, map_id: str) -> PoseEstimate:
+    """Return the estimate of a robot that does not know where it is: said at once, never by silence."""
+    return PoseEstimate(time_ns, PoseState.LOST, None, (), 0, 0, True, map_id)
