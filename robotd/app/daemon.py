@@ -16,6 +16,7 @@ from robotd.app.ending import Ending
 from robotd.app.stall_guard import guarded
 from robotd.app.stalls import Stalls, keep_going
 from robotd.config import Config, default_path, effective_text, load
+from robotd.contract.requests import RecordStart, RecordStop, Stop
 from robotd.core.clock import now_ns, run_counting, wall_offset_ns
 from robotd.core.errors import ConfigError, RobotdError
 from robotd.core.log import LONGEST_LINE, configure
@@ -99,7 +100,7 @@ async def run(config: Config) -> int:
             try:
                 await daemon.control.keeping.keep_last()
             finally:
-                await daemon.control.stop_recording()
+                await daemon.control.perform(RecordStop())
     return ending.exit_code
 
 
@@ -110,7 +111,7 @@ async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
         serving = group.create_task(server.run(), name="server")
         await server.serving.wait()  # then this is the only daemon here, and may open the lines
         if config.recording.from_start:
-            await daemon.control.start_recording(None)
+            await daemon.control.perform(RecordStart())
         parts = {name: group.create_task(part, name=name) for name, part in daemon.parts().items()}
         keeping = group.create_task(daemon.control.keeping.run(), name="keep maps")
         going_on = group.create_task(keep_going(daemon, config.driving.silence_s), name="keep going")
@@ -125,7 +126,7 @@ async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
         await ending.asked.wait()
         log.info("stopping: %s", ending.reason)
         notifier.stopping()
-        await daemon.control.stop("the daemon is ending")
+        await daemon.control.perform(Stop("the daemon is ending"))
         await _cancelled(serving, *(parts[device.name] for device in daemon.robot.devices))
         for task in tasks:
             task.cancel()

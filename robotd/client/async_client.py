@@ -11,7 +11,7 @@ import asyncio
 import contextlib
 import os
 from collections import deque
-from collections.abc import AsyncGenerator, AsyncIterator
+from collections.abc import AsyncGenerator, AsyncIterator, Callable
 from pathlib import Path
 from types import TracebackType
 from typing import Self, TypeVar
@@ -22,21 +22,20 @@ import zmq.asyncio
 from robotd.client.endpoints import Endpoints, runtime_dir_of_user
 from robotd.client.exchange import Exchanges
 from robotd.client.feed import Feed, Gap, as_topics
-from robotd.client.mission_run import MISSION_TOPICS, MissionEvent, MissionRun, final_estimate
+from robotd.client.methods import Awaiting, Methods
+from robotd.client.mission_run import MISSION_TOPICS, MissionEvent, MissionRun
 from robotd.client.sockets import connect_dealer, connect_subscriber
-from robotd.contract import requests as api
-from robotd.contract.area import Area
-from robotd.contract.estimate import PoseEstimate
-from robotd.contract.events import MapChanged, Status
-from robotd.contract.map_wire import unpack_map
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
-from robotd.contract.requests import Command, MapEntryInfo
+from robotd.contract.answers import MissionStarted
+from robotd.contract.events import Status
+from robotd.contract.missions import Mission
+from robotd.contract.request import Request
+from robotd.contract.requests import GetStatus
 from robotd.contract.topics import Published, Topic
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RequestTimeout, RobotdError, ServerError
-from robotd.core.pose import IDENTITY, Pose2
 
 R = TypeVar("R")
+V = TypeVar("V")
 
 _LOOK_S = 0.05
 """How often a mission looks after its lease while nothing happens."""
@@ -76,7 +75,7 @@ class AsyncSubscription:
         self.close()
 
 
-class AsyncClient:
+class AsyncClient(Methods, Awaiting):
     """Asks a daemon on this machine, and listens to it; one client serves any number of tasks.
 
     Use it in an ``async with`` block. Every request raises :class:`ServerError` when the daemon refuses and
@@ -90,7 +89,7 @@ class AsyncClient:
         self._endpoints = Endpoints(Path(runtime_dir or runtime_dir_of_user()))
         self._exchanges = Exchanges(str(self._endpoints), retry_s=retry_s, deadline_s=deadline_s)
         self._retry_s = retry_s
-        self._patience_s = api.GetStatus.deadline_s if deadline_s is None else deadline_s
+        self._patience_s = GetStatus.deadline_s if deadline_s is None else deadline_s
         self._waiting: dict[int, asyncio.Future[None]] = {}
 
     async def __aenter__(self) -> Self:
@@ -108,42 +107,6 @@ class AsyncClient:
         self._reader.cancel()
         await asyncio.wait((self._reader,))
         self._context.destroy(linger=0)
-
-    async def hello(self) -> api.HelloResult:
-        """Return who answers."""
-        return await self.call(api.Hello())
-
-    async def status(self) -> Status:
-        """Return the whole robot in one look."""
-        return await self.call(api.GetStatus())
-
-    async def config(self) -> str:
-        """Return the effective configuration, as TOML."""
-        return (await self.call(api.GetConfig())).text
-
-    async def arm(self) -> None:
-        """Allow motion."""
-        await self.call(api.Arm())
-
-    async def disarm(self) -> None:
-        """Stop and forbid motion."""
-        await self.call(api.Disarm())
-
-    async def stop(self, reason: str = "stopped by a client") -> None:
-        """Stop now, for any reason: ``str`` of an exception will do, cut to the letters that are kept."""
-        await self.call(api.Stop.because(reason))
-
-    async def clear(self) -> None:
-        """Acknowledge latched faults."""
-        await self.call(api.Clear())
-
-    async def start(self, mission: Mission, lease_s: float | None = None) -> api.MissionStarted:
-        """Start a mission; it is stopped unless :meth:`renew` comes before the lease runs out, again and again."""
-        return await self.call(api.start_command(mission, lease_s))
-
-    async def renew(self, mission_id: int) -> api.Renewed:
-        """Keep a mission's lease alive, and learn how far it has come."""
-        return await self.call(api.Renew(mission_id))
 
     async def run_mission(self, mission: Mission, lease_s: float | None = None) -> AsyncGenerator[MissionEvent, None]:
         """Start a mission, keep it alive, and yield what happens until it is done.
@@ -172,61 +135,6 @@ class AsyncClient:
                     await self._abandon()
         run.check()
 
-    async def make_map(
-        self,
-        name: str,
-        stops_m: tuple[tuple[float, float], ...] = (),
-        start: Pose2 = IDENTITY,
-        legs: Legs = Legs.PLANNED,
-    ) -> list[MissionEvent]:
-        """Make a new map and return what happened; ``MissionError`` if it was not done."""
-        return [event async for event in self.run_mission(MapMission(name, stops_m, start, legs))]
-
-    async def localize(
-        self,
-        heading_rad: float | None = None,
-        *,
-        tie: bool = True,
-        heading: PriorHeading = PriorHeading.ODOMETRY,
-        within: Area | None = None,
-    ) -> PoseEstimate:
-        """Sweep here and return where it is; ``MissionError`` if it was not done. Without ``tie`` it only looks."""
-        mission = LocalizeMission(heading_rad, tie, heading, within)
-        return final_estimate([event async for event in self.run_mission(mission)])
-
-    async def drive_to(self, x_m: float, y_m: float, legs: Legs = Legs.PLANNED) -> list[MissionEvent]:
-        """Drive to a place on the map and return what happened; ``MissionError`` if it was not reached."""
-        return [event async for event in self.run_mission(DriveMission(x_m, y_m, legs))]
-
-    async def map_save(self, name: str | None = None) -> MapEntryInfo:
-        """Store the map in use, under its own name or another."""
-        return await self.call(api.MapSave(name))
-
-    async def map_load(self, name: str, version: int | None = None, robot_in_map: Pose2 | None = None) -> MapEntryInfo:
-        """Take a stored map into use, and say where the robot is on it if that is known."""
-        pose = None if robot_in_map is None else api.PoseArgument.of(robot_in_map)
-        return await self.call(api.MapLoad(name, version, pose))
-
-    async def map_discard(self) -> None:
-        """Give up what nobody saved of the map in use."""
-        await self.call(api.MapDiscard())
-
-    async def map_list(self) -> tuple[MapEntryInfo, ...]:
-        """Return the stored maps."""
-        return (await self.call(api.ListMaps())).maps
-
-    async def map_show(self, name: str | None = None, version: int | None = None) -> MapChanged:
-        """Return the whole map in use, or a stored one."""
-        return unpack_map(await self.call(api.MapShow(name, version)))
-
-    async def record_start(self, path: str | None = None) -> str | None:
-        """Start recording, to a new file below the daemon's ``recording.dir``, and return where."""
-        return (await self.call(api.RecordStart(path))).path
-
-    async def record_stop(self) -> str | None:
-        """Close the recording and return where it is, or None if there was none."""
-        return (await self.call(api.RecordStop())).path
-
     def subscribe(self, *topics: str) -> AsyncSubscription:
         """Return the events of these topics, of all if none is named, from the last one of each on."""
         wanted = as_topics(topics)
@@ -234,9 +142,17 @@ class AsyncClient:
         connect_subscriber(socket, self._endpoints, wanted)
         return AsyncSubscription(socket)
 
-    async def call(self, command: Command[R]) -> R:
-        """Return what a command answers."""
-        exchange = self._exchanges.begin(command, _now_s())
+    async def ask(self, request: Request[R], value: Callable[[R], V]) -> V:
+        """Send a request and return what is wanted of its answer."""
+        return value(await self.call(request))
+
+    async def carry_out(self, mission: Mission, value: Callable[[list[MissionEvent]], V]) -> V:
+        """Run a mission to its end and return what is wanted of what happened; ``MissionError`` if it was not done."""
+        return value([event async for event in self.run_mission(mission)])
+
+    async def call(self, request: Request[R]) -> R:
+        """Send a request and return its answer."""
+        exchange = self._exchanges.begin(request, _now_s())
         answered = self._waiting[exchange.id] = asyncio.get_running_loop().create_future()
         try:
             while not exchange.is_answered:
@@ -283,7 +199,7 @@ class AsyncClient:
                     raise RequestTimeout(f"no status from {self._endpoints}")
             yield events
 
-    async def _start_or_stop(self, mission: Mission, lease_s: float | None) -> api.MissionStarted:
+    async def _start_or_stop(self, mission: Mission, lease_s: float | None) -> MissionStarted:
         try:
             return await self.start(mission, lease_s)
         except Exception:

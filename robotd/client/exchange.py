@@ -7,10 +7,9 @@ it repeats, so the server carries it out once.
 
 from typing import Any, Generic, TypeVar
 
-import msgspec
-
 from robotd.contract.envelope import Reply, decode_reply, encode_request
-from robotd.contract.requests import Command
+from robotd.contract.plain import from_plain
+from robotd.contract.request import Request
 from robotd.core.errors import RemoteProtocolError, RequestTimeout, ServerError
 
 R = TypeVar("R")
@@ -20,12 +19,12 @@ class Exchange(Generic[R]):
     """One request and its answer."""
 
     def __init__(
-        self, request_id: int, command: Command[R], *, whom: str, now_s: float, retry_s: float, deadline_s: float
+        self, request_id: int, request: Request[R], *, whom: str, now_s: float, retry_s: float, deadline_s: float
     ) -> None:
         self.id = request_id
-        self._command = command
+        self._request = request
         self._whom = whom
-        self._data = encode_request(request_id, command)
+        self._data = encode_request(request_id, request)
         self._retry_s = retry_s
         self._deadline_s = now_s + deadline_s
         self._next_s = now_s
@@ -43,7 +42,7 @@ class Exchange(Generic[R]):
             RequestTimeout: there was no answer before the deadline.
         """
         if now_s >= self._deadline_s:
-            raise RequestTimeout(f"{self._command.cmd}: no answer from {self._whom}")
+            raise RequestTimeout(f"{self._request.cmd}: no answer from {self._whom}")
         if now_s < self._next_s:
             return None
         self._next_s = now_s + self._retry_s
@@ -62,16 +61,16 @@ class Exchange(Generic[R]):
 
         Raises:
             ServerError: the server refused.
-            RemoteProtocolError: the answer is not what the command promises.
+            RemoteProtocolError: the answer is not what the request promises.
         """
         if self._reply is None:
             raise RuntimeError("not answered yet")
         if isinstance(self._reply.result, ServerError):
             raise self._reply.result
         try:
-            result: R = msgspec.convert(self._reply.result, self._command.result, strict=True)
-        except (msgspec.ValidationError, ValueError) as error:
-            raise RemoteProtocolError(f"answer to {self._command.cmd}: {error}") from error
+            result: R = from_plain(self._request.result, self._reply.result)
+        except ValueError as error:
+            raise RemoteProtocolError(f"answer to {self._request.cmd}: {error}") from error
         return result
 
 
@@ -86,12 +85,12 @@ class Exchanges:
         self._number = 0
         self._open: dict[int, Exchange[Any]] = {}
 
-    def begin(self, command: Command[R], now_s: float) -> Exchange[R]:
+    def begin(self, request: Request[R], now_s: float) -> Exchange[R]:
         """Open an exchange."""
         self._number += 1
-        deadline_s = command.deadline_s if self._deadline_s is None else self._deadline_s
+        deadline_s = request.deadline_s if self._deadline_s is None else self._deadline_s
         exchange = Exchange(
-            self._number, command, whom=self._whom, now_s=now_s, retry_s=self._retry_s, deadline_s=deadline_s
+            self._number, request, whom=self._whom, now_s=now_s, retry_s=self._retry_s, deadline_s=deadline_s
         )
         self._open[exchange.id] = exchange
         return exchange

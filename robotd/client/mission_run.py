@@ -5,9 +5,9 @@ progress as well, so a reader that missed the one hears the other.
 """
 
 from robotd.client.feed import Gap
+from robotd.contract.answers import MissionStarted, Renewed
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
-from robotd.contract.requests import MissionStarted, Renewed
 from robotd.contract.topics import Published, Topic
 from robotd.core.errors import MissionError, ServerError
 

@@ -11,7 +11,7 @@ import contextlib
 import os
 import time
 from collections import deque
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Self, TypeVar
@@ -21,20 +21,19 @@ import zmq
 from robotd.client.endpoints import Endpoints, runtime_dir_of_user
 from robotd.client.exchange import Exchanges
 from robotd.client.feed import Feed, Gap, as_topics
-from robotd.client.mission_run import MISSION_TOPICS, MissionEvent, MissionRun, final_estimate
+from robotd.client.methods import Blocking, Methods
+from robotd.client.mission_run import MISSION_TOPICS, MissionEvent, MissionRun
 from robotd.client.sockets import connect_dealer, connect_subscriber
-from robotd.contract import requests as api
-from robotd.contract.area import Area
-from robotd.contract.estimate import PoseEstimate
-from robotd.contract.events import MapChanged, Status
-from robotd.contract.map_wire import unpack_map
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission, PriorHeading
-from robotd.contract.requests import Command, MapEntryInfo
+from robotd.contract.answers import MissionStarted
+from robotd.contract.events import Status
+from robotd.contract.missions import Mission
+from robotd.contract.request import Request
+from robotd.contract.requests import GetStatus
 from robotd.contract.topics import Published, Topic
 from robotd.core.errors import RequestTimeout, RobotdError, ServerError
-from robotd.core.pose import IDENTITY, Pose2
 
 R = TypeVar("R")
+V = TypeVar("V")
 
 _now_s = time.monotonic  # there is no loop here whose clock could be asked
 
@@ -73,7 +72,7 @@ class Subscription:
         self.close()
 
 
-class Client:
+class Client(Methods, Blocking):
     """Asks a daemon on this machine, and listens to it.
 
     Every request raises :class:`ServerError` when the daemon refuses and :class:`RequestTimeout` when it does not
@@ -96,7 +95,7 @@ class Client:
         self._endpoints = Endpoints(Path(runtime_dir or runtime_dir_of_user()))
         self._exchanges = Exchanges(str(self._endpoints), retry_s=retry_s, deadline_s=deadline_s)
         self._context = zmq.Context()
-        self._patience_s = api.GetStatus.deadline_s if deadline_s is None else deadline_s
+        self._patience_s = GetStatus.deadline_s if deadline_s is None else deadline_s
         self._commands = self._context.socket(zmq.DEALER)
         connect_dealer(self._commands, self._endpoints, retry_s=retry_s)
 
@@ -109,42 +108,6 @@ class Client:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.close()
-
-    def hello(self) -> api.HelloResult:
-        """Return who answers."""
-        return self.call(api.Hello())
-
-    def status(self) -> Status:
-        """Return the whole robot in one look."""
-        return self.call(api.GetStatus())
-
-    def config(self) -> str:
-        """Return the effective configuration, as TOML."""
-        return self.call(api.GetConfig()).text
-
-    def arm(self) -> None:
-        """Allow motion."""
-        self.call(api.Arm())
-
-    def disarm(self) -> None:
-        """Stop and forbid motion."""
-        self.call(api.Disarm())
-
-    def stop(self, reason: str = "stopped by a client") -> None:
-        """Stop now, for any reason: ``str`` of an exception will do, cut to the letters that are kept."""
-        self.call(api.Stop.because(reason))
-
-    def clear(self) -> None:
-        """Acknowledge latched faults."""
-        self.call(api.Clear())
-
-    def start(self, mission: Mission, lease_s: float | None = None) -> api.MissionStarted:
-        """Start a mission; it is stopped unless :meth:`renew` comes before the lease runs out, again and again."""
-        return self.call(api.start_command(mission, lease_s))
-
-    def renew(self, mission_id: int) -> api.Renewed:
-        """Keep a mission's lease alive, and learn how far it has come."""
-        return self.call(api.Renew(mission_id))
 
     def run_mission(self, mission: Mission, lease_s: float | None = None) -> Generator[MissionEvent, None, None]:
         """Start a mission, keep it alive, and yield what happens until it is done.
@@ -164,61 +127,6 @@ class Client:
                     self._abandon()
         run.check()
 
-    def make_map(
-        self,
-        name: str,
-        stops_m: tuple[tuple[float, float], ...] = (),
-        start: Pose2 = IDENTITY,
-        legs: Legs = Legs.PLANNED,
-    ) -> list[MissionEvent]:
-        """Make a new map and return what happened; ``MissionError`` if it was not done."""
-        return list(self.run_mission(MapMission(name, stops_m, start, legs)))
-
-    def localize(
-        self,
-        heading_rad: float | None = None,
-        *,
-        tie: bool = True,
-        heading: PriorHeading = PriorHeading.ODOMETRY,
-        within: Area | None = None,
-    ) -> PoseEstimate:
-        """Sweep here and return where it is; ``MissionError`` if it was not done. Without ``tie`` it only looks."""
-        mission = LocalizeMission(heading_rad, tie, heading, within)
-        return final_estimate(list(self.run_mission(mission)))
-
-    def drive_to(self, x_m: float, y_m: float, legs: Legs = Legs.PLANNED) -> list[MissionEvent]:
-        """Drive to a place on the map and return what happened; ``MissionError`` if it was not reached."""
-        return list(self.run_mission(DriveMission(x_m, y_m, legs)))
-
-    def map_save(self, name: str | None = None) -> MapEntryInfo:
-        """Store the map in use, under its own name or another."""
-        return self.call(api.MapSave(name))
-
-    def map_load(self, name: str, version: int | None = None, robot_in_map: Pose2 | None = None) -> MapEntryInfo:
-        """Take a stored map into use, and say where the robot is on it if that is known."""
-        pose = None if robot_in_map is None else api.PoseArgument.of(robot_in_map)
-        return self.call(api.MapLoad(name, version, pose))
-
-    def map_discard(self) -> None:
-        """Give up what nobody saved of the map in use."""
-        self.call(api.MapDiscard())
-
-    def map_list(self) -> tuple[MapEntryInfo, ...]:
-        """Return the stored maps."""
-        return self.call(api.ListMaps()).maps
-
-    def map_show(self, name: str | None = None, version: int | None = None) -> MapChanged:
-        """Return the whole map in use, or a stored one."""
-        return unpack_map(self.call(api.MapShow(name, version)))
-
-    def record_start(self, path: str | None = None) -> str | None:
-        """Start recording, to a new file below the daemon's ``recording.dir``, and return where."""
-        return self.call(api.RecordStart(path)).path
-
-    def record_stop(self) -> str | None:
-        """Close the recording and return where it is, or None if there was none."""
-        return self.call(api.RecordStop()).path
-
     def subscribe(self, *topics: str) -> Subscription:
         """Return the events of these topics, of all if none is named, from the last one of each on."""
         wanted = as_topics(topics)
@@ -226,9 +134,17 @@ class Client:
         connect_subscriber(socket, self._endpoints, wanted)
         return Subscription(socket)
 
-    def call(self, command: Command[R]) -> R:
-        """Return what a command answers."""
-        exchange = self._exchanges.begin(command, _now_s())
+    def ask(self, request: Request[R], value: Callable[[R], V]) -> V:
+        """Send a request and return what is wanted of its answer."""
+        return value(self.call(request))
+
+    def carry_out(self, mission: Mission, value: Callable[[list[MissionEvent]], V]) -> V:
+        """Run a mission to its end and return what is wanted of what happened; ``MissionError`` if it was not done."""
+        return value(list(self.run_mission(mission)))
+
+    def call(self, request: Request[R]) -> R:
+        """Send a request and return its answer."""
+        exchange = self._exchanges.begin(request, _now_s())
         try:
             while not exchange.is_answered:
                 if data := exchange.due(_now_s()):
@@ -262,7 +178,7 @@ class Client:
                     raise RequestTimeout(f"no status from {self._endpoints}")
             yield events
 
-    def _start_or_stop(self, mission: Mission, lease_s: float | None) -> api.MissionStarted:
+    def _start_or_stop(self, mission: Mission, lease_s: float | None) -> MissionStarted:
         try:
             return self.start(mission, lease_s)
         except Exception:

@@ -1,19 +1,23 @@
 """Where on the map the robot is known to be: a disk."""
 
 import math
-from dataclasses import dataclass
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+from robotd.contract.arguments import Coordinate
 
 
-@dataclass(frozen=True, slots=True)
-class Area:
+class Area(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A disk of the map."""
 
-    x_m: float
-    y_m: float
-    radius_m: float
+    x_m: Coordinate
+    y_m: Coordinate
+    radius_m: Annotated[float, Meta(gt=0.0, le=100_000.0)]
 
     def __post_init__(self) -> None:
-        """Refuse a disk that holds nothing."""
+        """Refuse a disk that holds nothing: bounds are looked at only where it comes over the wire."""
         if not (math.isfinite(self.x_m) and math.isfinite(self.y_m)):
             raise ValueError("x_m and y_m must be finite")
         if not (math.isfinite(self.radius_m) and self.radius_m > 0.0):

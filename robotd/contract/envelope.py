@@ -13,9 +13,11 @@ from typing import Any
 
 import msgpack
 import msgspec
-import numpy as np
 
-from robotd.contract.requests import COMMANDS, VERSION, Command, ErrorCode, Stop
+from robotd.contract.answers import ErrorCode
+from robotd.contract.plain import VERSION, to_plain
+from robotd.contract.request import Request
+from robotd.contract.requests import REQUESTS, Stop
 from robotd.contract.stopping import Pairs, means_stop, unpacked
 from robotd.core.errors import RemoteProtocolError, ServerError
 from robotd.core.text import printable
@@ -30,11 +32,11 @@ _KEYS = {"v", "id", "cmd", "args"}
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
-    """A request that says what it wants."""
+class NumberedRequest:
+    """A request that says what it wants, with the number that its answer will have."""
 
     id: int
-    command: Command[Any]
+    request: Request[Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,20 +58,20 @@ class Reply:
     result: dict[str, Any] | ServerError
 
 
-def decode_request(data: bytes, max_bytes: int) -> Request | BadRequest:
+def decode_request(data: bytes, max_bytes: int) -> NumberedRequest | BadRequest:
     """Return what a client asks. Never raises; time and memory are bounded by the length of ``data``."""
     request_id = None
     try:
         fields = _unpack(data, max_bytes)
         request_id = _id_of(fields)
         _check(fields, _MAX_DEPTH)
-        command = _command_of(fields)
+        request = _request_of(fields)
     except ServerError as error:
         return _stop_for_an_odd_reason(data) or _bad(request_id, error, means_stop=means_stop(data))
     if request_id is None:
         nameless = ServerError(ErrorCode.MALFORMED, "id must be a whole number from 0 to 2^63 - 1")
         return _bad(None, nameless, means_stop=means_stop(data))
-    return Request(request_id, command)
+    return NumberedRequest(request_id, request)
 
 
 def refuse_frames(frames: Sequence[bytes]) -> BadRequest:
@@ -83,7 +85,7 @@ def _bad(request_id: int | None, error: ServerError, *, means_stop: bool) -> Bad
     return BadRequest(request_id, ServerError(error.code, f"{error.message}{note}"), means_stop)
 
 
-def _stop_for_an_odd_reason(data: bytes) -> Request | None:
+def _stop_for_an_odd_reason(data: bytes) -> NumberedRequest | None:
     """Return a stop that is as it should be but for its reason: too long, bytes, no text at all."""
     top = unpacked(data)
     if not isinstance(top, Pairs) or len(top) != len(_KEYS):
@@ -96,12 +98,12 @@ def _stop_for_an_odd_reason(data: bytes) -> Request | None:
     is_one = (fields.get("cmd"), fields.get("v")) == (Stop.cmd.encode(), VERSION) and type(fields["v"]) is int
     if request_id is None or not is_one or list(arguments) != [b"reason"]:
         return None
-    return Request(request_id, Stop.because(arguments[b"reason"]))
+    return NumberedRequest(request_id, Stop.because(arguments[b"reason"]))
 
 
-def encode_request(request_id: int, command: Command[Any]) -> bytes:
+def encode_request(request_id: int, request: Request[Any]) -> bytes:
     """Return a request."""
-    return _pack({"v": VERSION, "id": request_id, "cmd": command.cmd, "args": to_plain(command)})
+    return _pack({"v": VERSION, "id": request_id, "cmd": request.cmd, "args": to_plain(request)})
 
 
 def encode_result(request_id: int, result: object) -> bytes:
@@ -130,17 +132,6 @@ def decode_reply(data: bytes) -> Reply:
         return Reply(fields["id"], ServerError(str(fields["error"]["code"]), str(fields["error"]["message"])))
     except (ValueError, KeyError, TypeError) as error:
         raise RemoteProtocolError(f"not a reply: {error!r}") from error
-
-
-def to_plain(value: object) -> Any:
-    """Return a struct or dataclass as maps, lists and numbers; ``bytes`` stay what they are."""
-    return msgspec.to_builtins(value, builtin_types=(bytes,), enc_hook=_number)
-
-
-def _number(value: object) -> Any:
-    if isinstance(value, np.generic):
-        return value.item()
-    raise NotImplementedError(f"{type(value).__name__} has no place on the wire")
 
 
 def _pack(fields: dict[str, Any]) -> bytes:
@@ -191,21 +182,21 @@ def _id_of(fields: dict[str, Any]) -> int | None:
     return request_id if type(request_id) is int and 0 <= request_id <= _MAX_ID else None
 
 
-def _command_of(fields: dict[str, Any]) -> Command[Any]:
+def _request_of(fields: dict[str, Any]) -> Request[Any]:
     version = fields.get("v")
     if type(version) is not int or version != VERSION:
         raise ServerError(ErrorCode.UNSUPPORTED_VERSION, f"this server speaks version {VERSION}, got {_shown(version)}")
     if unknown := [key for key in fields if key not in _KEYS]:
         raise ServerError(ErrorCode.MALFORMED, f"unknown key {_shown(unknown[0])}: a request has v, id, cmd and args")
     name = fields.get("cmd")
-    kind = COMMANDS.get(name) if isinstance(name, str) else None
+    kind = REQUESTS.get(name) if isinstance(name, str) else None
     if kind is None:
-        raise ServerError(ErrorCode.UNKNOWN_COMMAND, f"no command {_shown(name)}; there are {', '.join(COMMANDS)}")
+        raise ServerError(ErrorCode.UNKNOWN_COMMAND, f"no command {_shown(name)}; there are {', '.join(REQUESTS)}")
     try:
-        command: Command[Any] = msgspec.convert(_arguments_of(fields), kind, strict=True)
+        request: Request[Any] = msgspec.convert(_arguments_of(fields), kind, strict=True)
     except msgspec.ValidationError as error:
         raise ServerError(ErrorCode.BAD_ARGUMENT, f"{name}: {_in_words(error)}") from error
-    return Stop.because(command.reason) if isinstance(command, Stop) else command
+    return Stop.because(request.reason) if isinstance(request, Stop) else request
 
 
 def _arguments_of(fields: dict[str, Any]) -> Any:

@@ -1,9 +1,19 @@
-"""What a client can ask the robot to do."""
+"""The requests that start a mission, one for each kind of mission.
+
+What a kind is called, it is called here and nowhere else: its request on the wire (``cmd``), its missions in
+``mission_progress`` (``kind``), the robot's mode meanwhile (``doing``), its start in recordings (``noted``). The words
+differ, and stay, because clients and recordings know them.
+"""
 
 import enum
-from dataclasses import dataclass
+from typing import ClassVar, get_args
 
+import msgspec
+
+from robotd.contract.answers import MissionStarted
 from robotd.contract.area import Area
+from robotd.contract.arguments import Coordinate, Heading, LeaseTime, MapName, PoseArgument, Stops
+from robotd.contract.request import Request
 from robotd.core.pose import IDENTITY, Pose2
 
 
@@ -16,18 +26,6 @@ class Legs(enum.StrEnum):
     """In a straight line, as somebody knows it to be free."""
 
 
-@dataclass(frozen=True, slots=True)
-class MapMission:
-    """Make a new map, stop by stop."""
-
-    name: str
-    stops_m: tuple[tuple[float, float], ...]
-    """Where to stop after the start, ``(x, y)`` in the map frame. The start is always the first stop."""
-    start: Pose2 = IDENTITY
-    """Where the robot stands now: it defines the map frame."""
-    legs: Legs = Legs.PLANNED
-
-
 class PriorHeading(enum.StrEnum):
     """What is known of the robot's heading before it looks round."""
 
@@ -37,12 +35,47 @@ class PriorHeading(enum.StrEnum):
     """Nothing: all headings are tried."""
 
 
-@dataclass(frozen=True, slots=True)
-class LocalizeMission:
+class MissionRequest(Request[MissionStarted], frozen=True):
+    """A request that starts a mission; each has a ``lease_s``, and without one the daemon's."""
+
+    result, is_noted = MissionStarted, True
+    kind: ClassVar[str]
+    doing: ClassVar[str]
+    noted: ClassVar[str]
+
+
+class MapStart(MissionRequest, frozen=True):
+    """Make a new map, stop by stop."""
+
+    cmd, kind, doing, noted = "map_start", "map", "mapping", "MapMission"
+    deadline_s = 60.0  # the map in use may have to be kept first
+    name: MapName
+    stops_m: Stops = ()
+    """Where to stop after the start, ``(x, y)`` in the map frame. The start is always the first stop."""
+    start: PoseArgument = PoseArgument.of(IDENTITY)
+    """Where the robot stands now: it defines the map frame."""
+    legs: Legs = Legs.PLANNED
+    lease_s: LeaseTime | None = None
+
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        stops_m: tuple[tuple[float, float], ...] = (),
+        start: Pose2 = IDENTITY,
+        legs: Legs = Legs.PLANNED,
+    ) -> "MapStart":
+        """Return the request of a robot that stands at ``start``."""
+        return cls(name, stops_m, PoseArgument.of(start), legs)
+
+
+class Localize(MissionRequest, frozen=True):
     """Sweep at the present stop and say where it is on the map in use."""
 
-    heading_rad: float | None = None
+    cmd, kind, doing, noted = "localize", "localize", "localizing", "LocalizeMission"
+    heading_rad: Heading | None = None
     """The robot's heading in the map frame, if the client knows better than odometry."""
+    lease_s: LeaseTime | None = None
     tie: bool = True
     """Whether odometry is tied anew to the map where the robot is found; otherwise it is only said."""
     heading: PriorHeading = PriorHeading.ODOMETRY
@@ -55,13 +88,23 @@ class LocalizeMission:
             raise ValueError("heading_rad cannot be given where the heading is unknown")
 
 
-@dataclass(frozen=True, slots=True)
-class DriveMission:
+class DriveTo(MissionRequest, frozen=True):
     """Drive to a place on the map in use."""
 
-    x_m: float
-    y_m: float
+    cmd, kind, doing, noted = "drive_to", "drive", "driving", "DriveMission"
+    x_m: Coordinate
+    y_m: Coordinate
     legs: Legs = Legs.PLANNED
+    lease_s: LeaseTime | None = None
 
 
-Mission = MapMission | LocalizeMission | DriveMission
+Mission = MapStart | Localize | DriveTo
+
+
+def with_lease(mission: Mission, lease_s: float | None = None) -> Mission:
+    """Return a mission that asks for this lease; as it is if None."""
+    return mission if lease_s is None else msgspec.structs.replace(mission, lease_s=lease_s)
+
+
+MISSIONS: tuple[type[Mission], ...] = get_args(Mission)
+"""Every kind of mission there is."""

@@ -12,12 +12,12 @@ from typing import Any
 
 import msgpack
 
-from robotd.contract.requests import COMMANDS, Disarm, Stop
+from robotd.contract.requests import REQUESTS, Disarm, Stop
 
 STOPPING = (Stop, Disarm)
 """The commands that stop the robot."""
 _WORDS = tuple(kind.cmd.encode() for kind in STOPPING)
-_OTHERS = {name.encode() for name in COMMANDS} - set(_WORDS)
+_OTHERS = {name.encode() for name in REQUESTS} - set(_WORDS)
 _KEYS = {b"cmd", b"command"}
 _NAMED = re.compile(rb"(?:cmd|command)[^a-z]{0,8}([a-z0-9_]+)")
 """Where unreadable bytes name a command: after the key, between whatever msgpack or JSON puts there."""

@@ -10,13 +10,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import msgpack
-import msgspec
 
-from robotd.contract.envelope import to_plain
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import Event, MapChanged, MissionProgress, Status, SweepDone, SweepProgress
-from robotd.contract.map_wire import MapPayload, pack_map, unpack_map
-from robotd.contract.requests import VERSION
+from robotd.contract.plain import VERSION, from_plain, to_plain
 from robotd.core.errors import RemoteProtocolError
 from robotd.core.pose import Odometry
 
@@ -82,8 +79,7 @@ class Message:
 def to_wire(event: Published) -> tuple[Topic, dict[str, Any]]:
     """Return the topic of an event and its fields."""
     topic, name = EVENTS[type(event)]
-    fields = to_plain(pack_map(event) if isinstance(event, MapChanged) else event)
-    return topic, {"event": name, **fields}
+    return topic, {"event": name, **to_plain(event)}
 
 
 def from_wire(fields: dict[str, Any]) -> Published | None:
@@ -96,12 +92,9 @@ def from_wire(fields: dict[str, Any]) -> Published | None:
     if kind is None:
         return None
     try:
-        if kind is MapChanged:
-            return unpack_map(msgspec.convert(fields, MapPayload, strict=True))
-        event: Published = msgspec.convert(fields, kind, strict=True)
-    except (msgspec.ValidationError, ValueError) as error:
+        return from_plain(kind, fields)
+    except ValueError as error:
         raise RemoteProtocolError(f"{fields['event']}: {error}") from error
-    return event
 
 
 def encode_frame(topic: Topic, session: str, seq: int, fields: dict[str, Any]) -> bytes:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.contract.events import MissionPhase
-from robotd.contract.missions import DriveMission, Legs
+from robotd.contract.missions import DriveTo, Legs
 from robotd.core.errors import MissionError
 from robotd.core.pose import Odometry, Pose2
 from robotd.grid.latest import HIT
@@ -58,8 +58,8 @@ def _plan(
     return plan(grid, start, goal_m, settings, latest == HIT)
 
 
-async def run_driving(context: MissionContext, place: MapInUse, mission: DriveMission, report: Reporter) -> str:
-    """Carry out a :class:`DriveMission`; return what to tell the client."""
+async def run_driving(context: MissionContext, place: MapInUse, mission: DriveTo, report: Reporter) -> str:
+    """Carry out a :class:`DriveTo`; return what to tell the client."""
     report.at(MissionPhase.DRIVING)
     arrived = await drive_to(context, place, mission.x_m, mission.y_m, mission.legs)
     pose = context.whereabouts.pose_of(arrived)

@@ -9,7 +9,7 @@ import math
 
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import MissionPhase
-from robotd.contract.missions import LocalizeMission, PriorHeading
+from robotd.contract.missions import Localize, PriorHeading
 from robotd.core.angles import wrap_rad
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
@@ -30,9 +30,9 @@ _ESTIMATES = 4
 
 
 async def run_localizing(
-    context: MissionContext, place: MapInUse, mission: LocalizeMission, report: Reporter, number: int
+    context: MissionContext, place: MapInUse, mission: Localize, report: Reporter, number: int
 ) -> PoseEstimate:
-    """Carry out a :class:`LocalizeMission`: sweep, estimate, and tie odometry to the map if the answer is unique."""
+    """Carry out a :class:`Localize`: sweep, estimate, and tie odometry to the map if the answer is unique."""
     settings = context.settings
     here = await context.hold.through(lambda: standing(context.robot, settings.sweep.settle_s, settings.driving))
     headings_rad = _headings(context, mission, here)
@@ -59,7 +59,7 @@ def _learn(context: MissionContext, in_odom: Pose2, estimate: PoseEstimate) -> N
     context.whereabouts.looked(estimate, in_odom, near_m=near_m, near_rad=near_rad)
 
 
-def _headings(context: MissionContext, mission: LocalizeMission, here: Odometry) -> tuple[float, ...]:
+def _headings(context: MissionContext, mission: Localize, here: Odometry) -> tuple[float, ...]:
     """Return the headings to try, ascending."""
     settings = context.settings.localization
     if mission.heading is PriorHeading.UNKNOWN:
@@ -86,7 +86,7 @@ class Narrowing:
 
     @classmethod
     async def begin(
-        cls, context: MissionContext, place: MapInUse, mission: LocalizeMission, headings_rad: tuple[float, ...]
+        cls, context: MissionContext, place: MapInUse, mission: Localize, headings_rad: tuple[float, ...]
     ) -> "Narrowing":
         """Make the map ready, and try these headings on it."""
         job = place.readiness.hand_over(place.grid, context.settings.localization, context.settings.error_model)

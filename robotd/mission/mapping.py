@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from robotd.contract.events import MissionPhase
-from robotd.contract.missions import MapMission
+from robotd.contract.missions import MapStart
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
@@ -33,8 +33,8 @@ class MappingResult:
         return f"{self.swept} stops swept{missed}{failed}"
 
 
-async def run_mapping(context: MissionContext, place: MapInUse, mission: MapMission, report: Reporter) -> MappingResult:
-    """Carry out a :class:`MapMission` on a fresh map that odometry is already tied to.
+async def run_mapping(context: MissionContext, place: MapInUse, mission: MapStart, report: Reporter) -> MappingResult:
+    """Carry out a :class:`MapStart` on a fresh map that odometry is already tied to.
 
     A stop that cannot be reached is said at once, left out, and named in the result.
     """

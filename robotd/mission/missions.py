@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from robotd.contract.estimate import PoseEstimate
-from robotd.contract.missions import DriveMission, LocalizeMission, MapMission, Mission
+from robotd.contract.missions import DriveTo, Localize, MapStart, Mission
 from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.map_stops import MapStops
@@ -42,9 +42,9 @@ class Kind:
 
 
 KINDS: dict[type[Mission], Kind] = {
-    MapMission: Kind("map", Occasion.START_MAPPING, lambda mission: 1 + len(mission.stops_m)),
-    LocalizeMission: Kind("localize", Occasion.START_LOCALIZING, lambda _: 1, needs_base=False),
-    DriveMission: Kind("drive", Occasion.START_DRIVING, lambda _: 1),
+    MapStart: Kind("map", Occasion.START_MAPPING, lambda mission: 1 + len(mission.stops_m)),
+    Localize: Kind("localize", Occasion.START_LOCALIZING, lambda _: 1, needs_base=False),
+    DriveTo: Kind("drive", Occasion.START_DRIVING, lambda _: 1),
 }
 
 
@@ -56,17 +56,17 @@ async def carry_out(host: Host, context: MissionContext, mission: Mission, repor
         DeviceError, LinkTimeout, TransportError: a device failed; the robot must be stopped.
     """
     match mission:
-        case MapMission():
+        case MapStart():
             place, tie = await _begin_map(context, mission, report)
             host.adopt(place, tie)
             return str(await run_mapping(context, place, mission, report))
-        case LocalizeMission():
+        case Localize():
             place = _place(context)
             estimate = await looking_again(
                 context, report, lambda: run_localizing(context, place, mission, report, next(context.sweep_numbers))
             )
             return describe(estimate)
-        case DriveMission():
+        case DriveTo():
             return await run_driving(context, _place(context), mission, report)
 
 
@@ -77,7 +77,7 @@ def _place(context: MissionContext) -> MapInUse:
     return place
 
 
-async def _begin_map(context: MissionContext, mission: MapMission, report: Reporter) -> tuple[MapInUse, Tie]:
+async def _begin_map(context: MissionContext, mission: MapStart, report: Reporter) -> tuple[MapInUse, Tie]:
     settings = context.settings.grid
     points_m = ((mission.start.x_m, mission.start.y_m), *mission.stops_m)
     try:
@@ -88,7 +88,7 @@ async def _begin_map(context: MissionContext, mission: MapMission, report: Repor
     silence_s = context.settings.driving.silence_s
     here = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
     place = MapInUse(f"new-{report.mission_id}", mission.name, grid, digest, MapStops(settings))
-    return place, Tie.between(mission.start, here.in_odom)
+    return place, Tie.between(mission.start.pose, here.in_odom)
 
 
 def _blank(spec: GridSpec, settings: GridSettings) -> tuple[OccupancyGrid, str]:

@@ -1,12 +1,14 @@
-"""Requests as the journal noted them, read back: what does not fit is refused, and no map takes more than its size."""
+"""Requests as the journal notes them, and read back: what does not fit is refused, no map takes more than its size."""
 
 import base64
 import json
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 import msgspec
 
-from robotd.contract.missions import DriveMission, LocalizeMission, MapMission, Mission
+from robotd.contract.missions import MISSIONS, Mission, MissionRequest, with_lease
+from robotd.contract.request import Request
+from robotd.contract.requests import REQUESTS
 from robotd.core.errors import RecordingError
 from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.grid_spec import GridSpec
@@ -18,18 +20,6 @@ _QUOTED = 80
 """So many characters of what was wrong are told."""
 
 T = TypeVar("T")
-
-
-class NotedStop(msgspec.Struct):
-    """A stop, and why."""
-
-    reason: str
-
-
-class NotedRenewal(msgspec.Struct):
-    """A mission whose lease was renewed."""
-
-    mission_id: int
 
 
 class NotedMap(msgspec.Struct):
@@ -47,27 +37,43 @@ class _PackedGrid(msgspec.Struct):
     """Base64 of the packed cells."""
 
 
-class NotedStart(msgspec.Struct):
-    """A mission that was started."""
-
-    kind: Literal["MapMission", "LocalizeMission", "DriveMission"]
+class _NotedStart(msgspec.Struct):
+    kind: str
     mission: dict[str, Any]
     lease_s: float
 
 
-class _Nothing(msgspec.Struct):
-    """A request without arguments."""
+_START, _USE_MAP = "start", "use_map"
+_MISSIONS = {kind.noted: kind for kind in MISSIONS}
+_REQUESTS = {kind.cmd: kind for kind in REQUESTS.values() if kind.is_noted and kind not in MISSIONS}
+_NAMES = (*_REQUESTS, _START, _USE_MAP)
 
 
-_KINDS: dict[str, type[Mission]] = {kind.__name__: kind for kind in (MapMission, LocalizeMission, DriveMission)}
-_ARGUMENTS: dict[str, type[msgspec.Struct]] = {
-    "arm": _Nothing,
-    "clear": _Nothing,
-    "stop": NotedStop,
-    "renew": NotedRenewal,
-    "start": NotedStart,
-    "use_map": NotedMap,
-}
+def noted(request: Request[Any]) -> tuple[str, dict[str, Any]]:
+    """Return the name and the arguments that a request is noted by."""
+    if isinstance(request, MissionRequest):
+        fields = msgspec.to_builtins(request)
+        return _START, {"kind": request.noted, "mission": fields, "lease_s": fields.pop("lease_s")}
+    return request.cmd, msgspec.to_builtins(request)
+
+
+def request_of(name: str, arguments: dict[str, Any]) -> "Request[Any] | NotedMap":
+    """Return a request that was noted.
+
+    Raises:
+        RecordingError: there is no such request, or its arguments do not fit; says what was expected.
+    """
+    if name not in _NAMES:
+        raise RecordingError(f"unknown request {name[:_QUOTED]!r}, expected one of {', '.join(_NAMES)}")
+    _require_finite(name, arguments)
+    if name == _USE_MAP:
+        return _converted(NotedMap, name, arguments)
+    if name == _START:
+        return _mission_of(_converted(_NotedStart, name, arguments))
+    kind = _REQUESTS[name]
+    if missing := [field for field in kind.__struct_fields__ if field not in arguments]:  # what is noted is whole
+        raise RecordingError(f"request {name!r}: expected {', '.join(missing)}")
+    return _converted(kind, name, arguments)
 
 
 def check_noted(name: str, arguments: dict[str, Any]) -> None:
@@ -76,30 +82,18 @@ def check_noted(name: str, arguments: dict[str, Any]) -> None:
     Raises:
         RecordingError: there is no such request, or its arguments do not fit; says what was expected.
     """
-    if name not in _ARGUMENTS:
-        raise RecordingError(f"unknown request {name[:_QUOTED]!r}, expected one of {', '.join(_ARGUMENTS)}")
-    noted = noted_as(_ARGUMENTS[name], name, arguments)
-    if isinstance(noted, NotedStart):
-        mission_of(noted)
-    elif isinstance(noted, NotedMap):
-        grid_of(noted)
+    request = request_of(name, arguments)
+    if isinstance(request, NotedMap):
+        grid_of(request)
 
 
-def noted_as(kind: type[T], name: str, arguments: dict[str, Any]) -> T:
-    """Return the arguments of a request.
-
-    Raises:
-        RecordingError: they are not what that request takes.
-    """
-    _require_finite(name, arguments)
-    return _converted(kind, name, arguments)
-
-
-def mission_of(start: NotedStart) -> Mission:
-    """Return the mission that was started; RecordingError if that is none."""
+def _mission_of(start: _NotedStart) -> Mission:
     if not 0.0 < start.lease_s <= _LEASE_MAX_S:
         raise RecordingError(f"request 'start': expected a lease of 0 to {_LEASE_MAX_S:g} s, got {start.lease_s:g} s")
-    return _converted(_KINDS[start.kind], "start", start.mission)
+    if start.kind not in _MISSIONS:
+        kinds = ", ".join(_MISSIONS)
+        raise RecordingError(f"request 'start': expected one of {kinds}, got {start.kind[:_QUOTED]!r}")
+    return with_lease(_converted(_MISSIONS[start.kind], _START, start.mission), start.lease_s)
 
 
 def grid_of(noted: NotedMap) -> OccupancyGrid:

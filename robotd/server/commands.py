@@ -10,9 +10,18 @@ import asyncio
 import logging
 from typing import Any
 
-from robotd.contract.envelope import BadRequest, Request, decode_request, encode_error, encode_result, refuse_frames
-from robotd.contract.map_wire import MapPayload
-from robotd.contract.requests import Arm, Command, Done, ErrorCode, Stop
+from robotd.contract.answers import Done, ErrorCode
+from robotd.contract.envelope import (
+    BadRequest,
+    NumberedRequest,
+    decode_request,
+    encode_error,
+    encode_result,
+    refuse_frames,
+)
+from robotd.contract.events import MapChanged
+from robotd.contract.request import Request
+from robotd.contract.requests import Arm, Disarm, Stop
 from robotd.contract.stopping import STOPPING
 from robotd.core.errors import RobotdError, ServerError
 from robotd.server.handlers import Handlers, as_refusal
@@ -37,7 +46,7 @@ class Commands:
         self._max_bytes = max_bytes
         self._max_pending = max_pending
         self._replies = Replies(remembered)
-        self._pending: dict[asyncio.Task[None], Command[Any]] = {}
+        self._pending: dict[asyncio.Task[None], Request[Any]] = {}
         self._overtaken: set[asyncio.Task[Any]] = set()
         self._log = RequestLog()
 
@@ -50,36 +59,35 @@ class Commands:
 
     async def _take(self, letter: Letter, group: asyncio.TaskGroup) -> None:
         one_frame = len(letter.frames) == 1
-        request = decode_request(letter.frames[0], self._max_bytes) if one_frame else refuse_frames(letter.frames)
-        if isinstance(request, BadRequest):
-            if request.means_stop:
+        numbered = decode_request(letter.frames[0], self._max_bytes) if one_frame else refuse_frames(letter.frames)
+        if isinstance(numbered, BadRequest):
+            if numbered.means_stop:
                 self._obey(_UNREADABLE, letter)
-            await self._router.answer(letter.route, encode_error(request.id, request.error))
+            await self._router.answer(letter.route, encode_error(numbered.id, numbered.error))
             return
-        is_stop = isinstance(request.command, STOPPING)
-        if is_stop:
-            self._obey(request.command, letter)
-        reply = self._answer_at_once(request, letter, is_stop=is_stop)
+        if is_stop := isinstance(numbered.request, STOPPING):
+            self._obey(numbered.request, letter)
+        reply = self._answer_at_once(numbered, letter, is_stop=is_stop)
         if reply is not None:
             await self._router.answer(letter.route, reply)
-        elif is_stop or not self._replies.is_under_way((letter.identity, request.id)):
-            self._begin(request, letter, group)
+        elif is_stop or not self._replies.is_under_way((letter.identity, numbered.id)):
+            self._begin(numbered, letter, group)
 
-    def _obey(self, command: Command[Any], letter: Letter) -> None:
+    def _obey(self, stop: Stop | Disarm, letter: Letter) -> None:
         """Stop the robot, whatever is to be answered."""
         for task, other in self._pending.items():
             if isinstance(other, Arm):
                 self._overtaken.add(task)
                 task.cancel()
         try:
-            self._handlers.halt(command)
+            self._handlers.halt(stop)
         except Exception:  # what takes the next stop must live on
-            log.exception("%s", command.cmd)
-        self._log.obeyed(letter.sender, command)
+            log.exception("%s", stop.cmd)
+        self._log.obeyed(letter.sender, stop)
 
-    def _answer_at_once(self, request: Request, letter: Letter, *, is_stop: bool) -> bytes | None:
+    def _answer_at_once(self, numbered: NumberedRequest, letter: Letter, *, is_stop: bool) -> bytes | None:
         """Return the reply to a request for which nothing more is to be done; None for all others."""
-        asker = (letter.identity, request.id)
+        asker = (letter.identity, numbered.id)
         if not is_stop and self._replies.is_under_way(asker):
             return None
         given = None if is_stop else self._replies.given(asker)
@@ -89,49 +97,49 @@ class Commands:
         ):
             return given
         if is_stop:
-            return encode_result(request.id, Done())  # it was obeyed; only nobody waits for the mission's last word
-        return encode_error(request.id, ServerError(ErrorCode.BUSY, f"{self._max_pending} requests are under way"))
+            return encode_result(numbered.id, Done())  # it was obeyed; only nobody waits for the mission's last word
+        return encode_error(numbered.id, ServerError(ErrorCode.BUSY, f"{self._max_pending} requests are under way"))
 
-    def _begin(self, request: Request, letter: Letter, group: asyncio.TaskGroup) -> None:
-        self._replies.begin((letter.identity, request.id))
-        task = group.create_task(self._serve(request, letter), name=f"command {request.command.cmd}")
-        self._pending[task] = request.command
+    def _begin(self, numbered: NumberedRequest, letter: Letter, group: asyncio.TaskGroup) -> None:
+        self._replies.begin((letter.identity, numbered.id))
+        task = group.create_task(self._serve(numbered, letter), name=f"request {numbered.request.cmd}")
+        self._pending[task] = numbered.request
         task.add_done_callback(self._forget)
 
     def _forget(self, task: asyncio.Task[None]) -> None:
         del self._pending[task]
         self._overtaken.discard(task)
 
-    async def _serve(self, request: Request, letter: Letter) -> None:
-        asker: Asker = (letter.identity, request.id)
+    async def _serve(self, numbered: NumberedRequest, letter: Letter) -> None:
+        asker: Asker = (letter.identity, numbered.id)
         reply = None
         try:
-            reply = await self._carry_out(request, letter)
+            reply = await self._carry_out(numbered, letter)
         finally:
-            is_worth_it = not (request.command.only_looks or isinstance(request.command, STOPPING))
+            is_worth_it = not (numbered.request.only_looks or isinstance(numbered.request, STOPPING))
             self._replies.end(asker, reply if is_worth_it else None)
         await self._router.answer(letter.route, reply)
 
-    async def _carry_out(self, request: Request, letter: Letter) -> bytes:
+    async def _carry_out(self, numbered: NumberedRequest, letter: Letter) -> bytes:
         try:
-            result = await self._handlers.carry_out(request.command)
-            if isinstance(result, MapPayload):
-                reply = await asyncio.to_thread(encode_result, request.id, result)  # megabytes
+            result = await self._handlers.carry_out(numbered.request)
+            if isinstance(result, MapChanged):
+                reply = await asyncio.to_thread(encode_result, numbered.id, result)  # megabytes
             else:
-                reply = encode_result(request.id, result)
+                reply = encode_result(numbered.id, result)
         except asyncio.CancelledError:
             if asyncio.current_task() not in self._overtaken:
                 raise
-            return self._refuse(request, letter, _OVERTAKEN)
+            return self._refuse(numbered, letter, _OVERTAKEN)
         except RobotdError as error:
-            return self._refuse(request, letter, as_refusal(error))
+            return self._refuse(numbered, letter, as_refusal(error))
         except Exception as error:
-            log.exception("command %s", request.command.cmd)
+            log.exception("request %s", numbered.request.cmd)
             internal = ServerError(ErrorCode.INTERNAL, f"internal error: {type(error).__name__}")
-            return self._refuse(request, letter, internal)
-        self._log.done(letter.sender, request.command, result)
+            return self._refuse(numbered, letter, internal)
+        self._log.done(letter.sender, numbered.request, result)
         return reply
 
-    def _refuse(self, request: Request, letter: Letter, error: ServerError) -> bytes:
-        self._log.refused(letter.sender, request.command, error)
-        return encode_error(request.id, error)
+    def _refuse(self, numbered: NumberedRequest, letter: Letter, error: ServerError) -> bytes:
+        self._log.refused(letter.sender, numbered.request, error)
+        return encode_error(numbered.id, error)

@@ -5,6 +5,7 @@ import logging
 from typing import NoReturn
 
 from robotd.contract.events import Event, MapChanged
+from robotd.contract.requests import GetStatus, MapShow
 from robotd.contract.topics import LogEntry, Published, Topic, to_wire
 from robotd.core.broadcast import Subscription
 from robotd.core.errors import RobotdError
@@ -49,7 +50,8 @@ class Publisher:
 
     async def _follow_events(self) -> NoReturn:
         decimator = Decimator(self._routine_hz)
-        await self._publish(self._control.status)
+        status = await self._control.perform(GetStatus())
+        await self._publish(status)
         while True:
             event = await self._events.get()
             if isinstance(event, MapChanged):
@@ -81,7 +83,7 @@ class Publisher:
     async def _follow_maps(self) -> NoReturn:
         while True:
             change = await self._map_queue.get()
-            change = self._whole() if change is None else change
+            change = await self._whole() if change is None else change
             if change is not None:
                 await self._publish_map(change)
 
@@ -91,8 +93,8 @@ class Publisher:
         except Exception as error:  # no memory, no thread: the next one may have them
             self._complain(change, error)
 
-    def _whole(self) -> MapChanged | None:
+    async def _whole(self) -> MapChanged | None:
         try:
-            return self._control.whole_map()
+            return await self._control.perform(MapShow())
         except RobotdError:  # no map in use: whoever joined hears of the first one when it comes
             return None

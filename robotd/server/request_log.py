@@ -5,7 +5,8 @@ from typing import Any
 
 import msgspec
 
-from robotd.contract.requests import Command, MapEntryInfo, MissionStarted, RecordingFile
+from robotd.contract.answers import MapEntryInfo, MissionStarted, RecordingFile
+from robotd.contract.request import Request
 from robotd.contract.stopping import STOPPING
 from robotd.core.errors import ServerError
 from robotd.core.log_limit import LogLimit
@@ -24,31 +25,31 @@ class RequestLog:
         self._done = LogLimit(burst=_BURST)
         self._refused = LogLimit(burst=_BURST)
 
-    def obeyed(self, sender: str, command: Command[Any]) -> None:
+    def obeyed(self, sender: str, request: Request[Any]) -> None:
         """Note a stop, which was obeyed."""
-        _say(self._stops, f"{sender}: {in_words(command)}")
+        _say(self._stops, f"{sender}: {in_words(request)}")
 
-    def done(self, sender: str, command: Command[Any], result: object) -> None:
+    def done(self, sender: str, request: Request[Any], result: object) -> None:
         """Note what was done; what only looks goes without saying, and a stop was noted."""
-        if not (command.only_looks or isinstance(command, STOPPING)):
-            _say(self._done, f"{sender}: {in_words(command)}: {_came_to(result)}")
+        if not (request.only_looks or isinstance(request, STOPPING)):
+            _say(self._done, f"{sender}: {in_words(request)}: {_came_to(result)}")
 
-    def refused(self, sender: str, command: Command[Any], error: ServerError) -> None:
+    def refused(self, sender: str, request: Request[Any], error: ServerError) -> None:
         """Note what was not done, and why."""
-        _say(self._refused, f"{sender}: {in_words(command)}: {printable(str(error))}")
+        _say(self._refused, f"{sender}: {in_words(request)}: {printable(str(error))}")
 
 
-def in_words(command: Command[Any]) -> str:
+def in_words(request: Request[Any]) -> str:
     """Return a request with what it asks beyond the defaults.
 
     >>> from robotd.contract.requests import DriveTo
     >>> in_words(DriveTo(1.5, 2.0))
     'drive_to x_m=1.5 y_m=2.0'
     """
-    defaults = {field.name: field.default for field in msgspec.structs.fields(type(command))}
-    asked = {name: value for name, value in msgspec.structs.asdict(command).items() if value != defaults[name]}
+    defaults = {field.name: field.default for field in msgspec.structs.fields(type(request))}
+    asked = {name: value for name, value in msgspec.structs.asdict(request).items() if value != defaults[name]}
     plain = msgspec.to_builtins(asked)
-    return printable(" ".join((command.cmd, *(f"{name}={value}" for name, value in plain.items()))), 300)
+    return printable(" ".join((request.cmd, *(f"{name}={value}" for name, value in plain.items()))), 300)
 
 
 def _came_to(result: object) -> str:

@@ -14,6 +14,7 @@ from robotd.config import loads
 from robotd.contract.events import Event
 from robotd.contract.missions import Mission
 from robotd.contract.modes import Mode
+from robotd.contract.requests import RecordStart, RecordStop, Stop
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
@@ -137,7 +138,7 @@ async def bench(
     compute: Compute = worker or AtOnce()  # type: ignore[assignment]  # object for any T: it hands back what it is given
     async with cables(robot) as laid:
         daemon = compose(config, connects_of(laid), compute, journal)
-        await daemon.control.start_recording(None)
+        await daemon.control.perform(RecordStart())
         with daemon.control.events.subscribe(depth=100_000) as events:
             parts = [asyncio.create_task(part, name=name) for name, part in daemon.parts().items()]
             one = Bench(robot, daemon, laid, events, parts, StopWatch(journal, daemon))
@@ -147,6 +148,6 @@ async def bench(
                 await until_ready(daemon)
                 yield one
             finally:
-                await daemon.control.stop("the test is over")
+                await daemon.control.perform(Stop("the test is over"))
                 await one.end()
-                await daemon.control.stop_recording()
+                await daemon.control.perform(RecordStop())

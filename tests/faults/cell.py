@@ -9,6 +9,7 @@ from pathlib import Path
 
 from firmware_proto.common import BoardState
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, Clear, MapLoad, MapSave, Stop
 from robotd.core.clock import NS_PER_S, now_ns, run_virtual
 from robotd.core.errors import RobotdError
 from robotd.recording.reader import read
@@ -101,7 +102,7 @@ class _Cell:
         """Return when it stopped by itself, or stop it as a client does, while the fault lasts."""
         stopped_ns = now_ns() if stop_s is None else began_ns + round(stop_s * NS_PER_S)
         if stop_s is None:
-            await it.daemon.control.stop("enough")
+            await it.daemon.control.perform(Stop("enough"))
         await asyncio.sleep(self._noticed_s + REST_AFTER_STOP_S)
         return stopped_ns
 
@@ -135,17 +136,17 @@ class _Cell:
         if self._state.startswith("map"):
             self._check(place.generation >= 1, "the map so far is gone")
         digest = place.grid.digest()
-        entry = await it.daemon.control.save_map("kept")
-        await it.daemon.control.load_map(entry.name, None, None)
+        entry = await it.daemon.control.perform(MapSave("kept"))
+        await it.daemon.control.perform(MapLoad.of(entry.name, None, None))
         self._check(it.daemon.supervisor.whereabouts.map_in_use is not place, "the saved map did not come into use")
         loaded = it.daemon.supervisor.whereabouts.map_in_use
         self._check(loaded is not None and loaded.grid.digest() == digest, "the saved map is another one")
 
     async def _check_arming(self, it: Bench) -> None:
         if it.mode is Mode.FAULT:
-            await it.daemon.control.clear()
+            await it.daemon.control.perform(Clear())
         self._check(it.mode is Mode.DISARMED, f"it is {it.mode}")
-        await it.daemon.control.arm()
+        await it.daemon.control.perform(Arm())
         await asyncio.sleep(0.2)
         self._check(it.mode is Mode.IDLE, f"armed, it is {it.mode}: {it.daemon.control.status.reason}")
 

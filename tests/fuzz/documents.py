@@ -9,7 +9,7 @@ from typing import Any
 
 from robotd.cli.exact_inputs import read_beams, read_map
 from robotd.config import Config, effective_text, loads
-from robotd.contract import requests as api
+from robotd.contract.arguments import PoseArgument
 from robotd.contract.envelope import (
     BadRequest,
     decode_reply,
@@ -18,6 +18,9 @@ from robotd.contract.envelope import (
     encode_request,
     encode_result,
 )
+from robotd.contract.missions import DriveTo, Localize, MapStart
+from robotd.contract.request import Request
+from robotd.contract.requests import Hello, MapLoad, RecordStart, Stop
 from robotd.core.errors import ConfigError, MapError, RecordingError, RemoteProtocolError, RobotdError, ServerError
 from robotd.core.grid_spec import GridSpec
 from robotd.hardware.link.tap import Direction
@@ -56,14 +59,14 @@ def _text(data: bytes) -> str:
 
 
 def _requests() -> list[bytes]:
-    commands: list[api.Command[Any]] = [
-        api.Hello(),
-        api.Stop("because"),
-        api.MapStart("lab-2", ((1.0, 2.0), (3.0, -4.5)), api.PoseArgument(1.0, 0.0, 0.5)),
-        api.Localize(-0.75, 1.0),
-        api.DriveTo(1.5, -2.5),
-        api.MapLoad("a", 3, api.PoseArgument(0.0, 1.0)),
-        api.RecordStart("somewhere/new.mcap"),
+    commands: list[Request[Any]] = [
+        Hello(),
+        Stop("because"),
+        MapStart("lab-2", ((1.0, 2.0), (3.0, -4.5)), PoseArgument(1.0, 0.0, 0.5)),
+        Localize(-0.75, 1.0),
+        DriveTo(1.5, -2.5),
+        MapLoad("a", 3, PoseArgument(0.0, 1.0)),
+        RecordStart("somewhere/new.mcap"),
     ]
     return [encode_request(number, command) for number, command in enumerate(commands)]
 

@@ -11,6 +11,7 @@ from robotd.app.daemon import new_journal
 from robotd.config import Config
 from robotd.contract.events import Event, MissionPhase, MissionProgress
 from robotd.contract.missions import Mission
+from robotd.contract.requests import Arm, Stop
 from robotd.core.broadcast import Subscription
 from robotd.mission.compute import Compute
 from robotd.recording.preroll import PrerollJournal
@@ -68,10 +69,10 @@ async def living(
             try:
                 await until_ready(daemon)
                 if armed:
-                    await daemon.control.arm()
+                    await daemon.control.perform(Arm())
                 yield Living(daemon, robot, journal, events)
             finally:
-                await daemon.control.stop("the test is over")
+                await daemon.control.perform(Stop("the test is over"))
                 for task in tasks:
                     task.cancel()
                 await asyncio.gather(*tasks, return_exceptions=True)

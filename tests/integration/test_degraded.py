@@ -13,8 +13,9 @@ from robotd.config import Config
 from robotd.contract.device_status import LinkState
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.contract.missions import LocalizeMission, MapMission
+from robotd.contract.missions import Localize, MapStart
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, Clear, Stop
 from robotd.core.errors import MissionError
 from robotd.mission.compute import Compute
 from robotd.mission.stop_and_sweep import SweepSettings
@@ -60,7 +61,7 @@ async def test_a_weak_rangefinder_leaves_a_map_and_it_is_said_how_many_readings_
     robot = office()
     spoil(robot, good=4, of=5)
     async with live(robot, QUICK) as it:
-        said = await it.done(MapMission("office", robot.stops_m[:1], robot.start))
+        said = await it.done(MapStart.of("office", robot.stops_m[:1], robot.start))
         assert it.daemon.supervisor.whereabouts.map_in_use is not None
         assert it.daemon.supervisor.whereabouts.map_in_use.generation == 2
     assert [text for text in messages(said) if "stop" not in text] == [
@@ -76,10 +77,10 @@ async def test_a_weak_rangefinder_leaves_a_map_and_it_is_said_how_many_readings_
 async def test_a_rangefinder_that_fails_too_often_ends_the_mission_not_the_map(live: Live) -> None:
     robot = office()
     async with live(robot, QUICK) as it:
-        await it.done(MapMission("office", (), robot.start))
+        await it.done(MapStart.of("office", (), robot.start))
         board = spoil(robot, good=1, of=5)
         place = it.daemon.supervisor.whereabouts.map_in_use
-        said, end = await it.do(LocalizeMission())
+        said, end = await it.do(Localize())
         assert end.phase is MissionPhase.FAILED
         assert end.message == "the rangefinder failed at 61 of 86 readings, the last was weak"
         assert it.daemon.supervisor.mode is Mode.IDLE
@@ -96,7 +97,7 @@ async def test_a_rangefinder_that_answers_nothing_is_given_up_by_the_setting(liv
         board = own_board(robot, "rangefinder")
         assert isinstance(board, RangefinderBoard)
         board._plant.shoot = lambda at_us: ShotAnswer(ShotStatus.OK, 1.0, 9, 10_000_000)  # type: ignore[method-assign]  # takes for ever
-        _, end = await it.do(MapMission("office", (), robot.start))
+        _, end = await it.do(MapStart.of("office", (), robot.start))
         assert end.message == "the rangefinder failed at 13 of 13 readings, the last was device_error"
 
 
@@ -120,7 +121,7 @@ async def test_a_head_that_loses_steps_is_reset_and_the_sweep_taken_again(live: 
     robot = office(Dialects(pantilt="ptu"))
     async with live(robot, config_for(Dialects(pantilt="ptu"))) as it:
         losing = asyncio.create_task(lose_steps(it, 2))
-        said = await it.done(MapMission("office", (), robot.start))
+        said = await it.done(MapStart.of("office", (), robot.start))
         await losing
         assert it.daemon.supervisor.whereabouts.map_in_use is not None
         assert it.daemon.supervisor.whereabouts.map_in_use.generation == 1
@@ -129,7 +130,7 @@ async def test_a_head_that_loses_steps_is_reset_and_the_sweep_taken_again(live: 
             "it is reset and the sweep taken again (1 of 2)",
             "it is reset and the sweep taken again (2 of 2)",
         ]
-        assert (await it.do(LocalizeMission()))[1].message.startswith("localized")
+        assert (await it.do(Localize()))[1].message.startswith("localized")
 
 
 async def test_a_head_that_loses_steps_again_and_again_ends_the_mission(live: Live) -> None:
@@ -137,7 +138,7 @@ async def test_a_head_that_loses_steps_again_and_again_ends_the_mission(live: Li
     config = replace(config_for(Dialects(pantilt="ptu")), sweep=SweepSettings(readings=120, resets=1))
     async with live(robot, config) as it:
         losing = asyncio.create_task(lose_steps(it, 2))
-        _, end = await it.do(MapMission("office", (), robot.start))
+        _, end = await it.do(MapStart.of("office", (), robot.start))
         await losing
         assert end.message == "pantilt: lost_steps: the pan axis met its stop: it must be reset"
         assert it.daemon.supervisor.mode is Mode.DISARMED
@@ -161,15 +162,15 @@ async def test_without_a_base_it_still_says_where_it_stands(tmp_path: Path) -> N
         daemon = compose(config, connects_of(laid), compute, new_journal(config))
         parts = [asyncio.create_task(part) for part in daemon.parts().values()]
         await until_ready(daemon)
-        await daemon.control.arm()
-        await ended(daemon, daemon.control.start(MapMission("office", robot.stops_m, robot.start), 1e4))
+        await daemon.control.perform(Arm())
+        await ended(daemon, daemon.control.start(MapStart.of("office", robot.stops_m, robot.start), 1e4))
         laid["drive"].unplug()
         await asyncio.sleep(1.0)
         assert daemon.supervisor.mode is Mode.DISARMED
-        await daemon.control.arm()
+        await daemon.control.perform(Arm())
         tie = daemon.supervisor.whereabouts.tie
         assert tie is not None
-        said = await ended(daemon, daemon.control.start(LocalizeMission(), 1e4))
+        said = await ended(daemon, daemon.control.start(Localize(), 1e4))
         estimate = [event for event in said if isinstance(event, PoseEstimate) and event.final][-1]
         assert estimate.state is PoseState.LOCALIZED
         assert estimate.best is not None
@@ -177,12 +178,12 @@ async def test_without_a_base_it_still_says_where_it_stands(tmp_path: Path) -> N
         assert 200 < estimate.readings < 300  # those that the head reaches without a turn of the base
         assert daemon.supervisor.whereabouts.tie is tie
         with pytest.raises(MissionError, match="it can only localize where it stands"):
-            daemon.control.start(MapMission("again", (), robot.start), 1e4)
+            daemon.control.start(MapStart.of("again", (), robot.start), 1e4)
         laid["drive"].plug()
         await asyncio.sleep(6.0)
         assert daemon.robot.drive.status.link is LinkState.READY
         assert daemon.supervisor.mode.value == "disarmed"
-        await daemon.control.stop("the test is over")
+        await daemon.control.perform(Stop("the test is over"))
         for part in parts:
             part.cancel()
         await asyncio.gather(*parts, return_exceptions=True)
@@ -196,4 +197,4 @@ async def test_a_battery_that_runs_low_stops_the_robot_and_stays_a_fault(live: L
         assert it.daemon.supervisor.mode.value == "fault"
         assert "battery is at 25.6 V, below 25.598 V" in it.daemon.control.status.reason
         with pytest.raises(MissionError, match="faults remain"):
-            await it.daemon.control.clear()
+            await it.daemon.control.perform(Clear())

@@ -5,7 +5,7 @@ import pytest
 from robotd.cli.emulated import config_text
 from robotd.config import Config, loads
 from robotd.contract.estimate import PoseEstimate, PoseState
-from robotd.contract.missions import LocalizeMission, MapMission
+from robotd.contract.missions import Localize, MapStart
 from robotd.hardware.devices.catalogue import MOTORLESS, SCANNERS
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
 from robotd.sim.robot import DEVICES, SimulatedRobot
@@ -36,7 +36,7 @@ async def test_a_room_is_mapped_and_the_robot_finds_itself_in_it(live: Live, dia
     world = load_world("office")
     robot = SimulatedRobot(world, seed=2, dialects=dialects)
     async with live(robot, config_for(dialects)) as it:
-        await it.done(MapMission("office", world.stops_m[:1], world.start_pose))
-        said = await it.done(LocalizeMission())
+        await it.done(MapStart.of("office", world.stops_m[:1], world.start_pose))
+        said = await it.done(Localize())
         estimate = [event for event in said if isinstance(event, PoseEstimate) and event.final][-1]
         assert estimate.state is PoseState.LOCALIZED, estimate

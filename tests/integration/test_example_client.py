@@ -12,7 +12,7 @@ import pytest
 from robotd.cli.demo.rig import rig, wired
 from robotd.client import Client
 from robotd.config import Config
-from robotd.contract.missions import MapMission
+from robotd.contract.missions import MapStart
 from robotd.sim.world import load_world
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_clock, pytest.mark.shares_descriptors]
@@ -27,7 +27,7 @@ def runtime_dir(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     directory = tmp_path_factory.mktemp("rig")
     with rig(directory, wired(Config(), directory), ["sim", "office"]) as parts:
         parts.client.arm()
-        for _ in parts.client.run_mission(MapMission("office", (), load_world("office").start_pose), lease_s=5.0):
+        for _ in parts.client.run_mission(MapStart.of("office", (), load_world("office").start_pose), lease_s=5.0):
             pass
         parts.client.disarm()
         yield directory / "run"

@@ -9,7 +9,8 @@ import pytest
 
 from robotd.config import Config
 from robotd.contract.events import SweepDone
-from robotd.contract.missions import Legs, LocalizeMission, MapMission
+from robotd.contract.missions import Legs, Localize, MapStart
+from robotd.contract.requests import Arm, RecordStart, RecordStop
 from robotd.core.reading import Sweep
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.recording.reader import Recording, read
@@ -36,11 +37,11 @@ async def record(live: Any, path: Path) -> tuple[str, list[Sweep]]:
     """Map two stops of the office and localize; return the map's digest and the sweeps."""
     robot = SimulatedRobot(load_world("office"), seed=5)
     async with live(robot, QUICK) as it:
-        await it.daemon.control.start_recording(str(path))
-        said = await it.done(MapMission("office", STOPS_M, robot.start, Legs.STRAIGHT))
+        await it.daemon.control.perform(RecordStart(str(path)))
+        said = await it.done(MapStart.of("office", STOPS_M, robot.start, Legs.STRAIGHT))
         digest = it.daemon.supervisor.whereabouts.map_in_use.grid.digest()
-        said += await it.done(LocalizeMission())
-        await it.daemon.control.stop_recording()
+        said += await it.done(Localize())
+        await it.daemon.control.perform(RecordStop())
     assert len(sweeps(said)) == 1 + len(STOPS_M) + 1
     return digest, sweeps(said)
 
@@ -51,12 +52,12 @@ async def repeat(live: Any, recording: Recording, *, dawdle_s: float) -> tuple[s
     robot = SimulatedRobot(load_world("office"), seed=5)
     async with live(fake, QUICK, armed=False) as it:
         await asyncio.sleep(dawdle_s)
-        await it.daemon.control.arm()
+        await it.daemon.control.perform(Arm())
         await asyncio.sleep(dawdle_s)
-        said = await it.done(MapMission("office", STOPS_M, robot.start, Legs.STRAIGHT))
+        said = await it.done(MapStart.of("office", STOPS_M, robot.start, Legs.STRAIGHT))
         digest = it.daemon.supervisor.whereabouts.map_in_use.grid.digest()
         await asyncio.sleep(dawdle_s)
-        said += await it.done(LocalizeMission())
+        said += await it.done(Localize())
         mismatches = fake.mismatches
     assert mismatches == ()
     return digest, sweeps(said), fake

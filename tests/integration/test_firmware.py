@@ -11,7 +11,7 @@ from firmware_proto.common import BoardState, Fault, Hello, HelloReply
 from firmware_proto.framing import Deframer
 from robotd.contract.device_status import LinkState
 from robotd.contract.estimate import PoseEstimate, PoseState
-from robotd.contract.missions import LocalizeMission, MapMission
+from robotd.contract.missions import Localize, MapStart
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.pose import Pose2
 from robotd.sim.emulators.catalogue import Dialects, Firmware
@@ -71,8 +71,8 @@ async def mission(directory: Path, firmware: Firmware) -> tuple[dict[str, list[H
     taps = {device: Tapped(board) for device, board in robot.boards.items()}
     robot.boards.update(taps)
     async with living(directory, robot) as it:
-        await it.done(MapMission("office", world.stops_m[:1], world.start_pose))
-        said = await it.done(LocalizeMission())
+        await it.done(MapStart.of("office", world.stops_m[:1], world.start_pose))
+        said = await it.done(Localize())
         estimate = [event for event in said if isinstance(event, PoseEstimate) and event.final][-1]
         assert estimate.state is PoseState.LOCALIZED, estimate
     return {device: tap.frames for device, tap in taps.items()}, robot.truth

@@ -12,8 +12,9 @@ from firmware_proto.common import Fault
 from robotd.app.replaying import ReplayReport, replay_recording
 from robotd.app.stalls import keep_going
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveMission, Legs, MapMission
+from robotd.contract.missions import DriveTo, Legs, MapStart
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, RecordStart, RecordStop, Stop
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
 from robotd.mission.motion.steering import DrivingSettings
@@ -33,15 +34,15 @@ async def going(live: Live, directory: Path) -> AsyncIterator[Living]:
     """Yield a robot that lets held missions go on, and check that its recording replays."""
     file = directory / "recordings" / "held.mcap"
     async with live(SimulatedRobot(load_world("office"), seed=4), armed=False) as it:
-        await it.daemon.control.start_recording(str(file))
-        await it.daemon.control.arm()
+        await it.daemon.control.perform(RecordStart(str(file)))
+        await it.daemon.control.perform(Arm())
         task = asyncio.create_task(keep_going(it.daemon, DrivingSettings().silence_s))
         try:
             yield it
         finally:
             task.cancel()
             await asyncio.wait({task})
-        await it.daemon.control.stop_recording()
+        await it.daemon.control.perform(RecordStop())
     report = replayed(file)
     assert report.differences == ()
     assert report.digest == report.recorded_digest
@@ -68,7 +69,7 @@ def stall(it: Living) -> bool:
 def begin(it: Living) -> int:
     robot = it.robot
     x_m, y_m = robot.stops_m[0]
-    return it.daemon.control.start(MapMission("office", ((x_m, y_m),), robot.start, Legs.STRAIGHT), LEASE_S)
+    return it.daemon.control.start(MapStart.of("office", ((x_m, y_m),), robot.start, Legs.STRAIGHT), LEASE_S)
 
 
 async def until(it: Living, happens: Callable[[], bool], within_s: float = 120.0) -> None:
@@ -144,7 +145,7 @@ async def held(it: Living) -> int:
 async def test_a_stop_while_held_is_the_end(live: Live, tmp_path: Path) -> None:
     async with going(live, tmp_path) as it:
         mission_id = await held(it)
-        await it.daemon.control.stop("enough")
+        await it.daemon.control.perform(Stop("enough"))
         await asyncio.sleep(5.0)
         assert it.daemon.control.status.held is None
         assert (it.daemon.supervisor.mode, twist(it)) == (Mode.DISARMED, (0.0, 0.0))
@@ -157,7 +158,7 @@ async def test_a_stop_while_devices_are_armed_again_is_the_end(live: Live, tmp_p
         it.daemon.causes.go_on()
         await asyncio.sleep(0)
         assert it.daemon.supervisor.holding.hold.is_ending
-        await it.daemon.control.stop("enough")
+        await it.daemon.control.perform(Stop("enough"))
         await asyncio.sleep(5.0)
         assert (it.daemon.supervisor.mode, twist(it)) == (Mode.DISARMED, (0.0, 0.0))
         assert (await ended(it, mission_id)).message == "enough"
@@ -181,7 +182,7 @@ async def test_a_fault_while_held_is_a_fault(live: Live, tmp_path: Path) -> None
         await asyncio.sleep(5.0)
         assert it.daemon.supervisor.mode is Mode.FAULT
         with pytest.raises(RobotdError):
-            await it.daemon.control.arm()
+            await it.daemon.control.perform(Arm())
 
 
 def _bumper() -> object:
@@ -217,19 +218,19 @@ async def test_a_stall_while_nothing_is_under_way_ends_nothing(live: Live, tmp_p
         assert not stall(it)
         await asyncio.sleep(0.2)
         assert it.daemon.control.status.mode == "idle"
-        await it.daemon.control.stop("enough")
+        await it.daemon.control.perform(Stop("enough"))
         assert not stall(it)
         await asyncio.sleep(3.0)
         assert it.daemon.control.status.mode == "disarmed"
-        await it.daemon.control.arm()
-        assert (await it.do(MapMission("office", (), it.robot.start)))[1].phase is MissionPhase.DONE
+        await it.daemon.control.perform(Arm())
+        assert (await it.do(MapStart.of("office", (), it.robot.start)))[1].phase is MissionPhase.DONE
 
 
 async def test_a_drive_goes_on_from_where_the_robot_is(live: Live, tmp_path: Path) -> None:
     async with going(live, tmp_path) as it:
         start, (x_m, y_m) = it.robot.start, it.robot.stops_m[0]
-        await it.done(MapMission("office", ((x_m, y_m),), start, Legs.STRAIGHT))
-        mission_id = it.daemon.control.start(DriveMission(start.x_m, start.y_m, Legs.STRAIGHT), LEASE_S)
+        await it.done(MapStart.of("office", ((x_m, y_m),), start, Legs.STRAIGHT))
+        mission_id = it.daemon.control.start(DriveTo(start.x_m, start.y_m, Legs.STRAIGHT), LEASE_S)
         await until(it, lambda: twist(it)[0] > 0.2)
         stall(it)
         end = await ended(it, mission_id)

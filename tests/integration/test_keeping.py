@@ -12,7 +12,8 @@ import pytest
 from robotd.app.replaying import replay_recording
 from robotd.config import Config
 from robotd.contract.events import MissionPhase, MissionProgress, Status
-from robotd.contract.missions import LocalizeMission, MapMission
+from robotd.contract.missions import Localize, MapStart, with_lease
+from robotd.contract.requests import Arm, ListMaps, MapDiscard, MapLoad, MapSave, RecordStart, RecordStop, Stop
 from robotd.core.clock import run_virtual
 from robotd.core.errors import MissionError
 from robotd.maps import atomic
@@ -70,18 +71,18 @@ async def test_a_finished_map_is_kept_said_and_becomes_a_saved_one(
     robot = office()
     caplog.set_level("INFO")
     async with live(robot, QUICK) as it, keeping(it):
-        said = await it.done(MapMission("office", (), robot.start))
+        said = await it.done(MapStart.of("office", (), robot.start))
         assert [event.message for event in said if isinstance(event, MissionProgress)][-1] == (
             "1 stops swept; the map office is not saved yet: robotctl map save"
         )
         status = await kept(it)
         assert (status.map_unsaved, status.map_kept_version) == (True, 1)
         assert "kept as version 1: robotctl map save" in caplog.text
-        (entry,) = await it.daemon.control.list_maps()
-        assert (entry.is_unsaved, entry.digest) == (True, digest_in_use(it))
-        saved = await it.daemon.control.save_map(None)
-        assert (saved.version, saved.is_unsaved) == (1, False)
-        assert await it.daemon.control.list_maps() == (saved,)
+        (entry,) = (await it.daemon.control.perform(ListMaps())).maps
+        assert (entry.unsaved, entry.digest) == (True, digest_in_use(it))
+        saved = await it.daemon.control.perform(MapSave())
+        assert (saved.version, saved.unsaved) == (1, False)
+        assert (await it.daemon.control.perform(ListMaps())).maps == (saved,)
         status = it.daemon.control.status
         assert (status.map_unsaved, status.map_kept_version) == (False, None)
 
@@ -89,13 +90,13 @@ async def test_a_finished_map_is_kept_said_and_becomes_a_saved_one(
 async def test_mapping_stopped_after_two_of_five_stops_is_kept(live: Live) -> None:
     robot = office()
     async with live(robot, QUICK) as it, keeping(it):
-        it.daemon.control.start(MapMission("office", robot.stops_m[:4], robot.start), LEASE_S)
+        it.daemon.control.start(MapStart.of("office", robot.stops_m[:4], robot.start), LEASE_S)
         sweeps = 0
         async for event in it.events:
             sweeps += isinstance(event, MissionProgress) and event.phase is MissionPhase.DRIVING
             if sweeps == 2:
                 break
-        await it.daemon.control.stop("enough")
+        await it.daemon.control.perform(Stop("enough"))
         status = await kept(it)
         assert status.map_kept_version == 1
         assert it.daemon.supervisor.whereabouts.map_in_use is not None
@@ -111,52 +112,52 @@ async def test_a_map_that_is_loaded_takes_its_stops_along(live: Live) -> None:
     robot = office()
     async with live(robot, QUICK) as it:
         control = it.daemon.control
-        await it.done(MapMission("office", robot.stops_m[:1], robot.start))
+        await it.done(MapStart.of("office", robot.stops_m[:1], robot.start))
         assert it.daemon.supervisor.whereabouts.map_in_use is not None
         made = it.daemon.supervisor.whereabouts.map_in_use.stops
-        await control.save_map(None)
-        await control.load_map("office", None, robot.start)
+        await control.perform(MapSave())
+        await control.perform(MapLoad.of("office", None, robot.start))
         place = it.daemon.supervisor.whereabouts.map_in_use
         assert place.stops == made
         assert made is not None
         laid = lay(place.grid, place.latest, place.stops, made.stops[0].sweep, robot.start)
         place.take(laid)
-        saved = await control.save_map("hall")
-        assert saved.stops == 3
+        await control.perform(MapSave("hall"))
         stored = MapStore(control._store.root).load("hall")
+        assert stored.entry.stops == 3
         assert (stored.stops, stored.grid.digest()) == (laid.stops, digest_in_use(it))
 
 
 async def test_a_map_of_which_nothing_was_seen_is_not_kept(live: Live) -> None:
     robot = office()
     async with live(robot, QUICK) as it, keeping(it):
-        it.daemon.control.start(MapMission("office", (), robot.start), LEASE_S)
+        it.daemon.control.start(MapStart.of("office", (), robot.start), LEASE_S)
         await asyncio.sleep(0.1)
-        await it.daemon.control.stop("at once")
+        await it.daemon.control.perform(Stop("at once"))
         await asyncio.sleep(2.0)
         assert not it.daemon.control.status.map_unsaved
-        assert await it.daemon.control.list_maps() == ()
+        assert (await it.daemon.control.perform(ListMaps())).maps == ()
 
 
 async def test_starting_another_map_and_loading_one_keep_it_first(live: Live) -> None:
     robot = office()
     async with live(robot, QUICK) as it:  # nobody keeps it before
         control = it.daemon.control
-        await it.done(MapMission("first", (), robot.start))
+        await it.done(MapStart.of("first", (), robot.start))
         first = digest_in_use(it)
-        await control.begin(MapMission("second", (), robot.start), LEASE_S)
+        await control.perform(with_lease(MapStart.of("second", (), robot.start), LEASE_S))
         async for event in it.events:
             if isinstance(event, MissionProgress) and event.is_last:
                 break
         second = digest_in_use(it)
-        loaded = await control.load_map("first", None, robot.start)
-        assert [(one.name, one.digest, one.is_unsaved) for one in await control.list_maps()] == [
+        loaded = await control.perform(MapLoad.of("first", None, robot.start))
+        assert [(one.name, one.digest, one.unsaved) for one in (await control.perform(ListMaps())).maps] == [
             ("first", first, True),
             ("second", second, True),
         ]
         assert (loaded.digest, digest_in_use(it)) == (first, first)
         assert (control.status.map_unsaved, control.status.map_kept_version) == (True, 1)
-        assert not (await control.save_map(None)).is_unsaved
+        assert not (await control.perform(MapSave())).unsaved
 
 
 async def test_what_the_full_disk_refuses_is_dropped_only_when_it_was_given_up(
@@ -165,25 +166,25 @@ async def test_what_the_full_disk_refuses_is_dropped_only_when_it_was_given_up(
     robot = office()
     async with live(robot, QUICK) as it, keeping(it):
         control = it.daemon.control
-        await it.done(MapMission("old", (), robot.start))
-        await control.save_map(None)
+        await it.done(MapStart.of("old", (), robot.start))
+        await control.perform(MapSave())
         with pytest.MonkeyPatch.context() as disk:
             fill(disk)
-            await it.done(MapMission("new", (), robot.start))
+            await it.done(MapStart.of("new", (), robot.start))
             await asyncio.sleep(5.0)
             said = [line.getMessage() for line in caplog.records if "memory alone" in line.getMessage()]
             assert said == ["the unsaved map new is in memory alone: cannot save map new: No space left on device"]
             new = digest_in_use(it)
             with pytest.raises(MissionError, match=r"map new would be lost.*No space.*robotctl map discard"):
-                await control.begin(MapMission("newer", (), robot.start), LEASE_S)
+                await control.perform(with_lease(MapStart.of("newer", (), robot.start), LEASE_S))
             with pytest.raises(MissionError, match="map new would be lost"):
-                await control.load_map("old", None, None)
+                await control.perform(MapLoad.of("old", None, None))
             assert (control.status.map_unsaved, control.status.map_kept_version) == (True, None)
             assert digest_in_use(it) == new
-            control.discard_map()
+            await control.perform(MapDiscard())
             assert not control.status.map_unsaved
-            await control.load_map("old", None, None)
-        assert [entry.name for entry in await control.list_maps()] == ["old"]
+            await control.perform(MapLoad.of("old", None, None))
+        assert [entry.name for entry in (await control.perform(ListMaps())).maps] == ["old"]
 
 
 async def test_a_stop_while_the_map_is_being_kept_wins_over_the_start(
@@ -192,7 +193,7 @@ async def test_a_stop_while_the_map_is_being_kept_wins_over_the_start(
     robot = office()
     async with live(robot, QUICK) as it:
         control = it.daemon.control
-        await it.done(MapMission("first", (), robot.start))
+        await it.done(MapStart.of("first", (), robot.start))
         slow, keep = asyncio.Event(), control.keeping.keep
 
         async def slowly() -> str | None:
@@ -200,10 +201,10 @@ async def test_a_stop_while_the_map_is_being_kept_wins_over_the_start(
             return await keep()
 
         monkeypatch.setattr(control.keeping, "keep", slowly)
-        starting = asyncio.create_task(control.begin(MapMission("second", (), robot.start), LEASE_S))
+        starting = asyncio.create_task(control.perform(with_lease(MapStart.of("second", (), robot.start), LEASE_S)))
         await asyncio.sleep(0.1)
-        await control.stop("a person")
-        await control.arm()
+        await control.perform(Stop("a person"))
+        await control.perform(Arm())
         slow.set()
         with pytest.raises(MissionError, match="stopped while"):
             await starting
@@ -215,14 +216,14 @@ def test_a_session_in_which_maps_were_kept_replays_bit_for_bit_and_writes_nothin
         robot = office()
         async with live(robot, armed=False) as it, keeping(it):
             control = it.daemon.control
-            await control.start_recording(str(tmp_path / "recordings" / "kept.mcap"))
-            await control.arm()
-            await it.done(MapMission("first", (), robot.start))
+            await control.perform(RecordStart(str(tmp_path / "recordings" / "kept.mcap")))
+            await control.perform(Arm())
+            await it.done(MapStart.of("first", (), robot.start))
             await kept(it)
-            await it.done(MapMission("second", (), robot.start))
-            await control.load_map("first", None, robot.start)
-            await it.done(LocalizeMission())
-            await control.stop_recording()
+            await it.done(MapStart.of("second", (), robot.start))
+            await control.perform(MapLoad.of("first", None, robot.start))
+            await it.done(Localize())
+            await control.perform(RecordStop())
 
     run_virtual(session())
     files = sorted((tmp_path / "maps").rglob("*"))

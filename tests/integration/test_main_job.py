@@ -12,8 +12,9 @@ from robotd.config import Config
 from robotd.contract.device_status import LinkState
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import Event, MapChanged, MissionPhase, SweepDone, SweepProgress
-from robotd.contract.missions import DriveMission, LocalizeMission, MapMission, PriorHeading
+from robotd.contract.missions import DriveTo, Localize, MapStart, PriorHeading
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, MapLoad, MapSave
 from robotd.core.angles import wrap_rad
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import MissionError
@@ -39,16 +40,16 @@ def final_estimates(said: list[Event]) -> list[PoseEstimate]:
 async def test_the_robot_maps_the_laboratory_and_is_found_in_it_within_50_mm(live: Live) -> None:
     robot = SimulatedRobot(load_world("laboratory"), seed=3)
     async with live(robot) as it:
-        said = await it.done(MapMission("lab", robot.stops_m, robot.start))
+        said = await it.done(MapStart.of("lab", robot.stops_m, robot.start))
         sweeps = [event.sweep for event in said if isinstance(event, SweepDone)]
         assert len(sweeps) == 1 + len(robot.stops_m)
         assert all(len(sweep.readings) == 300 for sweep in sweeps)
         errors_m = []
         for probe_m in robot.probes_m:
-            _, end = await it.do(DriveMission(*probe_m))
+            _, end = await it.do(DriveTo(*probe_m))
             if end.phase is MissionPhase.FAILED:  # a stray reading may leave an obstacle where there is none
                 continue
-            found = final_estimates(await it.done(LocalizeMission()))[-1]
+            found = final_estimates(await it.done(Localize()))[-1]
             assert found.state is PoseState.LOCALIZED
             assert found.best is not None
             errors_m.append(math.hypot(found.best.x_m - robot.truth.x_m, found.best.y_m - robot.truth.y_m))
@@ -60,7 +61,7 @@ async def test_the_robot_maps_the_laboratory_and_is_found_in_it_within_50_mm(liv
 async def test_every_reading_of_a_sweep_has_its_own_bearing_time_and_status(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
-        said = await it.done(MapMission("office", (), robot.start))
+        said = await it.done(MapStart.of("office", (), robot.start))
     (sweep,) = [event.sweep for event in said if isinstance(event, SweepDone)]
     bearings = np.sort([reading.bearing_rad % (2 * math.pi) for reading in sweep.readings])
     gaps = np.diff([*bearings, bearings[0] + 2 * math.pi])
@@ -78,8 +79,8 @@ async def test_every_reading_of_a_sweep_has_its_own_bearing_time_and_status(live
 async def test_estimates_are_published_while_the_sweep_is_under_way(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
-        await it.done(MapMission("office", robot.stops_m, robot.start))
-        said = await it.done(LocalizeMission())
+        await it.done(MapStart.of("office", robot.stops_m, robot.start))
+        said = await it.done(Localize())
     estimates = [event for event in said if isinstance(event, PoseEstimate)]
     partial = [event for event in estimates if not event.final]
     assert len(partial) >= 14
@@ -94,10 +95,10 @@ async def test_in_one_of_two_equal_rooms_it_is_not_sure_of_the_wrong_one(live: L
     robot = SimulatedRobot(load_world("symmetric"), seed=0)
     states = []
     async with live(robot) as it:
-        await it.done(MapMission("twins", robot.stops_m, robot.start))
+        await it.done(MapStart.of("twins", robot.stops_m, robot.start))
         for probe_m in robot.probes_m:
-            await it.done(DriveMission(*probe_m))
-            found = final_estimates(await it.done(LocalizeMission()))[-1]
+            await it.done(DriveTo(*probe_m))
+            found = final_estimates(await it.done(Localize()))[-1]
             states.append(found.state)
             here = (robot.truth.x_m, robot.truth.y_m)
             assert any(math.dist(here, (region.centre.x_m, region.centre.y_m)) < 0.2 for region in found.regions)
@@ -111,11 +112,11 @@ async def test_in_one_of_two_equal_rooms_it_is_not_sure_of_the_wrong_one(live: L
 async def test_a_robot_taken_off_its_map_is_lost(live: Live) -> None:
     lab, office = (SimulatedRobot(load_world(name), seed=1) for name in ("laboratory", "office"))
     async with live(office) as it:
-        await it.done(MapMission("office", office.stops_m, office.start))
-        await it.daemon.control.save_map(None)
+        await it.done(MapStart.of("office", office.stops_m, office.start))
+        await it.daemon.control.perform(MapSave())
     async with live(lab) as it:
-        await it.daemon.control.load_map("office", None, None)
-        found = final_estimates(await it.done(LocalizeMission(0.0)))[-1]
+        await it.daemon.control.perform(MapLoad.of("office", None, None))
+        found = final_estimates(await it.done(Localize(0.0)))[-1]
     assert found.state is PoseState.LOST
     assert found.best is None
 
@@ -129,11 +130,11 @@ async def test_a_beam_slanted_to_the_floor_maps_and_localizes_as_lily_did(live: 
     )
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot, slanted) as it:
-        said = await it.done(MapMission("office", robot.stops_m, robot.start))
+        said = await it.done(MapStart.of("office", robot.stops_m, robot.start))
         misses = [event.sweep.count(ReadingStatus.MISS) for event in said if isinstance(event, SweepDone)]
         assert min(misses) > 30
-        await it.done(DriveMission(*robot.probes_m[0]))
-        found = final_estimates(await it.done(LocalizeMission()))[-1]
+        await it.done(DriveTo(*robot.probes_m[0]))
+        found = final_estimates(await it.done(Localize()))[-1]
         assert found.state is PoseState.LOCALIZED
         assert found.best is not None
         assert found.best.distance_m(robot.truth) < 0.1
@@ -142,43 +143,43 @@ async def test_a_beam_slanted_to_the_floor_maps_and_localizes_as_lily_did(live: 
 async def test_a_robot_that_is_lost_does_not_drive_until_it_is_found(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
-        await it.done(MapMission("office", robot.stops_m, robot.start))
+        await it.done(MapStart.of("office", robot.stops_m, robot.start))
         here = robot.truth
-        lost = final_estimates(await it.done(LocalizeMission(here.heading_rad + 0.5)))[-1]
+        lost = final_estimates(await it.done(Localize(here.heading_rad + 0.5)))[-1]
         assert lost.state is PoseState.LOST
-        _, end = await it.do(DriveMission(*robot.probes_m[0]))
+        _, end = await it.do(DriveTo(*robot.probes_m[0]))
         assert end.phase is MissionPhase.FAILED
         assert "not localized" in end.message
         assert robot.truth.distance_m(here) < 0.01
-        found = final_estimates(await it.done(LocalizeMission(robot.truth.heading_rad)))[-1]
+        found = final_estimates(await it.done(Localize(robot.truth.heading_rad)))[-1]
         assert found.state is PoseState.LOCALIZED
-        await it.done(DriveMission(*robot.probes_m[0]))
+        await it.done(DriveTo(*robot.probes_m[0]))
 
 
 async def test_a_base_that_was_out_of_sight_is_not_believed(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
-        await it.done(MapMission("office", robot.stops_m[:2], robot.start))
+        await it.done(MapStart.of("office", robot.stops_m[:2], robot.start))
         own_board(robot, "drive").reboot(4711)
         async with asyncio.timeout(10.0):
             with it.daemon.robot.drive.status_changes.subscribe() as changes:
                 while (await changes.get()).link is not LinkState.ABSENT:
                     pass
         await until_ready(it.daemon)
-        await it.daemon.control.arm()
-        _, end = await it.do(DriveMission(*robot.stops_m[0]))
+        await it.daemon.control.perform(Arm())
+        _, end = await it.do(DriveTo(*robot.stops_m[0]))
         assert "not localized" in end.message
-        found = final_estimates(await it.done(LocalizeMission()))[-1]
+        found = final_estimates(await it.done(Localize()))[-1]
         assert found.state is PoseState.LOCALIZED
-        await it.done(DriveMission(*robot.stops_m[0]))
+        await it.done(DriveTo(*robot.stops_m[0]))
 
 
 async def test_an_unreachable_place_is_said_at_once_and_nothing_moves(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
-        await it.done(MapMission("office", robot.stops_m, robot.start))
+        await it.done(MapStart.of("office", robot.stops_m, robot.start))
         before = robot.truth
-        said, end = await it.do(DriveMission(50.0, 50.0))
+        said, end = await it.do(DriveTo(50.0, 50.0))
         assert end.phase is MissionPhase.FAILED
         assert "cannot be reached" in end.message
         assert robot.truth.distance_m(before) < 1e-6
@@ -189,19 +190,19 @@ async def test_an_unreachable_place_is_said_at_once_and_nothing_moves(live: Live
 async def test_a_saved_map_comes_back_exactly_and_the_robot_is_found_in_it(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
-        said = await it.done(MapMission("office", robot.stops_m, robot.start))
+        said = await it.done(MapStart.of("office", robot.stops_m, robot.start))
         cells = place(it).grid.cells.copy()
-        entry = await it.daemon.control.save_map(None)
+        entry = await it.daemon.control.perform(MapSave())
     changes = [event for event in said if isinstance(event, MapChanged) and not event.whole]
     assert [event.generation for event in changes] == list(range(1, len(robot.stops_m) + 2))
     again = SimulatedRobot(load_world("office"), seed=9)
     async with live(again) as it:
-        loaded = await it.daemon.control.load_map("office", None, None)
+        loaded = await it.daemon.control.perform(MapLoad.of("office", None, None))
         assert loaded.digest == entry.digest
         assert np.array_equal(place(it).grid.cells, cells)
         with pytest.raises(MissionError, match="tied to this map"):
-            raise MissionError((await it.do(LocalizeMission()))[1].message)
-        found = final_estimates(await it.done(LocalizeMission(again.truth.heading_rad)))[-1]
+            raise MissionError((await it.do(Localize()))[1].message)
+        found = final_estimates(await it.done(Localize(again.truth.heading_rad)))[-1]
         assert found.state is PoseState.LOCALIZED
         assert found.best is not None
         assert math.hypot(found.best.x_m - again.truth.x_m, found.best.y_m - again.truth.y_m) < 0.1
@@ -211,13 +212,13 @@ async def test_a_robot_that_nobody_knows_the_heading_of_is_found_and_drives_on(l
     """Put down anywhere on a saved map, turned by any angle, its wheels tell nothing of where it is or looks."""
     office = load_world("office")
     async with live(SimulatedRobot(office, seed=1)) as it:
-        await it.done(MapMission("office", office.stops_m, office.start_pose))
-        await it.daemon.control.save_map(None)
+        await it.done(MapStart.of("office", office.stops_m, office.start_pose))
+        await it.daemon.control.perform(MapSave())
     turned = replace(office, start=replace(office.start, heading_deg=office.start.heading_deg + 137.0))
     robot = SimulatedRobot(turned, seed=5)
     async with live(robot) as it:
-        await it.daemon.control.load_map("office", None, None)
-        said = await it.done(LocalizeMission(heading=PriorHeading.UNKNOWN))
+        await it.daemon.control.perform(MapLoad.of("office", None, None))
+        said = await it.done(Localize(heading=PriorHeading.UNKNOWN))
         estimates = final_estimates(said)
         found = estimates[-1]
         assert found.state is PoseState.LOCALIZED
@@ -232,5 +233,5 @@ async def test_a_robot_that_nobody_knows_the_heading_of_is_found_and_drives_on(l
         partial = [e for e in said if isinstance(e, PoseEstimate) and not e.final]
         assert [e.readings for e in partial] == sorted(e.readings for e in partial)
         assert 3 <= len(partial) <= 4, "a search at each quarter of the sweep, and no more"
-        await it.done(DriveMission(*office.stops_m[0]))
+        await it.done(DriveTo(*office.stops_m[0]))
         assert math.dist(office.stops_m[0], (robot.truth.x_m, robot.truth.y_m)) < 0.15

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from robotd.config import Config
+from robotd.contract.answers import RecordingFile
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.contract.modes import Mode
+from robotd.contract.requests import REQUESTS, Hello, MapLoad, MapSave, MapShow, RecordStart, RecordStop
 from robotd.core.errors import MapError, MissionError, RecordingError
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.recording.entries import CommandEntry
@@ -34,7 +36,7 @@ def last_command(it: Living) -> CommandEntry:
 async def test_a_stop_that_cannot_be_reached_is_left_out_and_named(live: Live) -> None:
     robot = office()
     async with live(robot, QUICK) as it:
-        said = await it.done(MapMission("office", ((-3.0, -3.0), robot.stops_m[0]), robot.start))
+        said = await it.done(MapStart.of("office", ((-3.0, -3.0), robot.stops_m[0]), robot.start))
         assert it.daemon.supervisor.whereabouts.map_in_use is not None
         generation = it.daemon.supervisor.whereabouts.map_in_use.generation
     progress = [event for event in said if isinstance(event, MissionProgress)]
@@ -46,17 +48,17 @@ async def test_a_stop_that_cannot_be_reached_is_left_out_and_named(live: Live) -
 async def test_nobody_drives_on_a_map_on_which_the_robot_is_not(live: Live) -> None:
     robot = office()
     async with live(robot, QUICK) as it:
-        await it.done(MapMission("office", (), robot.start))
-        await it.daemon.control.save_map(None)
-        await it.daemon.control.load_map("office", None, None)
-        _, end = await it.do(DriveMission(1.0, 1.0, Legs.STRAIGHT))
+        await it.done(MapStart.of("office", (), robot.start))
+        await it.daemon.control.perform(MapSave())
+        await it.daemon.control.perform(MapLoad.of("office", None, None))
+        _, end = await it.do(DriveTo(1.0, 1.0, Legs.STRAIGHT))
         assert "not localized on it" in end.message
         assert it.daemon.supervisor.mode is Mode.IDLE
 
 
 async def test_stops_too_far_apart_for_one_map_are_refused_before_anything_moves(live: Live) -> None:
     async with live(office(), QUICK) as it:
-        _, end = await it.do(MapMission("world", ((5000.0, 0.0),)))
+        _, end = await it.do(MapStart("world", ((5000.0, 0.0),)))
         assert "do not fit on one map" in end.message
         assert it.daemon.supervisor.whereabouts.map_in_use is None
 
@@ -67,7 +69,7 @@ async def test_requests_are_noted_so_that_they_can_be_asked_again(live: Live) ->
         control, supervisor = it.daemon.control, it.daemon.supervisor
         await control.repeat("arm", {})
         assert supervisor.mode is Mode.IDLE
-        mission = MapMission("office", (), robot.start, Legs.STRAIGHT)
+        mission = MapStart.of("office", (), robot.start, Legs.STRAIGHT)
         mission_id = control.start(mission, 0.5)
         noted = last_command(it)
         await control.repeat("renew", {"mission_id": mission_id})
@@ -78,7 +80,7 @@ async def test_requests_are_noted_so_that_they_can_be_asked_again(live: Live) ->
         await control.repeat("arm", {})
         await control.repeat(noted.name, noted.arguments)
         assert last_command(it).arguments == noted.arguments
-        assert msgspec.convert(noted.arguments["mission"], MapMission) == mission
+        assert msgspec.convert(noted.arguments["mission"], MapStart) == mission
         with pytest.raises(RecordingError, match="unknown request 'fly'"):
             await control.repeat("fly", {})
 
@@ -87,9 +89,9 @@ async def test_a_map_taken_into_use_comes_whole_out_of_the_journal(live: Live) -
     robot = office()
     async with live(robot, QUICK) as it:
         control, supervisor = it.daemon.control, it.daemon.supervisor
-        await it.done(MapMission("office", (), robot.start))
-        await control.save_map("kept")
-        await control.load_map("kept", None, robot.start)
+        await it.done(MapStart.of("office", (), robot.start))
+        await control.perform(MapSave("kept"))
+        await control.perform(MapLoad.of("kept", None, robot.start))
         loaded, tie, noted = supervisor.whereabouts.map_in_use, supervisor.whereabouts.tie, last_command(it)
         assert loaded is not None
         await control.repeat(noted.name, noted.arguments)
@@ -99,10 +101,29 @@ async def test_a_map_taken_into_use_comes_whole_out_of_the_journal(live: Live) -
         assert (again.map_id, again.name, again.grid.spec) == (loaded.map_id, loaded.name, loaded.grid.spec)
         assert np.array_equal(again.grid.cells, loaded.grid.cells)
         assert supervisor.whereabouts.tie == tie is not None
-        control.start(LocalizeMission(), 1000.0)
+        control.start(Localize(), 1000.0)
         with pytest.raises(MissionError, match="while a mission is under way"):
-            await control.load_map("kept", None, None)
+            await control.perform(MapLoad.of("kept", None, None))
         assert supervisor.whereabouts.map_in_use is again
+
+
+async def test_every_request_has_somebody_who_carries_it_out(live: Live) -> None:
+    async with live(office(), QUICK) as it:
+        assert set(it.daemon.control._rows) == set(REQUESTS.values()) - {Hello}  # who answers is the server's to say
+
+
+async def test_a_map_that_cannot_be_saved_is_not_one_that_is_not_there(
+    live: Live, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise MapError("cannot save map office: No space left on device")
+
+    robot = office()
+    async with live(robot, QUICK) as it:
+        await it.done(MapStart.of("office", (), robot.start))
+        monkeypatch.setattr(it.daemon.control._store, "save", full)
+        with pytest.raises(MissionError, match="No space left"):
+            await it.daemon.control.perform(MapSave())
 
 
 async def test_what_is_not_there_is_refused(live: Live, tmp_path: Path) -> None:
@@ -111,30 +132,30 @@ async def test_what_is_not_there_is_refused(live: Live, tmp_path: Path) -> None:
     async with live(office(), QUICK) as it:
         control = it.daemon.control
         with pytest.raises(MapError, match="no map is in use"):
-            await control.save_map(None)
+            await control.perform(MapSave())
         with pytest.raises(MapError, match="no map is in use"):
-            control.whole_map()
+            await control.perform(MapShow())
         with pytest.raises(MapError):
-            await control.load_map("nowhere", None, None)
+            await control.perform(MapLoad.of("nowhere", None, None))
         with pytest.raises(RecordingError, match="cannot record"):
-            await control.start_recording("file/below/a.mcap")
+            await control.perform(RecordStart("file/below/a.mcap"))
         for hidden in ("maps/lab/9", "maps/.tmp-lab-11", "elsewhere.mcap"):
             with pytest.raises(RecordingError, match="recordings go below"):
-                await control.start_recording(str(tmp_path / hidden))
+                await control.perform(RecordStart(str(tmp_path / hidden)))
             assert not (tmp_path / hidden).exists()
         assert control.status.recording is None
-        assert await control.stop_recording() is None
-        assert await control.start_recording(None)
+        assert await control.perform(RecordStop()) == RecordingFile(None)
+        assert await control.perform(RecordStart())
         with pytest.raises(RecordingError, match="already recording"):
-            await control.start_recording(None)
-        assert await control.stop_recording()
+            await control.perform(RecordStart())
+        assert await control.perform(RecordStop())
 
 
 async def test_a_board_that_restarts_while_mapping_ends_the_mission_and_leaves_no_jump(live: Live) -> None:
     robot = office()
     async with live(robot, QUICK) as it:
         control, drive = it.daemon.control, it.daemon.robot.drive
-        control.start(MapMission("office", robot.stops_m, robot.start, Legs.STRAIGHT), 1000.0)
+        control.start(MapStart.of("office", robot.stops_m, robot.start, Legs.STRAIGHT), 1000.0)
         async for event in it.events:
             if isinstance(event, MissionProgress) and event.phase is MissionPhase.DRIVING:
                 break

@@ -8,7 +8,7 @@ import pytest
 from robotd.config import Config
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import SweepDone
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.core.reading import ReadingStatus
 from robotd.sim.building import RecordedBuilding, select_stops
 from robotd.sim.log_file import read_log
@@ -38,7 +38,7 @@ async def test_at_stops_kept_out_of_the_map_it_is_never_sure_of_a_wrong_place(
 ) -> None:
     robot = robot_of(laser_data / LOGS[name], OdometrySource.CORRECTED)
     async with live(robot, config()) as it:
-        said = await it.done(MapMission(name, robot.stops_m, robot.start, Legs.STRAIGHT))
+        said = await it.done(MapStart.of(name, robot.stops_m, robot.start, Legs.STRAIGHT))
         sweeps = [event.sweep for event in said if isinstance(event, SweepDone)]
         assert len(sweeps) == 12
         for sweep in sweeps:
@@ -46,9 +46,9 @@ async def test_at_stops_kept_out_of_the_map_it_is_never_sure_of_a_wrong_place(
             assert 140 <= sweep.count(ReadingStatus.NOT_MEASURED) <= 160
         errors_m = []
         for probe_m in reversed(robot.probes_m):
-            await it.done(DriveMission(*probe_m, legs=Legs.STRAIGHT))
+            await it.done(DriveTo(*probe_m, legs=Legs.STRAIGHT))
             here = robot.truth
-            found = [e for e in await it.done(LocalizeMission(tie=False)) if isinstance(e, PoseEstimate)][-1]
+            found = [e for e in await it.done(Localize(tie=False)) if isinstance(e, PoseEstimate)][-1]
             if found.state is PoseState.LOCALIZED:
                 assert found.best is not None
                 errors_m.append(found.best.distance_m(here))
@@ -59,7 +59,7 @@ async def test_at_stops_kept_out_of_the_map_it_is_never_sure_of_a_wrong_place(
 async def test_raw_odometry_drifts_away_from_the_corrected_one(live: Live, laser_data: Path) -> None:
     robot = robot_of(laser_data / LOGS["intel"], OdometrySource.RAW)
     async with live(robot, config()) as it:
-        await it.done(MapMission("raw", robot.stops_m[:3], robot.start, Legs.STRAIGHT))
+        await it.done(MapStart.of("raw", robot.stops_m[:3], robot.start, Legs.STRAIGHT))
         odometry = it.daemon.robot.drive.odometry.latest
         assert odometry is not None
         believed = robot.start @ odometry.in_odom

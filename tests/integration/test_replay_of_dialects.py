@@ -14,7 +14,8 @@ import pytest
 from robotd.app.replaying import replay_recording
 from robotd.cli.emulated import config_text, recorded_dialects
 from robotd.config import loads
-from robotd.contract.missions import LocalizeMission, MapMission
+from robotd.contract.missions import Localize, MapStart
+from robotd.contract.requests import RecordStart, RecordStop
 from robotd.core.clock import NS_PER_S, run_virtual
 from robotd.core.errors import RecordingError
 from robotd.hardware.devices.catalogue import request_words
@@ -50,10 +51,10 @@ async def record(live: Any, path: Path, dialects: Dialects) -> None:
     text = config_text({device: f"/dev/emulated/{device}" for device in DEVICES}, dialects.settings())
     config = replace(loads(text), sweep=SweepSettings(readings=24))
     async with live(SimulatedRobot(world, seed=5, dialects=dialects), config) as it:
-        await it.daemon.control.start_recording(str(path))
-        await it.done(MapMission("office", world.stops_m[:1], world.start_pose))
-        await it.done(LocalizeMission())
-        await it.daemon.control.stop_recording()
+        await it.daemon.control.perform(RecordStart(str(path)))
+        await it.done(MapStart.of("office", world.stops_m[:1], world.start_pose))
+        await it.done(Localize())
+        await it.daemon.control.perform(RecordStop())
 
 
 def requests(entries: Sequence[Entry], device: str, words: Words) -> Iterator[tuple[int, BytesEntry]]:

@@ -8,8 +8,9 @@ import pytest
 
 from robotd.app.replaying import ReplayReport, replay_recording
 from robotd.contract.events import MissionPhase
-from robotd.contract.missions import LocalizeMission, MapMission
+from robotd.contract.missions import Localize, MapStart
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, MapLoad, MapSave, RecordStart, RecordStop, Stop
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
 from tests.integration.conftest import Live
@@ -37,10 +38,10 @@ def check(report: ReplayReport) -> None:
 async def test_a_recording_started_late_begins_where_the_daemon_began(live: Live, tmp_path: Path) -> None:
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot) as it:
-        await it.done(MapMission("office", (), robot.start))
-        await it.daemon.control.start_recording(str(tmp_path / "recordings" / "late.mcap"))
-        await it.done(LocalizeMission())
-        await it.daemon.control.stop_recording()
+        await it.done(MapStart.of("office", (), robot.start))
+        await it.daemon.control.perform(RecordStart(str(tmp_path / "recordings" / "late.mcap")))
+        await it.done(Localize())
+        await it.daemon.control.perform(RecordStop())
     check(replayed(tmp_path / "recordings" / "late.mcap"))
 
 
@@ -48,23 +49,23 @@ async def test_a_recording_started_late_begins_where_the_daemon_began(live: Live
 async def test_a_mission_stopped_in_the_middle_replays(live: Live, tmp_path: Path, after_s: float) -> None:
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot, armed=False) as it:
-        await it.daemon.control.start_recording(str(tmp_path / "recordings" / "stopped.mcap"))
-        await it.daemon.control.arm()
-        it.daemon.control.start(MapMission("office", robot.stops_m, robot.start), 1000.0)
+        await it.daemon.control.perform(RecordStart(str(tmp_path / "recordings" / "stopped.mcap")))
+        await it.daemon.control.perform(Arm())
+        it.daemon.control.start(MapStart.of("office", robot.stops_m, robot.start), 1000.0)
         await asyncio.sleep(after_s)
-        await it.daemon.control.stop("enough")
+        await it.daemon.control.perform(Stop("enough"))
         await asyncio.sleep(1.0)
         assert it.daemon.supervisor.mode is Mode.DISARMED
-        await it.daemon.control.stop_recording()
+        await it.daemon.control.perform(RecordStop())
     check(replayed(tmp_path / "recordings" / "stopped.mcap"))
 
 
 async def test_a_lease_that_runs_out_stops_the_robot_and_replays(live: Live, tmp_path: Path) -> None:
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot, armed=False) as it:
-        await it.daemon.control.start_recording(str(tmp_path / "recordings" / "lease.mcap"))
-        await it.daemon.control.arm()
-        mission_id = it.daemon.control.start(MapMission("office", robot.stops_m, robot.start), 0.5)
+        await it.daemon.control.perform(RecordStart(str(tmp_path / "recordings" / "lease.mcap")))
+        await it.daemon.control.perform(Arm())
+        mission_id = it.daemon.control.start(MapStart.of("office", robot.stops_m, robot.start), 0.5)
         for _ in range(10):
             await asyncio.sleep(0.4)
             it.daemon.control.renew(mission_id)
@@ -73,7 +74,7 @@ async def test_a_lease_that_runs_out_stops_the_robot_and_replays(live: Live, tmp
         assert mode_of(it) is Mode.DISARMED
         assert "lease" in it.daemon.control.status.reason
         assert not any(device.armed for device in it.daemon.control.status.devices)
-        await it.daemon.control.stop_recording()
+        await it.daemon.control.perform(RecordStop())
     check(replayed(tmp_path / "recordings" / "lease.mcap"))
 
 
@@ -84,16 +85,16 @@ def mode_of(it: Living) -> Mode:
 async def test_a_map_taken_into_use_is_in_the_recording(live: Live, tmp_path: Path) -> None:
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot) as it:
-        await it.done(MapMission("office", robot.stops_m[:2], robot.start))
-        await it.daemon.control.save_map("kept")
+        await it.done(MapStart.of("office", robot.stops_m[:2], robot.start))
+        await it.daemon.control.perform(MapSave("kept"))
     again = SimulatedRobot(load_world("office"), seed=5)
     async with live(again, armed=False) as it:
-        await it.daemon.control.start_recording(str(tmp_path / "recordings" / "loaded.mcap"))
-        await it.daemon.control.arm()
+        await it.daemon.control.perform(RecordStart(str(tmp_path / "recordings" / "loaded.mcap")))
+        await it.daemon.control.perform(Arm())
         await asyncio.sleep(0.1)  # odometry comes with the telemetry
-        await it.daemon.control.load_map("kept", None, again.start)
-        end = (await it.do(LocalizeMission()))[1]
+        await it.daemon.control.perform(MapLoad.of("kept", None, again.start))
+        end = (await it.do(Localize()))[1]
         assert end.phase is MissionPhase.DONE
-        await it.daemon.control.stop_recording()
+        await it.daemon.control.perform(RecordStop())
     (tmp_path / "maps").rename(tmp_path / "maps moved away")
     check(replayed(tmp_path / "recordings" / "loaded.mcap"))

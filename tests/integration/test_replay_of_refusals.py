@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from robotd.contract.missions import DriveMission, LocalizeMission, MapMission
+from robotd.contract.missions import DriveTo, Localize, MapStart
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, Clear, ListMaps, MapLoad, MapSave, RecordStart, RecordStop, Stop
 from robotd.core.errors import MapError, MissionError, RobotdError
 from robotd.core.pose import IDENTITY
 from robotd.recording.entries import CommandEntry
@@ -24,16 +25,16 @@ pytestmark = pytest.mark.slow
 async def refuse_everything(it: Living) -> None:
     """Ask for what cannot be done now, in every way there is."""
     control = it.daemon.control
-    for mission in (LocalizeMission(), DriveMission(1.0, 2.0), MapMission("a", ())):
+    for mission in (Localize(), DriveTo(1.0, 2.0), MapStart("a", ())):
         with pytest.raises(MissionError):
             control.start(mission, 1.0)
     with pytest.raises(MissionError):
         control.renew(17)
     with pytest.raises(MapError):
-        await control.load_map("nowhere", None, IDENTITY)
+        await control.perform(MapLoad.of("nowhere", None, IDENTITY))
     with contextlib.suppress(RobotdError):
-        await control.save_map(None)
-    await control.list_maps()
+        await control.perform(MapSave())
+    await control.perform(ListMaps())
 
 
 async def test_ten_thousand_refusals_leave_nothing_in_the_journal(live: Live) -> None:
@@ -49,19 +50,19 @@ async def test_a_session_full_of_refusals_replays(live: Live, tmp_path: Path) ->
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot, armed=False) as it:
         control = it.daemon.control
-        await control.start_recording(str(tmp_path / "recordings" / "refused.mcap"))
+        await control.perform(RecordStart(str(tmp_path / "recordings" / "refused.mcap")))
         await refuse_everything(it)
-        await control.arm()
+        await control.perform(Arm())
         with pytest.raises(MissionError):
-            await control.clear()
-        await it.done(MapMission("office", (), robot.start))
-        await control.save_map("kept")
-        await control.stop("enough")
+            await control.perform(Clear())
+        await it.done(MapStart.of("office", (), robot.start))
+        await control.perform(MapSave("kept"))
+        await control.perform(Stop("enough"))
         await refuse_everything(it)
-        await control.arm()
-        await control.load_map("kept", None, robot.start)
-        await it.done(LocalizeMission())
-        await control.stop_recording()
+        await control.perform(Arm())
+        await control.perform(MapLoad.of("kept", None, robot.start))
+        await it.done(Localize())
+        await control.perform(RecordStop())
     check(replayed(tmp_path / "recordings" / "refused.mcap"))
     recorded = [
         entry.name
@@ -75,15 +76,15 @@ async def test_an_arming_that_fails_halfway_is_recorded_and_replays(live: Live, 
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot, armed=False) as it:
         control = it.daemon.control
-        await control.start_recording(str(tmp_path / "recordings" / "halfway.mcap"))
+        await control.perform(RecordStart(str(tmp_path / "recordings" / "halfway.mcap")))
         own_board(robot, "pantilt").reboot(99)  # it is deaf for a second
         with pytest.raises(RobotdError):
-            await control.arm()
+            await control.perform(Arm())
         assert control.status.mode is Mode.DISARMED
         await asyncio.sleep(5.0)
-        await control.arm()
-        await it.done(MapMission("office", (), robot.start))
-        await control.stop_recording()
+        await control.perform(Arm())
+        await it.done(MapStart.of("office", (), robot.start))
+        await control.perform(RecordStop())
     recorded = [
         entry.name
         for entry in read(tmp_path / "recordings" / "halfway.mcap").entries

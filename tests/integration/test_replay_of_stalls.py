@@ -8,6 +8,7 @@ import pytest
 from robotd.app.replaying import replay_recording
 from robotd.app.stall_guard import STALL_S
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, Clear, RecordStop
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.errors import RobotdError
 from robotd.mission.safety.hold import Stall
@@ -31,15 +32,15 @@ async def stall_in(state: str, directory: Path) -> None:
         await asyncio.sleep(1.0)
         await _bring_back(it)
         await asyncio.sleep(0.2)
-        await it.daemon.control.stop_recording()  # before the lines are taken down, which is another matter
+        await it.daemon.control.perform(RecordStop())  # before the lines are taken down, which is another matter
 
 
 async def _bring_back(it: Bench) -> None:
     if it.mode is Mode.FAULT:
-        await it.daemon.control.clear()
+        await it.daemon.control.perform(Clear())
     if it.mode is Mode.DISARMED:
         try:
-            await it.daemon.control.arm()
+            await it.daemon.control.perform(Arm())
         except RobotdError:
             return
 

@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,8 +16,9 @@ from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
 from robotd.config import Config
 from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.contract.missions import DriveTo, Legs, Localize, MapStart, Mission
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, Clear, Stop
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
@@ -96,7 +98,7 @@ class Rig:
     events: Subscription[Event]
     parts: list[asyncio.Task[None]]
     began_ns: int = 0
-    asked: list[asyncio.Task[None]] = field(default_factory=list)
+    asked: list[asyncio.Task[Any]] = field(default_factory=list)
 
     @property
     def mode(self) -> Mode:
@@ -171,7 +173,7 @@ async def rig(directory: Path, boards: Firmware = Firmware.PYTHON) -> AsyncItera
                 yield one
             finally:
                 compute.go.set()
-                await daemon.control.stop("the test is over")
+                await daemon.control.perform(Stop("the test is over"))
                 await one.end()
                 await asyncio.gather(*one.asked, return_exceptions=True)
 
@@ -180,7 +182,7 @@ async def rig(directory: Path, boards: Firmware = Firmware.PYTHON) -> AsyncItera
 
 
 async def idle(rig: Rig) -> None:
-    await rig.daemon.control.arm()
+    await rig.daemon.control.perform(Arm())
 
 
 def use_blank_map(rig: Rig) -> None:
@@ -191,9 +193,9 @@ def use_blank_map(rig: Rig) -> None:
 
 
 async def driving(rig: Rig) -> None:
-    await rig.daemon.control.arm()
+    await rig.daemon.control.perform(Arm())
     use_blank_map(rig)
-    mission_id = rig.start(DriveMission(*rig.robot.stops_m[0], Legs.STRAIGHT))
+    mission_id = rig.start(DriveTo(*rig.robot.stops_m[0], Legs.STRAIGHT))
     speed_mps = 0.0
 
     def fast(_: Event) -> bool:
@@ -205,15 +207,15 @@ async def driving(rig: Rig) -> None:
 
 
 async def sweeping(rig: Rig) -> None:
-    await rig.daemon.control.arm()
-    mission_id = rig.start(MapMission("new", (), rig.robot.start))
+    await rig.daemon.control.perform(Arm())
+    mission_id = rig.start(MapStart.of("new", (), rig.robot.start))
     await rig.keep_alive(mission_id, lambda event: isinstance(event, SweepProgress) and event.taken >= 20)
 
 
 async def computing(rig: Rig) -> None:
     """The sweep is taken, and the robot waits for the map."""
-    await rig.daemon.control.arm()
-    mission_id = rig.start(MapMission("new", (), rig.robot.start))
+    await rig.daemon.control.perform(Arm())
+    mission_id = rig.start(MapStart.of("new", (), rig.robot.start))
 
     def is_computing(event: Event) -> bool:
         return isinstance(event, MissionProgress) and event.phase is MissionPhase.COMPUTING
@@ -223,15 +225,15 @@ async def computing(rig: Rig) -> None:
 
 async def preparing(rig: Rig) -> None:
     """The map is made ready to localize on, before the sweep."""
-    await rig.daemon.control.arm()
+    await rig.daemon.control.perform(Arm())
     use_blank_map(rig)
-    rig.start(LocalizeMission())
+    rig.start(Localize())
     await asyncio.sleep(0.4)
 
 
 async def arming(rig: Rig) -> None:
     """The base is armed already, the others are not."""
-    rig.asked.append(asyncio.create_task(rig.daemon.control.arm()))
+    rig.asked.append(asyncio.create_task(rig.daemon.control.perform(Arm())))
     with rig.daemon.robot.drive.status_changes.subscribe() as changes:
         assert (await changes.get()).armed
     assert not rig.daemon.robot.rangefinder.status.armed
@@ -239,21 +241,21 @@ async def arming(rig: Rig) -> None:
 
 async def starting(rig: Rig) -> None:
     """A mission was asked for in this very moment."""
-    await rig.daemon.control.arm()
-    rig.start(MapMission("new", (), rig.robot.start))
+    await rig.daemon.control.perform(Arm())
+    rig.start(MapStart.of("new", (), rig.robot.start))
 
 
 # What goes wrong
 
 
 async def stop(rig: Rig) -> None:
-    await rig.daemon.control.stop("enough")
+    await rig.daemon.control.perform(Stop("enough"))
 
 
 async def stop_is_garbled(rig: Rig) -> None:
     for plug in rig.plugs.values():
         plug.garbles = 3
-    await rig.daemon.control.stop("enough")
+    await rig.daemon.control.perform(Stop("enough"))
 
 
 def unplug(device: str) -> Callable[[Rig], Awaitable[None]]:
@@ -297,7 +299,7 @@ async def silent_client(rig: Rig) -> None:
 async def daemon_ends(rig: Rig) -> None:
     """What SIGTERM does: stop on every wire first."""
     rig.daemon.robot.stop_now()
-    await rig.daemon.control.stop("the daemon is ending")
+    await rig.daemon.control.perform(Stop("the daemon is ending"))
     await rig.end()
 
 
@@ -337,11 +339,11 @@ async def check_arming_works_again(rig: Rig) -> None:
     await asyncio.sleep(SOON_S)
     if rig.mode is Mode.FAULT:
         with pytest.raises(RobotdError):
-            await rig.daemon.control.arm()
-        await rig.daemon.control.clear()
+            await rig.daemon.control.perform(Arm())
+        await rig.daemon.control.perform(Clear())
     assert rig.mode.value == "disarmed"
     assert not any(device.status.armed for device in rig.daemon.robot.devices)
-    await rig.daemon.control.arm()
+    await rig.daemon.control.perform(Arm())
     await asyncio.sleep(SOON_S)
     assert rig.mode is Mode.IDLE
     assert set(rig.states.values()) == {BoardState.ARMED}

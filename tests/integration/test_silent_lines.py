@@ -13,8 +13,9 @@ from firmware_proto.common import BoardKind
 from firmware_proto.drive import OdometryReport
 from robotd.app.replaying import ReplayReport, replay_recording
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import Legs, MapMission
+from robotd.contract.missions import Legs, MapStart
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, RecordStop, Stop
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.wire.board import BoardWire
 from robotd.mission.safety.hold import HOLDS_A_MINUTE
@@ -49,10 +50,10 @@ def _is_odometry(frame: bytes) -> bool:
 async def mapping(directory: Path, silence_s: float = 1.0) -> AsyncIterator[Bench]:
     """Yield a robot that makes a map with two stops, and check that its recording replays."""
     async with bench(directory, Dialects(), silence_s=silence_s) as it:
-        await it.daemon.control.arm()
-        it.start(MapMission("laboratory", it.robot.stops_m[:1], it.robot.start, Legs.STRAIGHT))
+        await it.daemon.control.perform(Arm())
+        it.start(MapStart.of("laboratory", it.robot.stops_m[:1], it.robot.start, Legs.STRAIGHT))
         yield it
-        await it.daemon.control.stop_recording()  # what ends the daemon is in no replay
+        await it.daemon.control.perform(RecordStop())  # what ends the daemon is in no replay
     (file,) = (directory / "recordings").glob("*.mcap")
     report = _replayed(file)
     assert report.differences == ()
@@ -196,7 +197,7 @@ async def test_a_stop_while_the_base_is_silent_is_the_end(tmp_path: Path) -> Non
         await until(it, MOMENTS["driving"])
         fall_silent(it)
         await until(it, is_held)
-        await it.daemon.control.stop("enough")
+        await it.daemon.control.perform(Stop("enough"))
         await asyncio.sleep(1.0)
         mend(it)
         assert (await ended(it)).message.startswith("enough")

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from robotd.client import AsyncClient
 from robotd.contract.events import MissionProgress
-from robotd.contract.missions import LocalizeMission, MapMission, Mission, PriorHeading
+from robotd.contract.missions import Localize, MapStart, Mission, PriorHeading
 from robotd.contract.topics import Topic
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
@@ -25,7 +25,7 @@ from tests.safety.rig import Rig, armed, give_precedence, rig
 
 LEASE_S = 10.0
 """Longer than any stall: what is measured shall not end by it."""
-NOTHING_KNOWN = LocalizeMission(heading=PriorHeading.UNKNOWN, tie=False)
+NOTHING_KNOWN = Localize(heading=PriorHeading.UNKNOWN, tie=False)
 HEADER = """\
 | while | beside | lag p50 | lag p99.9 | lag max | callback p99.9 | callback max | over [s] |
 |---|---|---|---|---|---|---|---|"""
@@ -38,7 +38,7 @@ Row = tuple[str, str, Figures]
 
 async def make_map(rig: Rig, client: AsyncClient) -> None:
     """One stop of 300 readings, on a fresh map."""
-    await carried_out(client, MapMission("room", (), rig.robot.start))
+    await carried_out(client, MapStart.of("room", (), rig.robot.start))
 
 
 async def localize(rig: Rig, client: AsyncClient) -> None:

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from firmware_proto.common import Fault
 from robotd.contract.device_status import LinkState
 from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, Clear, Stop
 from robotd.contract.topics import Topic, encode_frame, to_wire
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
@@ -64,11 +65,11 @@ async def come_to_rest(it: Bench) -> None:
     for cable in it.cables.values():
         cable.mend()
     for _ in range(8):
-        await it.daemon.control.stop("between two trials")
+        await it.daemon.control.perform(Stop("between two trials"))
         with contextlib.suppress(RobotdError, TimeoutError):
             await until_ready(it.daemon)
             await asyncio.sleep(0.3)
-            await it.daemon.control.clear()
+            await it.daemon.control.perform(Clear())
             await asyncio.sleep(0.3)
             if it.mode is Mode.DISARMED and not it.daemon.robot.absent and not it.daemon.robot.faults:
                 return
@@ -83,13 +84,13 @@ async def disarmed(it: Bench) -> None:
 
 async def idle(it: Bench) -> None:
     """Armed, and nothing to do."""
-    await it.daemon.control.arm()
+    await it.daemon.control.perform(Arm())
 
 
 async def map_sweep(it: Bench) -> None:
     """Sweeping for a map."""
-    await it.daemon.control.arm()
-    it.start(MapMission("new", (_other_end(it),), it.robot.truth, Legs.STRAIGHT))
+    await it.daemon.control.perform(Arm())
+    it.start(MapStart.of("new", (_other_end(it),), it.robot.truth, Legs.STRAIGHT))
 
 
 async def map_drive(it: Bench) -> None:
@@ -101,22 +102,22 @@ async def map_drive(it: Bench) -> None:
 
 async def localizing(it: Bench) -> None:
     """Sweeping on a map."""
-    await it.daemon.control.arm()
+    await it.daemon.control.perform(Arm())
     await _use_blank_map(it)
-    it.start(LocalizeMission())
+    it.start(Localize())
 
 
 async def driving(it: Bench) -> None:
     """On the way to a place."""
-    await it.daemon.control.arm()
+    await it.daemon.control.perform(Arm())
     await _use_blank_map(it)
-    it.start(DriveMission(*_other_end(it), Legs.STRAIGHT))
+    it.start(DriveTo(*_other_end(it), Legs.STRAIGHT))
     await asyncio.sleep(1.0)
 
 
 async def faulted(it: Bench) -> None:
     """A fault is latched."""
-    await it.daemon.control.arm()
+    await it.daemon.control.perform(Arm())
     drive = it.daemon.robot.drive
     if isinstance(drive, BoughtDevice):
         drive._latch("bumper")

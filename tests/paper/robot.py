@@ -13,7 +13,7 @@ from firmware_proto.rangefinder import ShotStatus
 from robotd.cli.demo.room import brisk
 from robotd.config import Config
 from robotd.contract.events import SweepDone
-from robotd.contract.missions import Legs, MapMission
+from robotd.contract.missions import Legs, MapStart
 from robotd.core.clock import run_virtual
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
@@ -68,7 +68,7 @@ async def _mission(world: World, stops_m: tuple[Point, ...], seed: int, director
     config = replace(config, sweep=replace(config.sweep, tilt_rad=TILT_RAD))
     robot = SimulatedRobot(world, seed)
     async with living(directory, robot, config) as it:
-        said = await it.done(MapMission(world.name, stops_m, robot.start, Legs.STRAIGHT))
+        said = await it.done(MapStart.of(world.name, stops_m, robot.start, Legs.STRAIGHT))
         tie = it.daemon.supervisor.whereabouts.tie
     assert tie is not None
     return Tour(tuple(event.sweep for event in said if isinstance(event, SweepDone)), tie.map_from_odom)

@@ -15,9 +15,9 @@ from typing import Any
 
 from robotd.app.replaying import replay_recording
 from robotd.cli.emulated import config_text
-from robotd.client.async_client import AsyncClient
+from robotd.client import AsyncClient
 from robotd.config import effective_text, loads
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.contract.missions import DriveTo, Legs, Localize, MapStart, Mission
 from robotd.core.errors import RobotdError
 from robotd.sim.faults.catalogue import FAULTS
 from robotd.sim.robot import DEVICES, SimulatedRobot
@@ -133,14 +133,14 @@ class _Session:
 
     def _acts(self) -> dict[str, Callable[[], Coroutine[Any, Any, None]]]:
         robot = SimulatedRobot(load_world(WORLD))
-        new_map = MapMission("new", robot.stops_m, robot.start, Legs.STRAIGHT)
+        new_map = MapStart.of("new", robot.stops_m, robot.start, Legs.STRAIGHT)
         return {
             "arm": self._client.arm,
             "arm again": lambda: armed(self._client),
             "map": lambda: self._mission(replace(new_map, stops_m=())),
             "map and drive": lambda: self._mission(new_map),
-            "localize": lambda: self._mission(LocalizeMission()),
-            "drive": lambda: self._mission(DriveMission(*robot.stops_m[0], Legs.STRAIGHT)),
+            "localize": lambda: self._mission(Localize()),
+            "drive": lambda: self._mission(DriveTo(*robot.stops_m[0], Legs.STRAIGHT)),
             "map, renewed never": lambda: self._unrenewed(new_map),
             "client killed": self._client_killed,
             "client frozen": self._client_frozen,

@@ -11,8 +11,9 @@ from typing import Any
 from robotd.app.replaying import replay_recording
 from robotd.app.stall_guard import LATE_S, STALL_S
 from robotd.contract.events import MissionProgress
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, Mission
+from robotd.contract.missions import DriveTo, Legs, Localize, MapStart, Mission
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, Clear, RecordStop, Stop
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.errors import RobotdError
 from robotd.mission.safety.hold import Stall
@@ -72,7 +73,7 @@ class _Session:
                 await self._act(it)
             self._calm_down(it)
             await asyncio.sleep(0.2)
-            await it.daemon.control.stop_recording()  # before the lines are taken down
+            await it.daemon.control.perform(RecordStop())  # before the lines are taken down
 
     def _calm_down(self, it: Bench) -> None:
         for cable in it.cables.values():
@@ -86,35 +87,35 @@ class _Session:
         except RobotdError as error:  # refused, as happens to clients
             self.done.append(f"({error})")
 
-    def _acts(self, it: Bench) -> dict[str, Callable[[], Coroutine[Any, Any, None]]]:
+    def _acts(self, it: Bench) -> dict[str, Callable[[], Coroutine[Any, Any, object]]]:
         return {
-            "arm": it.daemon.control.arm,
+            "arm": lambda: it.daemon.control.perform(Arm()),
             "arm again": lambda: self._bring_back(it),
-            "map": lambda: self._start(it, MapMission("new", it.robot.stops_m, it.robot.start, Legs.STRAIGHT)),
-            "localize": lambda: self._start(it, LocalizeMission()),
-            "drive": lambda: self._start(it, DriveMission(*it.robot.stops_m[0], Legs.STRAIGHT)),
+            "map": lambda: self._start(it, MapStart.of("new", it.robot.stops_m, it.robot.start, Legs.STRAIGHT)),
+            "localize": lambda: self._start(it, Localize()),
+            "drive": lambda: self._start(it, DriveTo(*it.robot.stops_m[0], Legs.STRAIGHT)),
             "map and die": lambda: self._start_and_die(it),
-            "stop": lambda: it.daemon.control.stop("enough"),
-            "clear": it.daemon.control.clear,
+            "stop": lambda: it.daemon.control.perform(Stop("enough")),
+            "clear": lambda: it.daemon.control.perform(Clear()),
             "stall": lambda: self._stall(it),
             "block": lambda: self._block(it),
             "fault": lambda: self._fault(it),
             "fault and stop": lambda: self._fault_and_stop(it),
             "arm and stop": lambda: self._arm_and_stop(it),
-            "stop with bytes": lambda: self._with_bytes(it, lambda: it.daemon.control.stop("enough")),
-            "arm with bytes": lambda: self._with_bytes(it, it.daemon.control.arm),
+            "stop with bytes": lambda: self._with_bytes(it, lambda: it.daemon.control.perform(Stop("enough"))),
+            "arm with bytes": lambda: self._with_bytes(it, lambda: it.daemon.control.perform(Arm())),
         }
 
     async def _bring_back(self, it: Bench) -> None:
         if it.mode is Mode.FAULT:
-            await it.daemon.control.clear()
-        await it.daemon.control.arm()
+            await it.daemon.control.perform(Clear())
+        await it.daemon.control.perform(Arm())
 
     async def _start(self, it: Bench, mission: Mission) -> None:
         it.start(mission)
 
     async def _start_and_die(self, it: Bench) -> None:
-        it.daemon.control.start(MapMission("new", it.robot.stops_m, it.robot.start, Legs.STRAIGHT), _LEASE_S)
+        it.daemon.control.start(MapStart.of("new", it.robot.stops_m, it.robot.start, Legs.STRAIGHT), _LEASE_S)
 
     async def _stall(self, it: Bench) -> None:
         was_driven = it.daemon.robot.drive.is_driven
@@ -143,10 +144,10 @@ class _Session:
         """Let a stop come some turns of the loop after arming began, before or after it is answered."""
         arming = asyncio.create_task(self._bring_back(it))
         await self._some_turns(30)
-        await it.daemon.control.stop("enough")
+        await it.daemon.control.perform(Stop("enough"))
         await arming
 
-    async def _with_bytes(self, it: Bench, ask: Callable[[], Coroutine[Any, Any, None]]) -> None:
+    async def _with_bytes(self, it: Bench, ask: Callable[[], Coroutine[Any, Any, object]]) -> None:
         """Let a request come within some turns of the loop of a line's bytes."""
         with it.daemon.robot.drive.odometry.subscribe() as odometry, contextlib.suppress(TimeoutError):
             async with asyncio.timeout(_PAUSE_MAX_S):  # its line may be down
@@ -161,8 +162,8 @@ class _Session:
     async def _make_a_map(self, it: Bench) -> None:
         """Make a map of one stop, so that localizing and driving are not merely refused."""
         self.done.append("make a map")
-        await it.daemon.control.arm()
-        it.start(MapMission("first", (), it.robot.start, Legs.STRAIGHT))
+        await it.daemon.control.perform(Arm())
+        it.start(MapStart.of("first", (), it.robot.start, Legs.STRAIGHT))
         await it.until(lambda event: isinstance(event, MissionProgress) and event.is_last)
 
     async def _fault_and_stop(self, it: Bench) -> None:
@@ -170,6 +171,6 @@ class _Session:
         cable = it.cables[self._rng.choice(DEVICES)]
         cable.set_fault(FAULTS["unplug"](self._rng))
         await asyncio.sleep(self._rng.uniform(0, 0.002))
-        await it.daemon.control.stop("enough")
+        await it.daemon.control.perform(Stop("enough"))
         await asyncio.sleep(self._rng.uniform(0, _FAULT_MAX_S))
         cable.set_fault(self._calm(self._rng))

@@ -14,7 +14,7 @@ from firmware_proto.common import Fault
 from robotd.app.stall_guard import STALL_S
 from robotd.client import AsyncClient
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveMission, Legs, MapMission
+from robotd.contract.missions import DriveTo, Legs, MapStart
 from robotd.contract.topics import Topic
 from robotd.core.clock import NS_PER_S, now_ns
 from tests.safety.rig import STALLING_DAEMON, Rig, armed, ms_since, until
@@ -35,7 +35,7 @@ async def lease_expiry(rig: Rig, trials: int) -> AsyncIterator[float]:
             for _ in range(trials):
                 await armed(client)
                 rig.expect_stops()
-                await client.start(MapMission("safety", (), rig.robot.start), LEASE_S)
+                await client.start(MapStart.of("safety", (), rig.robot.start), LEASE_S)
                 async for event in events:
                     if isinstance(event, MissionProgress) and event.phase is MissionPhase.STARTED:
                         began_ns = event.time_ns
@@ -69,7 +69,7 @@ def _hold_on(runtime_dir: Path, running: Event) -> None:
     os.setpriority(os.PRIO_PROCESS, 0, 0)  # a client is nobody special: this one came from the boards' process
 
     async def hold() -> None:
-        mission = MapMission("safety", ())
+        mission = MapStart("safety", ())
         async with AsyncClient(runtime_dir) as client, aclosing(client.run_mission(mission, CLIENT_LEASE_S)) as events:
             async for _ in events:
                 running.set()
@@ -88,7 +88,7 @@ async def loop_stall(rig: Rig, trials: int) -> AsyncIterator[float]:
             await client.stop("the next trial")  # the one before is held, and would go on
             await armed(client)
             y_m = start.y_m + (_AWAY_M if trial % 2 == 0 else -_AWAY_M)  # never where it may already be
-            await client.start(DriveMission(start.x_m, y_m, Legs.STRAIGHT), CLIENT_LEASE_S)
+            await client.start(DriveTo(start.x_m, y_m, Legs.STRAIGHT), CLIENT_LEASE_S)
             await asyncio.sleep(_UNDER_WAY_S)
             rig.expect_stops()
             os.kill(daemon.pid, signal.SIGRTMIN)
@@ -101,7 +101,7 @@ async def sigterm(rig: Rig, trials: int) -> AsyncIterator[float]:
     for _ in range(trials):
         async with rig.daemon() as daemon, AsyncClient(rig.runtime_dir) as client:
             await armed(client)
-            await client.start(MapMission("safety", (), rig.robot.start), 5.0)
+            await client.start(MapStart.of("safety", (), rig.robot.start), 5.0)
             await asyncio.sleep(0.3)
             rig.expect_stops()
             told_ns = now_ns()
@@ -116,7 +116,7 @@ async def daemon_killed(rig: Rig, trials: int) -> AsyncIterator[float]:
     for _ in range(trials):
         async with rig.daemon(config="quick.toml") as daemon, AsyncClient(rig.runtime_dir) as client:
             await armed(client)
-            await client.start(MapMission("safety", (far_end(rig),), rig.robot.truth, Legs.STRAIGHT), 10.0)
+            await client.start(MapStart.of("safety", (far_end(rig),), rig.robot.truth, Legs.STRAIGHT), 10.0)
             await until(lambda: body.velocity[0] > _MOVING_MPS)
             killed_ns = now_ns()
             daemon.kill()

@@ -5,7 +5,8 @@ import math
 from collections.abc import Awaitable, Callable
 
 from robotd.app.compose import Daemon
-from robotd.contract.missions import DriveMission, Legs, MapMission
+from robotd.contract.missions import DriveTo, Legs, MapStart
+from robotd.contract.requests import Arm
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
@@ -30,7 +31,7 @@ async def driving(rig: Rig, daemon: Daemon) -> "asyncio.Task[None]":
 
 async def head_turning(rig: Rig, daemon: Daemon) -> "asyncio.Task[None]":
     """From one side to the other."""
-    await daemon.control.arm()
+    await daemon.control.perform(Arm())
     await daemon.robot.pantilt.aim(-1.5, 0.0, timeout_s=5.0)
     aiming = asyncio.create_task(_aim(daemon), name="client")
     await _until(lambda: rig.robot._head.arrives_us is not None)
@@ -40,8 +41,8 @@ async def head_turning(rig: Rig, daemon: Daemon) -> "asyncio.Task[None]":
 
 async def sweeping(rig: Rig, daemon: Daemon) -> "asyncio.Task[None]":
     """Some way round, the laser at work."""
-    await daemon.control.arm()
-    client = await start(daemon, MapMission("new", (), rig.robot.start))
+    await daemon.control.perform(Arm())
+    client = await start(daemon, MapStart.of("new", (), rig.robot.start))
     await _until(lambda: rig.robot._laser._on)
     await asyncio.sleep(rig.random.uniform(_PHASE_S, 3 * _PHASE_S))
     return client
@@ -54,14 +55,14 @@ async def _aim(daemon: Daemon) -> None:
 async def _on_the_way(
     rig: Rig, daemon: Daemon, bearing_rad: float, is_fast: Callable[[], bool]
 ) -> "asyncio.Task[None]":
-    await daemon.control.arm()
+    await daemon.control.perform(Arm())
     here = rig.robot.truth
     grid = OccupancyGrid(GridSettings().spec_covering(((here.x_m, here.y_m),), 4.0))
     tie = Tie.between(here, (await next_odometry(daemon.robot.drive, 1.0)).in_odom)
     daemon.supervisor.use(MapInUse("blank", "blank", grid), tie)
     way_rad = here.heading_rad + bearing_rad
     goal_m = here.x_m + 1.2 * math.cos(way_rad), here.y_m + 1.2 * math.sin(way_rad)
-    client = await start(daemon, DriveMission(*goal_m, Legs.STRAIGHT))
+    client = await start(daemon, DriveTo(*goal_m, Legs.STRAIGHT))
     await _until(is_fast)
     await asyncio.sleep(rig.random.uniform(0.0, _PHASE_S))
     return client

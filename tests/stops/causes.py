@@ -6,6 +6,7 @@ import signal
 from collections.abc import Callable
 
 from robotd.app.compose import Daemon
+from robotd.contract.requests import Stop
 from tests.stops.rig import Rig
 
 Cause = Callable[[Rig, Daemon], None]
@@ -45,7 +46,7 @@ def _throw(task: "asyncio.Task[object]", error: Exception) -> None:
 
 
 def _stop(rig: Rig, daemon: Daemon) -> None:
-    rig.tasks.append(asyncio.create_task(daemon.control.stop("enough")))
+    rig.tasks.append(asyncio.create_task(daemon.control.perform(Stop("enough"))))
 
 
 def _lease_ends(_: Rig, daemon: Daemon) -> None:

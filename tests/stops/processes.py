@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 from robotd.client import AsyncClient
-from robotd.contract.missions import Legs, MapMission
+from robotd.contract.missions import Legs, MapStart
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.sim.emulators.catalogue import Dialects
 from tests.safety.causes import far_end
@@ -59,7 +59,7 @@ async def _in_motion(it: Rig, client: AsyncClient, activity: str) -> None:
     for _ in range(_ATTEMPTS):
         await armed(client)
         stop_m = _behind(it) if activity == "turning" else far_end(it)
-        await client.start(MapMission("stops", (stop_m,), it.robot.truth, Legs.STRAIGHT), _LEASE_S)
+        await client.start(MapStart.of("stops", (stop_m,), it.robot.truth, Legs.STRAIGHT), _LEASE_S)
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(_LEASE_S):
                 if activity == "turning":

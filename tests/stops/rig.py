@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 from robotd.app import daemon as program
@@ -78,7 +79,7 @@ class Rig:
     connects: Mapping[str, Connect]
     random: random.Random
     wires: dict[str, Wire] = field(default_factory=dict)
-    tasks: list["asyncio.Task[None]"] = field(default_factory=list)
+    tasks: list["asyncio.Task[Any]"] = field(default_factory=list)
     """What a cause has asked for."""
     composed: "asyncio.Future[Daemon] | None" = None
 

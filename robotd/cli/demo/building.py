@@ -20,7 +20,7 @@ from robotd.cli.verb import OK
 from robotd.config import Config
 from robotd.contract.estimate import PoseState
 from robotd.contract.events import MapChanged
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.core.errors import MissionError
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.sim.building import RecordedBuilding, encode_recorded_building, select_stops
@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     with rig(directory, wired(_config(), directory), emulator) as parts:
         parts.client.arm()
         console.print("Making the map, along straight legs as the recorded robot went:")
-        sweeps, _ = follow(console, parts.client, MapMission("building", robot.stops_m, robot.start, Legs.STRAIGHT))
+        sweeps, _ = follow(console, parts.client, MapStart.of("building", robot.stops_m, robot.start, Legs.STRAIGHT))
         print_readings(console, sweeps)
         entry = parts.client.map_save()
         console.print(f"  map saved: {directory / 'maps' / entry.name / str(entry.version)} ({entry.digest[:12]})")
@@ -91,8 +91,8 @@ def _config() -> Config:
 
 
 def _localize_at(parts: Rig, console: Console, number: int, probe_m: tuple[float, float]) -> Trial:
-    follow(console, parts.client, DriveMission(*probe_m, legs=Legs.STRAIGHT))
-    (sweep,), estimate = follow(console, parts.client, LocalizeMission(tie=False))
+    follow(console, parts.client, DriveTo(*probe_m, legs=Legs.STRAIGHT))
+    (sweep,), estimate = follow(console, parts.client, Localize(tie=False))
     if estimate is None:
         raise MissionError("a localization ended without an estimate")
     trial = Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)

@@ -19,7 +19,7 @@ from robotd.cli.show.terminal import bold, command_line
 from robotd.cli.verb import FAILED, OK
 from robotd.config import Config
 from robotd.contract.events import MapChanged
-from robotd.contract.missions import DriveMission, LocalizeMission, MapMission
+from robotd.contract.missions import DriveTo, Localize, MapStart
 from robotd.core.errors import RobotdError
 from robotd.core.reading import Sweep
 from robotd.grid.occupancy import OccupancyGrid
@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
         client.arm()
         console.print("Making the map, stop by stop:")
         stops_m = world.stops_m[: arguments.stops]
-        sweeps, _ = follow(console, client, MapMission(world.name, stops_m, world.start_pose))
+        sweeps, _ = follow(console, client, MapStart.of(world.name, stops_m, world.start_pose))
         print_readings(console, sweeps)
         entry = client.map_save()
         console.print(f"  map saved: {directory / 'maps' / entry.name / str(entry.version)} ({entry.digest[:12]})")
@@ -100,8 +100,8 @@ def brisk() -> DrivingSettings:
 
 def _localize_at(parts: Rig, console: Console, probe_m: tuple[float, float]) -> Trial:
     console.print(f"Driving to ({probe_m[0]:.1f}, {probe_m[1]:.1f}) m and looking round:")
-    follow(console, parts.client, DriveMission(*probe_m))
-    (sweep,), estimate = follow(console, parts.client, LocalizeMission())
+    follow(console, parts.client, DriveTo(*probe_m))
+    (sweep,), estimate = follow(console, parts.client, Localize())
     assert estimate is not None  # a localization that is done has one
     return Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)
 

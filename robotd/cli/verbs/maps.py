@@ -20,9 +20,10 @@ from robotd.cli.show.half_blocks import can_draw_blocks, coloured, plain, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import OK, Verb
 from robotd.cli.verbs import map_files
+from robotd.contract.answers import MapEntryInfo
+from robotd.contract.arguments import MapName
 from robotd.contract.events import MapChanged
-from robotd.contract.missions import Legs, MapMission
-from robotd.contract.requests import MapEntryInfo, MapName
+from robotd.contract.missions import Legs, MapStart
 from robotd.core.clock import NS_PER_S
 from robotd.core.grid_bytes import grid_digest
 from robotd.core.pose import IDENTITY, Pose2
@@ -36,7 +37,7 @@ def _start(arguments: argparse.Namespace) -> int:
     if arguments.world is not None:
         robot = load_robot(arguments.world, odometry=OdometrySource(arguments.odometry))
         start, stops_m = start or robot.start, stops_m or robot.stops_m
-    return carry_out(arguments, MapMission(arguments.name, stops_m, start or IDENTITY, Legs(arguments.legs)))
+    return carry_out(arguments, MapStart.of(arguments.name, stops_m, start or IDENTITY, Legs(arguments.legs)))
 
 
 def _start_arguments(parser: argparse.ArgumentParser) -> None:

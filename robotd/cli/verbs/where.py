@@ -12,7 +12,7 @@ from robotd.cli.verb import OK, Verb
 from robotd.client.feed import Gap
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, PriorHeading
+from robotd.contract.missions import DriveTo, Legs, Localize, PriorHeading
 from robotd.contract.topics import Topic
 from robotd.core.errors import RequestTimeout
 
@@ -23,7 +23,7 @@ _PATIENCE_S = 3.0
 def _localize(arguments: argparse.Namespace) -> int:
     heading_rad = None if arguments.heading_deg is None else heading_of_deg(arguments.heading_deg)
     heading = PriorHeading.UNKNOWN if arguments.heading_unknown else PriorHeading.ODOMETRY
-    return carry_out(arguments, LocalizeMission(heading_rad, heading=heading, within=arguments.within))
+    return carry_out(arguments, Localize(heading_rad, heading=heading, within=arguments.within))
 
 
 def _known(parser: argparse.ArgumentParser) -> None:
@@ -59,7 +59,7 @@ class _AreaAction(argparse.Action):
 
 
 def _drive_to(arguments: argparse.Namespace) -> int:
-    return carry_out(arguments, DriveMission(arguments.x_m, arguments.y_m, Legs(arguments.legs)))
+    return carry_out(arguments, DriveTo(arguments.x_m, arguments.y_m, Legs(arguments.legs)))
 
 
 def _goal(parser: argparse.ArgumentParser) -> None:

@@ -15,6 +15,7 @@ from robotd.app import daemon as program
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import main, run
 from robotd.config import Config
+from robotd.contract.requests import Arm
 from robotd.core.errors import TransportError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
@@ -130,7 +131,7 @@ async def test_sigterm_stops_the_robot_first_and_completes_the_recording(
         running = asyncio.create_task(run(config_in(short, from_start=True)))
         daemon = await captured.composed
         await until_ready(daemon)
-        await daemon.control.arm()
+        await daemon.control.perform(Arm())
         assert {own_board(robot, name).state for name in robot.boards} == {BoardState.ARMED}
         os.kill(os.getpid(), signal.SIGTERM)
         await asyncio.wait_for(running, 5.0)
@@ -156,7 +157,7 @@ async def test_an_error_in_the_daemon_itself_stops_the_robot(short: Path, monkey
         running = asyncio.create_task(run(config_in(short)))
         daemon = await captured.composed
         await until_ready(daemon)
-        await daemon.control.arm()
+        await daemon.control.perform(Arm())
 
         def fail(*_: object) -> None:
             raise ValueError("a mistake of ours")

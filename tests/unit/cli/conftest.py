@@ -10,12 +10,12 @@ import pytest
 
 from robotd.client.feed import Gap
 from robotd.client.mission_run import MissionEvent
+from robotd.contract.answers import MapEntryInfo
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.contract.events import MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.contract.missions import Mission
 from robotd.contract.modes import Mode
-from robotd.contract.requests import MapEntryInfo
 from robotd.contract.topics import Published
 from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec

@@ -11,7 +11,7 @@ import pytest
 from robotd.cli.main import main
 from robotd.contract.area import Area
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission, PriorHeading
+from robotd.contract.missions import DriveTo, Legs, Localize, MapStart, PriorHeading
 from robotd.core.errors import RequestTimeout
 from robotd.core.pose import IDENTITY, Pose2
 
@@ -25,13 +25,13 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
     main(["map", "start", "lab", "--stop", "1", "2", "--stop", "-3", "4", "--start", "1", "0", "180"])
     main(["map", "start", "lab"])
     assert [asked for asked in client.asked if asked != "close"] == [
-        LocalizeMission(None),
-        LocalizeMission(math.radians(90)),
-        LocalizeMission(math.radians(90)),
-        LocalizeMission(heading=PriorHeading.UNKNOWN, within=Area(1.0, -2.0, 0.5)),
-        DriveMission(1.5, -2.0, Legs.STRAIGHT),
-        MapMission("lab", ((1.0, 2.0), (-3.0, 4.0)), Pose2(1.0, 0.0, math.pi), Legs.PLANNED),
-        MapMission("lab", (), IDENTITY, Legs.PLANNED),
+        Localize(None),
+        Localize(math.radians(90)),
+        Localize(math.radians(90)),
+        Localize(heading=PriorHeading.UNKNOWN, within=Area(1.0, -2.0, 0.5)),
+        DriveTo(1.5, -2.0, Legs.STRAIGHT),
+        MapStart.of("lab", ((1.0, 2.0), (-3.0, 4.0)), Pose2(1.0, 0.0, math.pi), Legs.PLANNED),
+        MapStart.of("lab", (), IDENTITY, Legs.PLANNED),
     ]
 
 

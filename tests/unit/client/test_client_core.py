@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 from robotd.client.exchange import Exchanges
 from robotd.client.feed import Feed, Gap, as_topics
 from robotd.client.mission_run import MissionRun, final_estimate
-from robotd.contract import requests as api
-from robotd.contract.envelope import Request, decode_request, encode_error, encode_result
+from robotd.contract.answers import Done, MissionStarted, RecordingFile, Renewed
+from robotd.contract.envelope import NumberedRequest, decode_request, encode_error, encode_result
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, GetStatus, Hello, RecordStop
 from robotd.contract.topics import LogEntry, Topic, encode_frame, to_wire
 from robotd.core.errors import MissionError, RemoteProtocolError, RequestTimeout, ServerError
 
@@ -23,16 +24,16 @@ def exchanges(deadline_s: float | None = None) -> Exchanges:
 
 
 def test_a_request_is_repeated_under_its_number_until_the_deadline() -> None:
-    exchange = exchanges().begin(api.GetStatus(), 100.0)
+    exchange = exchanges().begin(GetStatus(), 100.0)
     sent = [(now_s, exchange.due(now_s)) for now_s in (100.0, 100.2, 100.5, 100.9, 101.0)]
     assert [now_s for now_s, data in sent if data] == [100.0, 100.5, 101.0]
     assert len({data for _, data in sent if data}) == 1
     with pytest.raises(RequestTimeout, match="status"):
-        exchange.due(100.0 + api.GetStatus.deadline_s)
+        exchange.due(100.0 + GetStatus.deadline_s)
 
 
 def test_the_wait_ends_with_the_next_repeat_or_the_deadline() -> None:
-    exchange = exchanges(deadline_s=0.7).begin(api.GetStatus(), 0.0)
+    exchange = exchanges(deadline_s=0.7).begin(GetStatus(), 0.0)
     assert exchange.wait_s(0.0) == 0.0
     exchange.due(0.0)
     assert exchange.wait_s(0.1) == pytest.approx(0.4)
@@ -43,24 +44,24 @@ def test_the_wait_ends_with_the_next_repeat_or_the_deadline() -> None:
 
 def test_answers_find_their_requests_in_any_order() -> None:
     book = exchanges()
-    first, second = book.begin(api.RecordStop(), 0.0), book.begin(api.RecordStop(), 0.0)
-    book.accept(encode_result(second.id, api.RecordingFile("b")))
+    first, second = book.begin(RecordStop(), 0.0), book.begin(RecordStop(), 0.0)
+    book.accept(encode_result(second.id, RecordingFile("b")))
     assert (first.is_answered, second.is_answered) == (False, True)
-    book.accept(encode_result(first.id, api.RecordingFile(None)))
+    book.accept(encode_result(first.id, RecordingFile(None)))
     assert (first.result().path, second.result().path) == (None, "b")
 
 
 def test_the_answer_to_a_repeat_is_let_go() -> None:
     book = exchanges()
-    exchange = book.begin(api.Arm(), 0.0)
-    book.accept(encode_result(exchange.id, api.Done()))
+    exchange = book.begin(Arm(), 0.0)
+    book.accept(encode_result(exchange.id, Done()))
     book.end(exchange)
-    assert book.accept(encode_result(exchange.id, api.Done())) is None
+    assert book.accept(encode_result(exchange.id, Done())) is None
 
 
 def test_a_refusal_is_raised_with_its_code() -> None:
     book = exchanges()
-    exchange = book.begin(api.Arm(), 0.0)
+    exchange = book.begin(Arm(), 0.0)
     book.accept(encode_error(exchange.id, ServerError("refused", "a fault is latched")))
     with pytest.raises(ServerError, match="a fault is latched") as caught:
         exchange.result()
@@ -74,16 +75,16 @@ def test_a_refusal_without_number_is_raised_at_once() -> None:
 
 def test_an_answer_of_another_shape_is_the_servers_fault() -> None:
     book = exchanges()
-    exchange = book.begin(api.Hello(), 0.0)
-    book.accept(encode_result(exchange.id, api.Done()))
+    exchange = book.begin(Hello(), 0.0)
+    book.accept(encode_result(exchange.id, Done()))
     with pytest.raises(RemoteProtocolError, match="hello"):
         exchange.result()
 
 
 def test_requests_are_numbered_apart() -> None:
     book = exchanges()
-    sent = [decode_request(book.begin(api.Arm(), 0.0).due(0.0) or b"", 1000) for _ in range(3)]
-    assert len({request.id for request in sent if isinstance(request, Request)}) == 3
+    sent = [decode_request(book.begin(Arm(), 0.0).due(0.0) or b"", 1000) for _ in range(3)]
+    assert len({request.id for request in sent if isinstance(request, NumberedRequest)}) == 3
 
 
 def frame(seq: int, session: str = "s", topic: Topic = Topic.LOG) -> bytes:
@@ -155,14 +156,14 @@ def progress(phase: MissionPhase, mission_id: int = 7) -> MissionProgress:
 
 
 def a_run() -> MissionRun:
-    return MissionRun(api.MissionStarted(7, 0.4), 0.0)
+    return MissionRun(MissionStarted(7, 0.4), 0.0)
 
 
 def test_a_lease_is_renewed_well_before_it_runs_out() -> None:
     run, renewals, now_s = a_run(), 0, 0.0
     while now_s < 4.0:
         if run.is_due(now_s):
-            run.renewed(api.Renewed(progress(MissionPhase.SWEEPING)), now_s)
+            run.renewed(Renewed(progress(MissionPhase.SWEEPING)), now_s)
             renewals += 1
         now_s += max(0.001, run.wait_s(now_s))
     assert 30 <= renewals <= 41
@@ -190,7 +191,7 @@ def test_a_mission_that_was_not_done_says_why(phase: MissionPhase) -> None:
 
 
 def test_a_client_that_got_no_processor_says_that_its_lease_ended_for_that() -> None:
-    run = MissionRun(api.MissionStarted(7, 0.4), 0.0)
+    run = MissionRun(MissionStarted(7, 0.4), 0.0)
     assert run.is_due(3.2)
     refused = run.refused(ServerError("refused", "mission 7 is not under way any more: the lease of mission 7 expired"))
     assert refused.code == "refused"
@@ -202,7 +203,7 @@ def test_a_client_that_got_no_processor_says_that_its_lease_ended_for_that() -> 
 
 
 def test_a_client_that_renewed_in_time_blames_nobody() -> None:
-    run = MissionRun(api.MissionStarted(7, 0.4), 0.0)
+    run = MissionRun(MissionStarted(7, 0.4), 0.0)
     assert run.is_due(0.3)
     assert run.refused(ServerError("refused", "why")).message == "why"
 
@@ -222,7 +223,7 @@ def status(mission_id: int, held: str | None) -> Status:
 
 def test_an_end_known_from_a_renewal_waits_for_messages_under_way_then_counts() -> None:
     run = a_run()
-    run.renewed(api.Renewed(progress(MissionPhase.DONE)), 1.0)
+    run.renewed(Renewed(progress(MissionPhase.DONE)), 1.0)
     assert not run.is_due(9.0)
     told = [(run.overdue(now_s), run.is_over) for now_s in (1.1, 1.3, 1.4)]
     assert told == [(None, False), (progress(MissionPhase.DONE), True), (None, True)]

@@ -15,13 +15,22 @@ import msgpack
 import msgspec
 import pytest
 
-from robotd.contract import requests as api
+from robotd.contract.answers import ErrorCode
 from robotd.contract.device_status import LinkState
-from robotd.contract.envelope import Request, decode_reply, decode_request, encode_error, encode_request, encode_result
+from robotd.contract.envelope import (
+    NumberedRequest,
+    decode_reply,
+    decode_request,
+    encode_error,
+    encode_request,
+    encode_result,
+)
 from robotd.contract.estimate import PoseState
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import Legs, PriorHeading
 from robotd.contract.modes import Mode
+from robotd.contract.plain import from_plain
+from robotd.contract.requests import REQUESTS
 from robotd.contract.topics import EVENTS, Topic, decode_frame, encode_frame, to_wire
 from robotd.core.errors import ServerError
 from robotd.core.reading import ReadingStatus
@@ -35,7 +44,7 @@ WORDS: list[type[StrEnum]] = [
     PriorHeading,
     LinkState,
     ReadingStatus,
-    api.ErrorCode,
+    ErrorCode,
     Topic,
 ]
 
@@ -79,8 +88,8 @@ def in_order(fields: Any) -> Any:
 
 
 def test_every_message_has_its_file_and_no_other() -> None:
-    assert set(names("requests")) == set(api.COMMANDS)
-    assert set(names("replies")) == {*api.COMMANDS, "error"}
+    assert set(names("requests")) == set(REQUESTS)
+    assert set(names("replies")) == {*REQUESTS, "error"}
     assert set(names("events")) == {*(name for _, name in EVENTS.values()), "map_changed_whole"}
 
 
@@ -88,19 +97,19 @@ def test_every_message_has_its_file_and_no_other() -> None:
 def test_a_request_is_understood_and_sent_byte_for_byte(name: str) -> None:
     data = packed(message("requests", name))
     request = decode_request(data, 65536)
-    assert isinstance(request, Request)
-    assert type(request.command) is api.COMMANDS[name]
-    assert encode_request(request.id, request.command) == data
+    assert isinstance(request, NumberedRequest)
+    assert type(request.request) is REQUESTS[name]
+    assert encode_request(request.id, request.request) == data
 
 
 @pytest.mark.parametrize("name", names("requests"))
 def test_a_request_shows_every_argument_at_another_value_than_its_own(name: str) -> None:
     arguments = message("requests", name)["args"]
-    fields = msgspec.structs.fields(api.COMMANDS[name])
+    fields = msgspec.structs.fields(REQUESTS[name])
     assert list(arguments) == [field.name for field in fields]
     shown = decode_request(packed(message("requests", name)), 65536)
-    assert isinstance(shown, Request)
-    at_their_own = {field.name for field in fields if getattr(shown.command, field.name) == field.default}
+    assert isinstance(shown, NumberedRequest)
+    at_their_own = {field.name for field in fields if getattr(shown.request, field.name) == field.default}
     assert at_their_own <= {"heading"}  # which must be the usual one where heading_rad is given
 
 
@@ -109,7 +118,7 @@ def test_a_reply_is_understood_and_given_byte_for_byte(name: str) -> None:
     data = packed(message("replies", name))
     reply = decode_reply(data)
     assert reply.id is not None
-    result = msgspec.convert(reply.result, api.COMMANDS[name].result, strict=True)
+    result = from_plain(REQUESTS[name].result, reply.result)
     assert in_order(inflated(encode_result(reply.id, result))) == in_order(inflated(data))
 
 

@@ -7,20 +7,22 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from robotd.contract import requests as api
-from robotd.contract.envelope import BadRequest, Request, decode_request, encode_request
+from robotd.contract.envelope import BadRequest, NumberedRequest, decode_request, encode_request
+from robotd.contract.missions import Localize
+from robotd.contract.request import Request
+from robotd.contract.requests import LONGEST_REASON, Arm, Disarm, Hello, MapSave, RecordStop, Stop
 from robotd.contract.stopping import STOPPING, means_stop
 from tests.unit.contract.test_envelope import SAMPLES
 
 LIMIT = 65536
-STOP = encode_request(5, api.Stop("because"))
+STOP = encode_request(5, Stop("because"))
 OTHERS = [sample for sample in SAMPLES if not isinstance(sample, STOPPING)]
 
 
 def stops(data: bytes) -> bool:
     """Whether a request, good or bad, stops the robot."""
     decoded = decode_request(data, LIMIT)
-    return decoded.means_stop if isinstance(decoded, BadRequest) else isinstance(decoded.command, STOPPING)
+    return decoded.means_stop if isinstance(decoded, BadRequest) else isinstance(decoded.request, STOPPING)
 
 
 RECOGNIZED: dict[str, bytes] = {
@@ -118,17 +120,17 @@ def test_a_stop_with_anything_beside_it_is_obeyed(fields: dict[str, Any], name: 
 @example(reason="", number=0)
 def test_a_stop_whose_reason_alone_is_odd_is_a_good_request(reason: Any, number: int) -> None:
     decoded = decode_request(msgpack.packb({"v": 1, "id": number, "cmd": "stop", "args": {"reason": reason}}), LIMIT)
-    assert isinstance(decoded, Request)
-    assert isinstance(decoded.command, api.Stop)
+    assert isinstance(decoded, NumberedRequest)
+    assert isinstance(decoded.request, Stop)
     assert decoded.id == number
-    assert decoded.command.reason.isprintable()
-    assert 0 < len(decoded.command.reason) <= api.LONGEST_REASON
+    assert decoded.request.reason.isprintable()
+    assert 0 < len(decoded.request.reason) <= LONGEST_REASON
 
 
 @given(st.sampled_from(OTHERS), st.data())
 @settings(max_examples=300)
 def test_another_request_never_stops_whole_or_cut_behind_its_command(
-    command: api.Command[Any], data: st.DataObject
+    command: Request[Any], data: st.DataObject
 ) -> None:
     packed = encode_request(5, command)
     name_ends = packed.index(command.cmd.encode()) + len(command.cmd)
@@ -154,12 +156,10 @@ def test_no_bytes_raise(data: bytes) -> None:
 
 
 @pytest.mark.parametrize("args", [None, [], {}])
-@pytest.mark.parametrize(
-    "command", [api.Hello, api.Arm, api.Localize, api.MapSave, api.RecordStop, api.Stop, api.Disarm]
-)
-def test_an_empty_list_and_nil_are_no_arguments(command: type[api.Command[Any]], args: Any) -> None:
+@pytest.mark.parametrize("command", [Hello, Arm, Localize, MapSave, RecordStop, Stop, Disarm])
+def test_an_empty_list_and_nil_are_no_arguments(command: type[Request[Any]], args: Any) -> None:
     packed = msgpack.packb({"v": 1, "id": 5, "cmd": command.cmd, "args": args})
-    assert decode_request(packed, LIMIT) == Request(5, command())
+    assert decode_request(packed, LIMIT) == NumberedRequest(5, command())
 
 
 @pytest.mark.parametrize("args", [0, "", False, [1], "none"])
@@ -181,5 +181,5 @@ def test_nothing_else_is_taken_for_no_arguments(args: Any) -> None:
     ],
 )
 def test_a_client_stops_for_any_reason(reason: object, kept: str) -> None:
-    assert api.Stop.because(reason).reason == kept
-    assert decode_request(encode_request(1, api.Stop.because(reason)), LIMIT) == Request(1, api.Stop(kept))
+    assert Stop.because(reason).reason == kept
+    assert decode_request(encode_request(1, Stop.because(reason)), LIMIT) == NumberedRequest(1, Stop(kept))

@@ -11,7 +11,7 @@ import pytest
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import Event, MissionPhase, MissionProgress
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.contract.modes import Mode
 from robotd.core.broadcast import Broadcast, Subscription
 from robotd.core.clock import NS_PER_S, now_ns
@@ -333,13 +333,13 @@ async def test_without_a_base_it_can_be_armed_to_look_but_not_to_move() -> None:
         await r.supervisor.arm()
         assert (r.mode, r.reason) == (Mode.IDLE, "armed without a base: it can only look")
         assert [device.status.armed for device in r.devices] == [False, True, True]
-        for mission in (DriveMission(0.1, 0.0), MapMission("m", ())):
+        for mission in (DriveTo(0.1, 0.0), MapStart("m", ())):
             with pytest.raises(MissionError, match="the drive is not armed; it can only localize where it stands"):
                 r.supervisor.start(mission, 10.0)
         r.drive.change(link=LinkState.CONNECTING, detail="line open")
         await turns()
         assert r.mode is Mode.IDLE
-        r.supervisor.start(LocalizeMission(heading_rad=0.0), 10.0)
+        r.supervisor.start(Localize(heading_rad=0.0), 10.0)
         assert r.mode.value == "localizing"
 
 
@@ -393,7 +393,7 @@ async def test_what_a_lost_drive_said_last_is_not_shown_as_if_it_were_now() -> N
 async def test_an_error_of_ours_stops_the_robot_before_it_ends_the_daemon(monkeypatch: pytest.MonkeyPatch) -> None:
     async with rig(talking=False) as r:
         r.use_map()
-        r.supervisor.start(DriveMission(1.0, 0.0, Legs.STRAIGHT), 100.0)
+        r.supervisor.start(DriveTo(1.0, 0.0, Legs.STRAIGHT), 100.0)
         await turns()
 
         def fail(*_: object) -> None:
@@ -412,7 +412,7 @@ async def test_an_error_of_ours_stops_the_robot_before_it_ends_the_daemon(monkey
 
 async def test_a_mission_stopped_before_its_first_step_says_so_and_gives_its_lease_back() -> None:
     async with rig() as r:
-        mission_id = r.supervisor.start(MapMission("new", ()), 0.5)
+        mission_id = r.supervisor.start(MapStart("new", ()), 0.5)
         await r.supervisor.stop("changed my mind")
         end = await r.end_of_mission()
         assert (end.mission_id, end.phase, end.message) == (mission_id, MissionPhase.STOPPED, "changed my mind")
@@ -423,7 +423,7 @@ async def test_a_mission_stopped_before_its_first_step_says_so_and_gives_its_lea
 async def test_a_lost_drive_is_why_a_drive_ended() -> None:
     async with rig() as r:
         r.use_map()
-        r.supervisor.start(DriveMission(1.0, 0.0, Legs.STRAIGHT), 100.0)
+        r.supervisor.start(DriveTo(1.0, 0.0, Legs.STRAIGHT), 100.0)
         await asyncio.sleep(1.0)
         assert r.drive.told
         r.drive.change(**GONE)
@@ -435,7 +435,7 @@ async def test_a_lost_drive_is_why_a_drive_ended() -> None:
 async def test_a_base_that_does_not_move_is_stopped() -> None:
     async with rig() as r:
         r.use_map()
-        r.supervisor.start(DriveMission(1.0, 0.0, Legs.STRAIGHT), 100.0)
+        r.supervisor.start(DriveTo(1.0, 0.0, Legs.STRAIGHT), 100.0)
         end = await r.end_of_mission()
         assert end.phase is MissionPhase.FAILED
         assert "stalled: drive is no nearer" in end.message
@@ -444,7 +444,7 @@ async def test_a_base_that_does_not_move_is_stopped() -> None:
 
 async def test_without_odometry_nothing_begins() -> None:
     async with rig(talking=False) as r:
-        r.supervisor.start(MapMission("new", ((1.0, 0.0),)), 100.0)
+        r.supervisor.start(MapStart("new", ((1.0, 0.0),)), 100.0)
         began_ns = now_ns()
         end = await r.end_of_mission()
         assert (end.phase, end.message) == (MissionPhase.FAILED, "drive: no odometry for 0.5 s")
@@ -456,7 +456,7 @@ async def test_without_odometry_nothing_begins() -> None:
 
 async def test_a_head_that_is_stuck_stops_the_robot() -> None:
     async with rig() as r:
-        r.supervisor.start(MapMission("new", ()), 100.0)
+        r.supervisor.start(MapStart("new", ()), 100.0)
         end = await r.end_of_mission()
         assert (end.phase, end.message) == (MissionPhase.FAILED, "pantilt: still turning")
         assert r.mode is Mode.DISARMED
@@ -464,7 +464,7 @@ async def test_a_head_that_is_stuck_stops_the_robot() -> None:
 
 async def test_a_mission_that_cannot_be_done_leaves_the_robot_armed_and_idle() -> None:
     async with rig() as r:
-        r.supervisor.start(LocalizeMission(), 100.0)
+        r.supervisor.start(Localize(), 100.0)
         end = await r.end_of_mission()
         assert end.phase is MissionPhase.FAILED
         assert "no map is in use" in end.message
@@ -479,7 +479,7 @@ async def test_an_error_of_ours_in_a_mission_stops_the_robot(monkeypatch: pytest
     async with rig() as r:
         r.use_map()
         monkeypatch.setattr("robotd.mission.missions.run_driving", fail)
-        r.supervisor.start(DriveMission(1.0, 0.0), 100.0)
+        r.supervisor.start(DriveTo(1.0, 0.0), 100.0)
         end = await r.end_of_mission()
         assert end.phase is MissionPhase.FAILED
         assert "a mistake of ours" in end.message
@@ -489,11 +489,11 @@ async def test_an_error_of_ours_in_a_mission_stops_the_robot(monkeypatch: pytest
 async def test_one_mission_at_a_time_under_a_lease_that_only_it_renews() -> None:
     async with rig(armed=False) as r:
         with pytest.raises(MissionError, match="arm it first"):
-            r.supervisor.start(MapMission("new", ()), 0.5)
+            r.supervisor.start(MapStart("new", ()), 0.5)
         await r.supervisor.arm()
-        mission_id = r.supervisor.start(MapMission("new", ()), 0.5)
+        mission_id = r.supervisor.start(MapStart("new", ()), 0.5)
         with pytest.raises(MissionError, match="while mapping"):
-            r.supervisor.start(LocalizeMission(), 0.5)
+            r.supervisor.start(Localize(), 0.5)
         with pytest.raises(MissionError, match="while mapping"):
             await r.supervisor.arm()
         with pytest.raises(MissionError, match="while a mission is under way"):

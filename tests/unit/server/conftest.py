@@ -5,29 +5,57 @@ import contextlib
 from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager
 from pathlib import Path
+from typing import Any, TypeVar
 
+import msgspec
 import numpy as np
 import pytest
 
+from robotd.contract.answers import ConfigText, Done, MapEntryInfo, MapList, MissionStarted, RecordingFile, Renewed
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.contract.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.contract.missions import Mission
 from robotd.contract.modes import Mode
+from robotd.contract.request import Request
+from robotd.contract.requests import (
+    Arm,
+    Clear,
+    Disarm,
+    GetConfig,
+    GetStatus,
+    ListMaps,
+    MapDiscard,
+    MapLoad,
+    MapSave,
+    MapShow,
+    RecordStart,
+    RecordStop,
+    Renew,
+    Stop,
+)
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import MapError, MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.maps.entry import MapEntry
 from robotd.mission.safety.lease import Lease
 from robotd.server.server import Server, ServerSettings
+
+R = TypeVar("R")
 
 SPEC = GridSpec(0.05, -1.0, -2.0, (40, 60))
 
 
-def _entry(name: str, version: int, digest: str, created_unix_ns: int) -> MapEntry:
-    return MapEntry(name, version, digest, created_unix_ns, {}, Path(name), GridSpec(0.05, -1.0, -2.0, (40, 60)))
+def _entry(name: str, version: int, digest: str, created_unix_ns: int) -> MapEntryInfo:
+    return MapEntryInfo(name, version, digest, created_unix_ns, 40, 60, 0.05)
+
+
+def stored_map(name: str, version: int | None) -> MapChanged:
+    """What is in the store of the fake robot."""
+    if name != "office":
+        raise MapError(f"there is no map {name!r}")
+    return whole_map(generation=0, map_id=f"office-{version or 3}")
 
 
 class FakeControl:
@@ -36,6 +64,7 @@ class FakeControl:
     def __init__(self) -> None:
         self.events: Broadcast[Event] = Broadcast()
         self.calls: list[str] = []
+        self.performed: list[Request[Any]] = []
         self.release = asyncio.Event()
         self.release.set()
         self.arming = asyncio.Event()
@@ -43,10 +72,9 @@ class FakeControl:
         self.begun = asyncio.Event()
         self.armed = False
         self.map_in_use: MapChanged | None = None
-        self.config_text = "[server]\nlease_s = 0.5\n"
         self.mission_id = 0
-        self.leases_s: list[float] = []
         self.asked: list[Mission] = []
+        self.leases_s: list[float] = []
         self._mission: asyncio.Task[None] | None = None
         self._lease: Lease | None = None
         self._recording: str | None = None
@@ -71,15 +99,10 @@ class FakeControl:
             recording=self._recording,
         )
 
-    async def arm(self) -> None:
-        self.calls.append("arm")
-        await self.arming.wait()
-        self.armed = True
-
-    def halt(self, reason: str) -> None:
-        self.calls.append(f"stop: {reason}")
+    def halt(self, request: Stop | Disarm) -> None:
+        self.calls.append(f"stop: {request.reason}")
         self.armed = False
-        self._stop_reason = reason
+        self._stop_reason = request.reason
         if self._mission is not None:
             self._mission.cancel()
 
@@ -87,57 +110,77 @@ class FakeControl:
         if self._mission is not None:
             await asyncio.wait((self._mission,))
 
-    async def clear(self) -> None:
-        raise RuntimeError("a bug in the daemon")
+    async def perform(self, request: Request[R]) -> R:
+        self.performed.append(request)
+        answer: R = await self._answer(request)
+        return answer
 
-    async def begin(self, mission: Mission, lease_s: float) -> int:
+    async def _answer(self, request: Request[Any]) -> Any:
+        match request:
+            case GetStatus():
+                return self.status
+            case GetConfig():
+                return ConfigText("[server]\nlease_s = 0.5\n")
+            case Arm():
+                return await self._arm()
+            case Clear():
+                raise RuntimeError("a bug in the daemon")
+            case Renew(mission_id):
+                return self._renew(mission_id)
+            case RecordStart(path):
+                self._recording = path or "robot.mcap"
+                return RecordingFile(self._recording)
+            case RecordStop():
+                path, self._recording = self._recording, None
+                return RecordingFile(path)
+        return self._begin(request) if isinstance(request, Mission) else self._of_maps(request)
+
+    def _of_maps(self, request: Request[Any]) -> Any:
+        match request:
+            case MapShow(None):
+                if self.map_in_use is None:
+                    raise MapError("no map in use")
+                return self.map_in_use
+            case MapShow(str(name), version):
+                return stored_map(name, version)
+            case MapSave(name):
+                self.calls.append(f"save {name}")
+                return _entry(name or "unnamed", 4, "d1", 5)
+            case MapLoad(name, version, robot_in_map):
+                self.calls.append(f"load {name} {version} {robot_in_map.pose if robot_in_map else None}")
+                return _entry(name, version or 3, "d2", 6)
+            case MapDiscard():
+                self.calls.append("discard")
+                return Done()
+            case ListMaps():
+                return MapList((_entry("office", 3, "d2", 6),))
+        raise AssertionError(f"{request} is for the server alone")
+
+    async def _arm(self) -> Done:
+        self.calls.append("arm")
+        await self.arming.wait()
+        self.armed = True
+        return Done()
+
+    def _begin(self, mission: Mission) -> MissionStarted:
         if not self.armed or self.is_busy:
             raise MissionError("not now")
         self.calls.append("start")
-        self.asked.append(mission)
+        lease_s = mission.lease_s
+        assert lease_s is not None, "the server says which lease"
+        self.asked.append(msgspec.structs.replace(mission, lease_s=None))
         self.leases_s.append(lease_s)
         self.mission_id += 1
         self.begun.set()
         self._lease = Lease(lease_s, self._lease_expired)
         self._mission = asyncio.create_task(self._run(self.mission_id))
-        return self.mission_id
+        return MissionStarted(self.mission_id, lease_s)
 
-    def renew(self, mission_id: int) -> None:
+    def _renew(self, mission_id: int) -> Renewed:
         if not self.is_busy or mission_id != self.mission_id or self._lease is None:
             raise MissionError(f"mission {mission_id} is not under way")
         self._lease.renew()
-
-    def whole_map(self) -> MapChanged:
-        if self.map_in_use is None:
-            raise MapError("no map in use")
-        return self.map_in_use
-
-    async def stored_map(self, name: str, version: int | None) -> MapChanged:
-        if name != "office":
-            raise MapError(f"there is no map {name!r}")
-        return whole_map(generation=0, map_id=f"office-{version or 3}")
-
-    async def save_map(self, name: str | None) -> MapEntry:
-        self.calls.append(f"save {name}")
-        return _entry(name or "unnamed", 4, "d1", 5)
-
-    async def load_map(self, name: str, version: int | None, robot_in_map: Pose2 | None) -> MapEntry:
-        self.calls.append(f"load {name} {version} {robot_in_map}")
-        return _entry(name, version or 3, "d2", 6)
-
-    def discard_map(self) -> None:
-        self.calls.append("discard")
-
-    async def list_maps(self) -> tuple[MapEntry, ...]:
-        return (_entry("office", 3, "d2", 6),)
-
-    async def start_recording(self, path: str | None) -> str:
-        self._recording = path or "robot.mcap"
-        return self._recording
-
-    async def stop_recording(self) -> str | None:
-        path, self._recording = self._recording, None
-        return path
+        return Renewed(None)
 
     async def close(self) -> None:
         if self._mission is not None:

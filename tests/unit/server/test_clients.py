@@ -19,9 +19,10 @@ from robotd.client import AsyncClient, Client
 from robotd.client.mission_run import MissionEvent
 from robotd.contract.estimate import PoseState
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveMission, Legs, LocalizeMission, MapMission
+from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.core.errors import MissionError, RequestTimeout, ServerError, TransportError
 from robotd.core.pose import Pose2
+from tests.unit.server.conftest import stored_map
 
 pytestmark = pytest.mark.real_clock
 Serving = Callable[..., AbstractAsyncContextManager[Any]]
@@ -41,16 +42,14 @@ async def test_every_method_of_the_async_client(serving: Serving, tmp_path: Path
         assert (await robot.localize(0.25, tie=False)).state is PoseState.LOCALIZED
         assert phases(await robot.drive_to(3.0, 4.0)) == ["started", "done"]
         assert control.asked == [
-            MapMission("lab", ((1.0, 2.0),), Pose2(0.0, 1.0, 0.5), Legs.STRAIGHT),
-            LocalizeMission(0.25, tie=False),
-            DriveMission(3.0, 4.0),
+            MapStart.of("lab", ((1.0, 2.0),), Pose2(0.0, 1.0, 0.5), Legs.STRAIGHT),
+            Localize(0.25, tie=False),
+            DriveTo(3.0, 4.0),
         ]
         assert (await robot.map_save("lab")).name == "lab"
         assert (await robot.map_load("lab", 2, Pose2(1.0, 2.0, 0.0))).version == 2
         assert [entry.name for entry in await robot.map_list()] == ["office"]
-        np.testing.assert_array_equal(
-            (await robot.map_show("office")).values, (await control.stored_map("office", None)).values
-        )
+        np.testing.assert_array_equal((await robot.map_show("office")).values, stored_map("office", None).values)
         assert await robot.record_start("there.mcap") == "there.mcap"
         assert (await robot.record_stop(), await robot.record_stop()) == ("there.mcap", None)
         await robot.disarm()
@@ -87,9 +86,9 @@ async def test_every_method_of_the_sync_client(serving: Serving, tmp_path: Path)
     async with serving() as control:
         await asyncio.to_thread(use)
         assert control.asked == [
-            MapMission("lab", ((1.0, 2.0),)),
-            LocalizeMission(0.25, tie=False),
-            DriveMission(3.0, 4.0),
+            MapStart("lab", ((1.0, 2.0),)),
+            Localize(0.25, tie=False),
+            DriveTo(3.0, 4.0),
         ]
 
 
@@ -124,7 +123,7 @@ async def test_a_mission_is_told_from_its_start_to_its_end(serving: Serving, tmp
     async with serving() as control, AsyncClient(tmp_path) as robot:
         await robot.arm()
         for _ in range(2):
-            names = [type(event).__name__ async for event in robot.run_mission(LocalizeMission())]
+            names = [type(event).__name__ async for event in robot.run_mission(Localize())]
             assert names[0] == names[-1] == "MissionProgress"
             assert names[-4:-1] == ["SweepProgress", "PoseEstimate", "PoseEstimate"]
         assert control.mission_id == 2
@@ -133,7 +132,7 @@ async def test_a_mission_is_told_from_its_start_to_its_end(serving: Serving, tmp
 async def test_leases_are_kept_alive_by_both_clients(serving: Serving, tmp_path: Path) -> None:
     def use() -> list[str]:
         with Client(tmp_path) as robot:
-            return phases(list(robot.run_mission(LocalizeMission(), lease_s=0.25)))
+            return phases(list(robot.run_mission(Localize(), lease_s=0.25)))
 
     async with serving() as control, AsyncClient(tmp_path) as robot:
         await robot.arm()
@@ -145,14 +144,14 @@ async def test_leases_are_kept_alive_by_both_clients(serving: Serving, tmp_path:
 
 
 async def robot_phases(robot: AsyncClient) -> list[str]:
-    return phases([event async for event in robot.run_mission(LocalizeMission(), lease_s=0.25)])
+    return phases([event async for event in robot.run_mission(Localize(), lease_s=0.25)])
 
 
 async def test_an_async_client_that_dawdles_over_an_event_keeps_its_lease(serving: Serving, tmp_path: Path) -> None:
     async with serving() as control, AsyncClient(tmp_path) as robot:
         await robot.arm()
         control.release.clear()
-        async with aclosing(robot.run_mission(LocalizeMission(), lease_s=0.25)) as events:
+        async with aclosing(robot.run_mission(Localize(), lease_s=0.25)) as events:
             await anext(events)
             await asyncio.sleep(0.6)
             control.release.set()
@@ -164,7 +163,7 @@ async def test_a_mission_whose_client_falls_silent_is_stopped(serving: Serving, 
         await robot.arm()
         control.release.clear()
         with robot.subscribe("mission") as events:
-            await robot.start(LocalizeMission(), lease_s=0.1)
+            await robot.start(Localize(), lease_s=0.1)
             last = None
             while not (isinstance(last, MissionProgress) and last.is_last):
                 last = await events.next(2)
@@ -187,7 +186,7 @@ async def test_leaving_an_async_mission_early_stops_the_robot(serving: Serving, 
     async with serving() as control, AsyncClient(tmp_path) as robot:
         await robot.arm()
         control.release.clear()
-        async with aclosing(robot.run_mission(LocalizeMission())) as events:
+        async with aclosing(robot.run_mission(Localize())) as events:
             await anext(events)
         assert control.calls[-1].startswith("stop: client")
         control.begun.clear()
@@ -204,7 +203,7 @@ async def test_leaving_a_sync_mission_early_stops_the_robot(serving: Serving, tm
     def use() -> None:
         with Client(tmp_path) as robot:
             robot.arm()
-            for _ in robot.run_mission(LocalizeMission()):
+            for _ in robot.run_mission(Localize()):
                 break
 
     async with serving() as control:
@@ -275,7 +274,7 @@ async def test_a_daemon_that_dies_in_a_mission_is_noticed(serving: Serving, tmp_
         async with serving() as control:
             await robot.arm()
             control.release.clear()
-            events = robot.run_mission(LocalizeMission())
+            events = robot.run_mission(Localize())
             await anext(events)
         with pytest.raises(RequestTimeout, match="renew"):
             async for _ in events:

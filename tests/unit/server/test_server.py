@@ -22,10 +22,10 @@ import zmq.asyncio
 from robotd.client import AsyncClient, AsyncSubscription
 from robotd.client.endpoints import Endpoints
 from robotd.client.feed import Gap
-from robotd.contract import requests as api
 from robotd.contract.envelope import decode_reply, encode_request
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import MapChanged, MissionPhase, MissionProgress, Status
+from robotd.contract.requests import GetStatus, Hello
 from robotd.contract.topics import LogEntry, Topic
 from robotd.core.clock import now_ns
 from robotd.core.errors import ServerError, TransportError
@@ -228,12 +228,12 @@ async def test_garbage_is_answered_and_the_daemon_goes_on(serving: Serving, tmp_
         assert (await ask(socket, b"x" * 70_000)).code == "too_large"
         await socket.send_multipart([b"a", b"b", b"c"])
         assert isinstance(decode_reply(await asyncio.wait_for(socket.recv(), 2)).result, ServerError)
-        assert "robotd" in await ask(socket, encode_request(2, api.Hello()))
+        assert "robotd" in await ask(socket, encode_request(2, Hello()))
 
 
 async def test_a_flood_beyond_all_limits_is_cut_off_and_others_are_served(serving: Serving, tmp_path: Path) -> None:
     async with serving(), raw_socket(zmq.DEALER, Endpoints(tmp_path).commands) as socket:
-        assert "robotd" in await ask(socket, encode_request(1, api.Hello()))
+        assert "robotd" in await ask(socket, encode_request(1, Hello()))
         await socket.send(b"x" * 1_000_000)
         async with AsyncClient(tmp_path) as client:
             assert (await client.hello()).versions == (1,)
@@ -256,7 +256,7 @@ async def test_bytes_that_are_no_zeromq_harm_nobody(serving: Serving, tmp_path: 
 async def test_a_plain_req_socket_is_served(serving: Serving, tmp_path: Path) -> None:
     async with serving(), raw_socket(zmq.REQ, Endpoints(tmp_path).commands) as socket:
         for number in (1, 2):
-            assert (await ask(socket, encode_request(number, api.GetStatus())))["mode"] == "disarmed"
+            assert (await ask(socket, encode_request(number, GetStatus())))["mode"] == "disarmed"
 
 
 async def test_a_second_daemon_is_refused_and_told_who_was_first(serving: Serving, tmp_path: Path) -> None:

@@ -1,6 +1,6 @@
 """What clients are told of a stored map."""
 
-from robotd.contract.requests import MapEntryInfo
+from robotd.contract.answers import MapEntryInfo
 from robotd.core.text import printable
 from robotd.maps.entry import MapEntry
 

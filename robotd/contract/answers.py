@@ -1,0 +1,95 @@
+"""What requests are answered, beside events: one frozen struct each; and why they are not carried out."""
+
+import enum
+from dataclasses import dataclass
+
+import msgspec
+
+from robotd.contract.events import MissionProgress
+
+
+class ErrorCode(enum.StrEnum):
+    """Why a request was not carried out."""
+
+    MALFORMED = "malformed"
+    TOO_LARGE = "too_large"
+    UNSUPPORTED_VERSION = "unsupported_version"
+    UNKNOWN_COMMAND = "unknown_command"
+    BAD_ARGUMENT = "bad_argument"
+    REFUSED = "refused"
+    NOT_FOUND = "not_found"
+    BUSY = "busy"
+    INTERNAL = "internal"
+
+
+@dataclass(frozen=True, slots=True)
+class MapEntryInfo:
+    """A stored version of a map."""
+
+    name: str
+    version: int
+    digest: str
+    """What the map is known by in ``map_id``."""
+    created_unix_ns: int
+    rows: int
+    cols: int
+    resolution_m: float
+    damage: str | None = None
+    """Why this version cannot be read; its other numbers are then zero."""
+    unsaved: bool = False
+    """Whether nobody saved it: it was kept so that it is not lost."""
+    stops: int | None = None
+    """How many stops it was made of; None if that was not stored with it."""
+
+
+class Done(msgspec.Struct, frozen=True):
+    """It was done, and there is nothing more to say."""
+
+
+class HelloResult(msgspec.Struct, frozen=True):
+    """Who answers."""
+
+    versions: tuple[int, ...]
+    """Wire versions that it speaks."""
+    robotd: str
+    """Version of the program."""
+    session: str
+    """Changes with every start of the daemon."""
+    lease_s: float
+    """How long a mission may go without ``renew``, unless it is started with another lease."""
+    time_ns: int
+    """Its monotonic time; the time of this host, the same in every process [ns]."""
+    wall_offset_ns: int
+    """What to add to a monotonic time to get Unix time [ns], as of now."""
+
+
+class MissionStarted(msgspec.Struct, frozen=True):
+    """A mission is under way, and its lease is running."""
+
+    mission_id: int
+    lease_s: float
+
+
+class Renewed(msgspec.Struct, frozen=True):
+    """The lease was renewed, or the mission is over."""
+
+    mission: MissionProgress | None
+    """The mission's latest progress; ``done``, ``stopped`` and ``failed`` need no renewing."""
+
+
+class MapList(msgspec.Struct, frozen=True):
+    """The stored maps."""
+
+    maps: tuple[MapEntryInfo, ...]
+
+
+class RecordingFile(msgspec.Struct, frozen=True):
+    """Where a recording is; None when there was none to stop."""
+
+    path: str | None
+
+
+class ConfigText(msgspec.Struct, frozen=True):
+    """The effective configuration, as TOML."""
+
+    text: str

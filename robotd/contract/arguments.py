@@ -1,0 +1,34 @@
+"""What arguments may be: bounds that a robot can have, and poses as clients write them."""
+
+import math
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+from robotd.core.pose import Pose2
+
+Coordinate = Annotated[float, Meta(ge=-100_000.0, le=100_000.0)]
+Heading = Annotated[float, Meta(ge=-2.0 * math.pi, le=2.0 * math.pi)]
+LeaseTime = Annotated[float, Meta(ge=0.1, le=10.0)]
+MapName = Annotated[str, Meta(pattern=r"\A[A-Za-z0-9][A-Za-z0-9._-]{0,63}\Z")]
+Number = Annotated[int, Meta(ge=0, le=2**53)]
+Stops = Annotated[tuple[tuple[Coordinate, Coordinate], ...], Meta(max_length=1000)]
+
+
+class PoseArgument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A pose in the map frame, as an argument."""
+
+    x_m: Coordinate
+    y_m: Coordinate
+    heading_rad: Heading = 0.0
+
+    @property
+    def pose(self) -> Pose2:
+        """The same, as the rest of the house writes it."""
+        return Pose2(self.x_m, self.y_m, self.heading_rad)
+
+    @classmethod
+    def of(cls, pose: Pose2) -> "PoseArgument":
+        """Return a pose as an argument."""
+        return cls(pose.x_m, pose.y_m, pose.heading_rad)
