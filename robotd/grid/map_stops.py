@@ -36,5 +36,5 @@ class MapStops:
         """Return the grid that they make on these cells. O(stops x readings x cells a beam)."""
         grid = OccupancyGrid(spec, settings=self.settings)
         for stop in self.stops:
-            grid.insert(stop.sweep, stop.map_from_robot)
+            grid.lay_in(stop)
         return grid

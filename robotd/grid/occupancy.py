@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from robotd.core.bounds import Within, refuse_outside
 from robotd.core.grid_bytes import grid_digest
 from robotd.core.grid_spec import MAX_SIDE_CELLS, GridSpec
+from robotd.core.map_stop import MapStop
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid import kernels
@@ -107,8 +108,15 @@ class OccupancyGrid:
         Returns:
             Flat indices ``row * cols + col`` of the cells whose value changed, ascending. O(readings x cells a beam).
         """
-        readings, tables = numbers_of(self.usable(sweep)), (self._lower, self._raise)
-        at_once = self.settings.policy is UpdatePolicy.PER_SWEEP
+        return self._insert(numbers_of(self.usable(sweep)), map_from_robot)
+
+    def lay_in(self, stop: MapStop) -> NDArray[np.intp]:
+        """Update the cells by a stop as :meth:`insert` does by its sweep, without making that of it."""
+        beams = stop.beams(misses=self.settings.over_range is OverRange.CLEAR)
+        return self._insert(beams, stop.map_from_robot)
+
+    def _insert(self, readings: NDArray[np.float64], map_from_robot: Pose2) -> NDArray[np.intp]:
+        tables, at_once = (self._lower, self._raise), self.settings.policy is UpdatePolicy.PER_SWEEP
         return kernels.in_use().insert.insert_sweep(
             self.cells, readings, map_from_robot, self.spec, tables, at_once=at_once
         )

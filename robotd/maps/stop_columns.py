@@ -4,19 +4,18 @@ A column is the bytes of its numbers, little-endian, transposed: all first bytes
 of high place hardly vary, and cost next to nothing once packed.
 """
 
-from collections.abc import Iterator
 from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from robotd.core.map_stop import MapStop
+from robotd.core.map_stop import READING, STATUSES, MapStop
 from robotd.core.pose import Pose2
-from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.core.reading import ReadingStatus
 
 _FLOAT, _WHOLE, _COUNT, _OCTET = "<f8", "<i8", "<u4", "u1"
-_MEASURED = frozenset({ReadingStatus.OK, ReadingStatus.MISS})
+_MEASURED = [status in {ReadingStatus.OK, ReadingStatus.MISS} for status in STATUSES]
 _GREATEST = 1e6
 """Of coordinates, distances [m] and angles [rad]: the kernels need finite ones, and no robot has others."""
 
@@ -50,29 +49,21 @@ class StopColumns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def columns_of(stops: tuple[MapStop, ...]) -> StopColumns:
-    """Return stops as columns.
-
-    Raises:
-        OverflowError: a number needs more than 64 bits.
-    """
-    sweeps = [stop.sweep for stop in stops]
-    readings = [reading for sweep in sweeps for reading in sweep.readings]
-    statuses = tuple(ReadingStatus)
-    code = {status: number for number, status in enumerate(statuses)}
-    times_ns = np.array([reading.time_ns for reading in readings], np.int64)
+    """Return stops as columns."""
+    readings = np.concatenate([np.empty(0, READING), *(stop.readings for stop in stops)])
     return StopColumns(
-        numbers=_packed([sweep.number for sweep in sweeps], _WHOLE),
-        counts=_packed([len(sweep.readings) for sweep in sweeps], _COUNT),
-        in_odom=_packed(_poses([sweep.in_odom for sweep in sweeps]), _FLOAT),
+        numbers=_packed([stop.number for stop in stops], _WHOLE),
+        counts=_packed([len(stop.readings) for stop in stops], _COUNT),
+        in_odom=_packed(_poses([stop.in_odom for stop in stops]), _FLOAT),
         in_map=_packed(_poses([stop.map_from_robot for stop in stops]), _FLOAT),
-        times_ns=_packed(np.diff(times_ns, prepend=np.int64(0)), _WHOLE),
-        bearings_rad=_packed([reading.bearing_rad for reading in readings], _FLOAT),
-        ranges_m=_packed([reading.range_m or 0.0 for reading in readings], _FLOAT),
-        origins_m=_packed([[r.origin_x_m for r in readings], [r.origin_y_m for r in readings]], _FLOAT),
-        states=_packed([code[reading.status] for reading in readings], _OCTET),
-        statuses=statuses,
-        strong=_packed([reading.strength is not None for reading in readings], _OCTET),
-        strengths=_packed([reading.strength or 0 for reading in readings], _WHOLE),
+        times_ns=_packed(np.diff(readings["time_ns"], prepend=np.int64(0)), _WHOLE),
+        bearings_rad=_packed(readings["bearing_rad"], _FLOAT),
+        ranges_m=_packed(readings["range_m"], _FLOAT),
+        origins_m=_packed(np.concatenate([readings["origin_x_m"], readings["origin_y_m"]]), _FLOAT),
+        states=_packed(readings["status"], _OCTET),
+        statuses=STATUSES,
+        strong=_packed(readings["has_strength"], _OCTET),
+        strengths=_packed(readings["strength"], _WHOLE),
     )
 
 
@@ -88,33 +79,35 @@ def stops_of(columns: StopColumns, stops_max: int, readings_max: int) -> tuple[M
         raise ValueError(f"expected at most {stops_max} stops of {readings_max} readings, got {stops} of {total}")
     numbers = _column("numbers", columns.numbers, _WHOLE, stops)
     in_odom, in_map = _poses_of("in_odom", columns.in_odom, stops), _poses_of("in_map", columns.in_map, stops)
-    readings = _readings(columns, total)
-    return tuple(
-        MapStop(Sweep(number, odom, tuple(next(readings) for _ in range(count))), pose)
-        for number, odom, pose, count in zip(numbers.tolist(), in_odom, in_map, counts.tolist(), strict=True)
-    )
+    readings = np.split(_readings(columns, total), np.cumsum(counts)[:-1]) if stops else []
+    return tuple(map(MapStop, numbers.tolist(), in_odom, in_map, readings))
 
 
-def _readings(columns: StopColumns, total: int) -> Iterator[RangeReading]:
-    times_ns = np.cumsum(_column("times_ns", columns.times_ns, _WHOLE, total))
+def _readings(columns: StopColumns, total: int) -> NDArray[np.void]:
+    readings = np.empty(total, READING)
     origins_m = _column("origins_m", columns.origins_m, _FLOAT, 2 * total)
+    readings["time_ns"] = np.cumsum(_column("times_ns", columns.times_ns, _WHOLE, total))
+    readings["bearing_rad"] = _column("bearings_rad", columns.bearings_rad, _FLOAT, total)
+    readings["range_m"] = _column("ranges_m", columns.ranges_m, _FLOAT, total)
+    readings["origin_x_m"], readings["origin_y_m"] = origins_m[:total], origins_m[total:]
+    readings["strength"] = _column("strengths", columns.strengths, _WHOLE, total)
+    readings["status"] = _states(columns, total)
+    readings["has_strength"] = _column("strong", columns.strong, _OCTET, total) > 0
+    measured = np.array(_MEASURED)[readings["status"]]
+    if bool((readings["range_m"][measured] <= 0.0).any()):
+        raise ValueError("ranges_m: expected positive ones for hits and misses")
+    readings["range_m"][~measured] = 0.0
+    readings.flags.writeable = False
+    return readings
+
+
+def _states(columns: StopColumns, total: int) -> NDArray[np.uint8]:
     states = _column("states", columns.states, _OCTET, total)
     if total and int(states.max()) >= len(columns.statuses):
         raise ValueError(f"states: expected less than {len(columns.statuses)}, got {int(states.max())}")
-    statuses = [columns.statuses[state] for state in states.tolist()]
-    ranges_m = _column("ranges_m", columns.ranges_m, _FLOAT, total).tolist()
-    strong = _column("strong", columns.strong, _OCTET, total).tolist()
-    strengths = _column("strengths", columns.strengths, _WHOLE, total).tolist()
-    return map(
-        RangeReading,
-        times_ns.tolist(),
-        _column("bearings_rad", columns.bearings_rad, _FLOAT, total).tolist(),
-        statuses,
-        [range_m if status in _MEASURED else None for range_m, status in zip(ranges_m, statuses, strict=True)],
-        [strength if has else None for strength, has in zip(strengths, strong, strict=True)],
-        origins_m[:total].tolist(),
-        origins_m[total:].tolist(),
-    )
+    codes = np.array([STATUSES.index(status) for status in columns.statuses], np.uint8)
+    found: NDArray[np.uint8] = codes[states] if total else states
+    return found
 
 
 def _poses(poses: list[Pose2]) -> list[list[float]]:
@@ -126,7 +119,7 @@ def _poses_of(name: str, data: bytes, count: int) -> tuple[Pose2, ...]:
     return tuple(Pose2(*pose) for pose in numbers.tolist())
 
 
-def _packed(values: object, kind: DTypeLike) -> bytes:
+def _packed(values: ArrayLike, kind: DTypeLike) -> bytes:
     numbers = np.ascontiguousarray(np.asarray(values, kind)).reshape(-1)
     return numbers.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
 

@@ -43,5 +43,5 @@ def lay(
     copy = OccupancyGrid(grid.spec, grid.cells, grid.settings)
     changed = copy.insert(sweep, map_from_robot)
     said = latest_with(latest, copy.usable(sweep), map_from_robot, copy.spec)
-    further = None if stops is None else stops.with_stop(MapStop(sweep, map_from_robot))
+    further = None if stops is None else stops.with_stop(MapStop.of(sweep, map_from_robot))
     return Laid(copy, changed, said, copy.digest(), further)

@@ -29,7 +29,7 @@ def made_of(count: int) -> MapStops:
             for k, reading in enumerate(sweep.readings)
         )
         in_odom = replace(pose, heading_rad=math.remainder(pose.heading_rad + 0.01 * number, math.tau))
-        stops = stops.with_stop(MapStop(replace(sweep, in_odom=in_odom, readings=readings), pose))
+        stops = stops.with_stop(MapStop.of(replace(sweep, in_odom=in_odom, readings=readings), pose))
     return stops
 
 

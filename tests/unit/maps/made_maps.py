@@ -22,7 +22,7 @@ def made_stops(seed: int, stops: int = 2, readings: int = 12, settings: GridSett
     for number in range(stops):
         pose = Pose2(*rng.uniform(-0.8, 0.8, 3).tolist())
         sweep = Sweep(number, Pose2(*rng.uniform(-9.0, 9.0, 3).tolist()), made_readings(rng, readings))
-        made = made.with_stop(MapStop(sweep, pose))
+        made = made.with_stop(MapStop.of(sweep, pose))
     return made
 
 

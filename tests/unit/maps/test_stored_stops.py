@@ -111,7 +111,7 @@ def test_stops_that_are_not_those_of_the_map_are_refused(
 def aslant(angle_rad: float) -> MapStops:
     """Return a stop on a corner of cells, whose one beam runs along the border of two rows but for an angle."""
     reading = RangeReading(0, angle_rad, ReadingStatus.OK, 1.05)
-    return MapStops(GridSettings()).with_stop(MapStop(Sweep(0, IDENTITY, (reading,)), IDENTITY))
+    return MapStops(GridSettings()).with_stop(MapStop.of(Sweep(0, IDENTITY, (reading,)), IDENTITY))
 
 
 def test_where_a_last_place_counts_the_grid_of_the_maps_maker_stands(
@@ -148,7 +148,7 @@ def test_a_foreign_map_is_saved_again_as_foreign(tmp_path: Path) -> None:
     "wrong",
     [
         made_stops(2),
-        MapStops(GridSettings()).with_stop(MapStop(Sweep(0, IDENTITY, (FARTHEST,)), IDENTITY)),
+        MapStops(GridSettings()).with_stop(MapStop.of(Sweep(0, IDENTITY, (FARTHEST,)), IDENTITY)),
     ],
     ids=["of another map", "that cannot be stored"],
 )
