@@ -22,8 +22,8 @@ from tests.integration.living import until_ready
 
 NOTICED_WITHIN_S = 1.1
 """A line may be silent for a second before it counts as lost."""
-BOUGHT_NOTICED_WITHIN_S = 2.8
-"""Bought devices speak when asked: they are asked after a second, up to three times."""
+VENDOR_NOTICED_WITHIN_S = 2.8
+"""Vendor devices speak when asked: they are asked after a second, up to three times."""
 REST_AFTER_STOP_S = 0.8
 """The ramp from cruising speed."""
 READY_AGAIN_S = 10.0
@@ -51,7 +51,7 @@ def run_cell(fault: str, state: str, device: str, seed: int = 1, dialects: Diale
     """Run one cell on the virtual clock."""
     with tempfile.TemporaryDirectory(prefix="robotd-faults-") as directory:
         dialects = dialects or Dialects()
-        noticed_s = NOTICED_WITHIN_S if getattr(dialects, device) == OWN else BOUGHT_NOTICED_WITHIN_S
+        noticed_s = NOTICED_WITHIN_S if getattr(dialects, device) == OWN else VENDOR_NOTICED_WITHIN_S
         return run_virtual(_Cell(fault, state, device, seed, noticed_s).run(Path(directory), dialects))
 
 

@@ -104,7 +104,7 @@ async def test_a_board_that_loses_power_is_noticed_and_stays_disarmed(live: Live
         assert board.state == BoardState.CONFIGURED
 
 
-async def test_faults_can_take_the_power_of_boards_in_c_and_of_no_bought_device() -> None:
+async def test_faults_can_take_the_power_of_boards_in_c_and_of_no_vendor_device() -> None:
     dialects = Dialects(pantilt="ptu", boards=Firmware.C)
     async with cables(SimulatedRobot(load_world("office"), seed=2, dialects=dialects)) as laid:
         assert {device: cable.can_reboot for device, cable in laid.items()} == {

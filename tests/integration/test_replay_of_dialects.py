@@ -1,4 +1,4 @@
-"""A recording of a robot of bought devices replays to what was recorded, too: nothing in them goes by timers alone.
+"""A recording of a robot of vendor devices replays to what was recorded, too: nothing in them goes by timers alone.
 
 And every request counts, in every dialect: one that is missing, made twice or another than the recorded one is a
 difference.

@@ -16,7 +16,7 @@ from robotd.contract.topics import Topic, encode_frame, to_wire
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.mission.modes import UNDER_WAY
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
@@ -119,7 +119,7 @@ async def faulted(it: Bench) -> None:
     """A fault is latched."""
     await it.daemon.control.perform(Arm())
     drive = it.daemon.robot.drive
-    if isinstance(drive, BoughtDevice):
+    if isinstance(drive, VendorDevice):
         drive._latch("bumper")
     else:
         own_board(it.robot, "drive")._latch(Fault.BUMPER, cut=True)

@@ -8,7 +8,7 @@ from typing import ClassVar, NoReturn, Self
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
@@ -54,7 +54,7 @@ class _Tongue:
         return cls(dimetix.parsed, device, *(dimetix.command(device, letter) for letter in "cogt"))
 
 
-class DimetixRangefinder(BoughtDevice[Message]):
+class DimetixRangefinder(VendorDevice[Message]):
     """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`."""
 
     NAME: ClassVar[str] = "rangefinder"

@@ -12,7 +12,7 @@ from typing import ClassVar, NoReturn
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.silence import within
-from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
 from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
@@ -36,7 +36,7 @@ _BOOT_TRIES = 20
 _TILT_LIMIT_RAD = math.radians(90.0)
 
 
-class DynamixelPanTilt(BoughtDevice[Message]):
+class DynamixelPanTilt(VendorDevice[Message]):
     """Implements :class:`robotd.hardware.devices.pantilt.PanTilt`."""
 
     NAME: ClassVar[str] = "pantilt"

@@ -13,7 +13,7 @@ from typing import ClassVar, NoReturn, TypeVar
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
@@ -29,7 +29,7 @@ _IDLE_POLL_S = 1.0
 _KNOWN = ("LW20", "SF20")
 
 
-class LightwareRangefinder(BoughtDevice[M]):
+class LightwareRangefinder(VendorDevice[M]):
     """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`, but for the bytes."""
 
     NAME: ClassVar[str] = "rangefinder"

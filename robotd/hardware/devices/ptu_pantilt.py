@@ -14,7 +14,7 @@ from typing import NoReturn
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.silence import within
-from robotd.hardware.devices.bought_device import BoughtDevice, is_a
+from robotd.hardware.devices.vendor_device import VendorDevice, is_a
 from robotd.hardware.devices.credible import check_limits
 from robotd.hardware.devices.pantilt import LOST_STEPS, AimReadback, PanTiltLimits
 from robotd.hardware.devices.settings import PanTiltSettings
@@ -42,7 +42,7 @@ class _Axes:
     """Pan min, pan max, tilt min, tilt max."""
 
 
-class PtuPanTilt(BoughtDevice[Message]):
+class PtuPanTilt(VendorDevice[Message]):
     """Implements :class:`robotd.hardware.devices.pantilt.PanTilt`."""
 
     NAME = "pantilt"

@@ -19,7 +19,7 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.core.silence import within
-from robotd.hardware.devices.bought_device import BoughtDevice, is_a
+from robotd.hardware.devices.vendor_device import VendorDevice, is_a
 from robotd.hardware.devices.credible import IMPLAUSIBLE, check_battery, check_twist, implausible
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
@@ -70,7 +70,7 @@ log = logging.getLogger(__name__)
 _HALT = tuple(set_direction(axis, 0, 1_000_000, torque, forwards=True) for axis, torque in enumerate(_TORQUES))
 
 
-class RflexDrive(BoughtDevice[Message]):
+class RflexDrive(VendorDevice[Message]):
     """Implements :class:`robotd.hardware.devices.drive.Drive`."""
 
     NAME: ClassVar[str] = "drive"
@@ -117,7 +117,7 @@ class RflexDrive(BoughtDevice[Message]):
         self._new_set_point.set()
 
     def stop_now(self) -> None:
-        """Put the preformatted stop on the wire; see :meth:`BoughtDevice.stop_now`."""
+        """Put the preformatted stop on the wire; see :meth:`VendorDevice.stop_now`."""
         self._wanted = STANDSTILL
         self._calm.clear()
         self._new_set_point.set()

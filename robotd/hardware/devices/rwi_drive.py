@@ -13,7 +13,7 @@ from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import DeviceError
 from robotd.core.pose import Odometry, Twist2
-from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.credible import IMPLAUSIBLE, check_battery
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
@@ -45,7 +45,7 @@ _TENTHS_PER_V = 10
 _FAULTS = {"BLO": "battery", "TERR": "servo", "RERR": "servo", "TC": "current", "RC": "current"}
 
 
-class RwiDrive(BoughtDevice[Message]):
+class RwiDrive(VendorDevice[Message]):
     """Implements :class:`robotd.hardware.devices.drive.Drive`."""
 
     NAME: ClassVar[str] = "drive"
@@ -91,7 +91,7 @@ class RwiDrive(BoughtDevice[Message]):
         dialogue.post(b"".join(orders))
 
     def stop_now(self) -> None:
-        """Put the preformatted stop on the wire; see :meth:`BoughtDevice.stop_now`."""
+        """Put the preformatted stop on the wire; see :meth:`VendorDevice.stop_now`."""
         self._directions = {"T": 0, "R": 0}
         super().stop_now()
 

@@ -12,7 +12,7 @@ from typing import ClassVar, NoReturn
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.gaze import Fan
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
@@ -34,7 +34,7 @@ _STATUS = {
 }
 
 
-class ScipRangefinder(BoughtDevice[Reply]):
+class ScipRangefinder(VendorDevice[Reply]):
     """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`; sets the fan of the robot's gaze."""
 
     NAME: ClassVar[str] = "rangefinder"
@@ -69,7 +69,7 @@ class ScipRangefinder(BoughtDevice[Reply]):
                 return Shot(now_ns(), ReadingStatus.DEVICE_ERROR, None, None)
 
     def stop_now(self) -> None:
-        """Put the preformatted stop on the wire, and forget the last scan; see :meth:`BoughtDevice.stop_now`."""
+        """Put the preformatted stop on the wire, and forget the last scan; see :meth:`VendorDevice.stop_now`."""
         self._scan = None
         super().stop_now()
 

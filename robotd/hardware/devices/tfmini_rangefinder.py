@@ -15,7 +15,7 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
 from robotd.core.silence import within
-from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
@@ -56,7 +56,7 @@ _STATUS = {
 }
 
 
-class TfminiRangefinder(BoughtDevice[Message]):
+class TfminiRangefinder(VendorDevice[Message]):
     """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`."""
 
     NAME: ClassVar[str] = "rangefinder"

@@ -1,4 +1,4 @@
-"""One conversation with a bought device: requests one at a time, replies told apart by the dialect alone.
+"""One conversation with a vendor device: requests one at a time, replies told apart by the dialect alone.
 
 Makers' protocols have no sequence numbers, so a reply is known by what it looks like and by when it comes. Hence the
 rules: one request is under way at a time; what does not settle it is handed on as a report; and once a request was

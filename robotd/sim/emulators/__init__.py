@@ -1,1 +1,1 @@
-"""Bought devices that are not there: each speaks its maker's bytes, on top of the same physics as our own boards."""
+"""Emulated vendor devices: each speaks its maker's bytes, on top of the same physics as our own boards."""

@@ -41,7 +41,7 @@ class Split(Fault):
 
 
 def frames_of(data: bytes) -> Iterator[bytes]:
-    r"""Part bytes after each zero, which ends our boards' frames; what a bought device says at once counts as one.
+    r"""Part bytes after each zero, which ends our boards' frames; what a vendor device says at once counts as one.
 
     >>> list(frames_of(b"ab\0c\0"))
     [b'ab\x00', b'c\x00']

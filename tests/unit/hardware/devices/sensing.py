@@ -1,4 +1,4 @@
-"""A bought rangefinder on a line in memory, with an emulated one at the other end, in virtual time."""
+"""A vendor rangefinder on a line in memory, with an emulated one at the other end, in virtual time."""
 
 import asyncio
 import contextlib

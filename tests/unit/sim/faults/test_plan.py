@@ -85,7 +85,7 @@ async def test_faults_begin_and_end_in_their_time() -> None:
         assert [text for text in said if "unplug" in text] == ["drive: unplug begins", "drive: unplug is over"]
 
 
-async def test_a_reboot_that_a_bought_device_cannot_do_is_refused_before_anything_happens() -> None:
+async def test_a_reboot_that_a_vendor_device_cannot_do_is_refused_before_anything_happens() -> None:
     async with cables(robot(Dialects(drive="rflex"))) as laid:
         with pytest.raises(ConfigError, match="drive: only our own boards can be rebooted"):
             await carry_out(parse_plan("pantilt:unplug@0s,drive:reboot@3s"), laid, seed=1, say=ignore)

@@ -1,4 +1,4 @@
-"""The adapters of bought rangefinders against emulated devices."""
+"""The adapters of vendor rangefinders against emulated devices."""
 
 import asyncio
 

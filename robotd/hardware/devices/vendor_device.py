@@ -1,4 +1,4 @@
-"""What the adapters of bought devices share: the line, health, and an arming that is ours, for makers know none."""
+"""What the adapters of vendor devices share: the line, health, and an arming that is ours, for makers know none."""
 
 import contextlib
 from abc import ABC, abstractmethod
@@ -23,7 +23,7 @@ M = TypeVar("M")
 _WAITING = "line open, waiting for the device"
 
 
-class BoughtDevice(ABC, Generic[M]):
+class VendorDevice(ABC, Generic[M]):
     """A device that speaks its maker's protocol: a subclass adds what it measures and what it moves.
 
     It implements :class:`robotd.hardware.devices.device.Device`. Nothing on the line arms or latches a fault, so both

@@ -10,7 +10,7 @@ import pytest
 
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
-from robotd.hardware.devices.bought_device import BoughtDevice
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.link.tap import NoTap
@@ -19,7 +19,7 @@ from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.lw20 import Answer, Lw20Wire
 
 
-class Thing(BoughtDevice[Answer]):
+class Thing(VendorDevice[Answer]):
     """Is enabled by ``on``, and acknowledges by ``ack``."""
 
     NAME = "pantilt"

@@ -1,4 +1,4 @@
-"""What goes wrong on the lines of bought devices stops the robot, too, if later: they speak only when asked."""
+"""What goes wrong on the lines of vendor devices stops the robot, too, if later: they speak only when asked."""
 
 import pytest
 
