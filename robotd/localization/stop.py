@@ -1,8 +1,8 @@
 """The poses that explain the most of one stop's readings, and all that come near them; asked for after any reading.
 
 There are two ways to the same answer. Where the heading is known, so that there are few to try, readings are counted
-as they come (:mod:`.rank`), and asking costs next to nothing. Where it is not, all counts of a building would take
-gigabytes: then the readings are kept, and asking searches (:mod:`.search`).
+as they come (:mod:`.rank_grid`), and asking costs next to nothing. Where it is not, all counts of a building would take
+gigabytes: then the readings are kept, and asking searches (:mod:`.bounded_search`).
 """
 
 import math

@@ -55,7 +55,7 @@ class Manifest:
     version: int
     created_unix_ns: int
     digest: str
-    """Of placement and cells, as :meth:`OccupancyGrid.digest` gives it."""
+    """Of placement and cells, as :meth:`robotd.grid.occupancy.OccupancyGrid.digest` gives it."""
     spec: GridSpec
     files: dict[str, FileSum]
     metadata: dict[str, Any]

@@ -76,7 +76,7 @@ class Journal(ABC):
         if isinstance(loop, TurnCountingLoop):
             if is_input(entry):
                 self._note_turns(entry.time_ns, loop)
-            elif isinstance(entry, BytesEntry) and entry.data and self._asked_turn is None:
+            elif isinstance(entry, BytesEntry) and self._asked_turn is None:
                 self._asked_turn = loop.turn
         self.note(entry)
 

@@ -15,8 +15,8 @@ from robotd.grid.readings import numbers_of
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.wall_field import WallField
 from robotd.localization.fit.refinement import PoseBox, RefinementSettings, refine
-from robotd.localization.fit.tracking import Tracked, TrackingSettings, track
 from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
+from robotd.localization.reference.tracking import Tracked, TrackingSettings, track
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk
 from robotd.sim.log_file import read_log

@@ -97,7 +97,7 @@ class BoardDevice:
             self._session.stop_now()
 
     def stop_past_loop(self, before: int = 0) -> None:
-        """Put the stop on the wire from any thread, while the loop is stuck; see :class:`Device`."""
+        """Put the stop on the wire from any thread, while the loop is stuck; see :class:`.Device`."""
         self._may_move = False
         session = self._session
         if session is not None and before % PAST_LOOP_EVERY == 0:

@@ -12,9 +12,9 @@ from typing import ClassVar, NoReturn
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.silence import within
-from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
 from robotd.hardware.devices.settings import PanTiltSettings
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.wire import dynamixel

@@ -89,7 +89,7 @@ class FixedPanTilt:
         )
 
     async def aim(self, pan_rad: float, tilt_rad: float, *, timeout_s: float) -> AimReadback:
-        """Choose the nearest direction that is measured, whatever the tilt; see :class:`PanTilt`."""
+        """Choose the nearest direction that is measured, whatever the tilt; see :class:`.PanTilt`."""
         if not self._is_armed:
             raise DeviceError(self.NAME, "not_armed", "arm first")
         fan, zero_rad = self._fan(), self._mount.pan_zero_rad

@@ -19,11 +19,11 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.core.silence import within
-from robotd.hardware.devices.vendor_device import VendorDevice, is_a
 from robotd.hardware.devices.credible import IMPLAUSIBLE, check_battery, check_twist, implausible
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
 from robotd.hardware.devices.settings import DriveSettings
+from robotd.hardware.devices.vendor_device import VendorDevice, is_a
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.link.together import together

@@ -13,11 +13,11 @@ from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import DeviceError
 from robotd.core.pose import Odometry, Twist2
-from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.credible import IMPLAUSIBLE, check_battery
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
 from robotd.hardware.devices.settings import DriveSettings
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.wire.rwi_ascii import (

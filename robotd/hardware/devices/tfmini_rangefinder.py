@@ -15,10 +15,10 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
 from robotd.core.silence import within
-from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
+from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.wire.tfmini import (

@@ -114,7 +114,7 @@ class VendorDevice(ABC, Generic[M]):
         self._health.change(armed=False)
 
     def stop_past_loop(self, before: int = 0) -> None:
-        """Put the stop on the wire from any thread, while the loop is stuck; see :class:`Device`."""
+        """Put the stop on the wire from any thread, while the loop is stuck; see :class:`.Device`."""
         self._may_move = False
         dialogue = self._dialogue or self._ending
         data = self._past_loop(before)

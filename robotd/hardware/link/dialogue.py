@@ -170,7 +170,6 @@ class Dialogue(Generic[M]):
                         return await request.answer
                 except TimeoutError:
                     self._unsettled_ns = given_up_ns
-                    self._line.mark()  # else a replay takes the answer that came before the next recorded moment
                 except asyncio.CancelledError:
                     self._unsettled_ns = now_ns()
                     raise

@@ -69,10 +69,6 @@ class TappedLine:
         """Write bytes at once, from any thread; never raises. The tap does not see them: it lives on the loop."""
         self._transport.write_past_loop(data)
 
-    def mark(self) -> None:
-        """Note that a timer decided something now of which no byte tells: in a replay nothing happens between notes."""
-        self._tap.bytes_passed(self._device, Direction.TO_BOARD, now_ns(), b"")
-
     def close(self) -> None:
         """Give the line up; the tap is told once."""
         self._transport.close()

@@ -1,7 +1,7 @@
 """The poses that one stop's readings do not exclude: what the conservative mode asks, after any reading.
 
-Unlike :mod:`.counting`, which asks for the best, this asks for all poses whose rank is no less than the true one's can
-be (:mod:`.conservative`): all readings but those that may break their bounds.
+Unlike :mod:`robotd.localization.stop`, which asks for the best, this asks for all poses whose rank is no less than the
+true one's can be (:mod:`.conservative_rank`): all readings but those that may break their bounds.
 """
 
 import math

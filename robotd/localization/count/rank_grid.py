@@ -37,7 +37,7 @@ class RankGrid:
 
     The counts of 2048 cells (a tile of 32 x 64 with a free cell in it), at one heading, take 256 bytes for every binary
     digit, of which there are nine up to 511 readings: 300 headings of a room of 7 x 9 m at 50 mm take 10 MB, of
-    256 x 256 free cells 22 MB, of 1024 x 1024 free cells 350 MB. More than 1 GiB is refused; :func:`.counted.count_all`
+    256 x 256 free cells 22 MB, of 1024 x 1024 free cells 350 MB. More than 1 GiB is refused; :func:`.count_all`
     counts maps of any size.
     """
 

@@ -31,7 +31,7 @@ class Sight:
     """Readings, drawn once for all poses."""
 
     beams: NDArray[np.float64]
-    """``float64[m, 8]``, as :func:`~robotd.grid.kernels.in_use().weigh.weigh_beams` takes them."""
+    """``float64[m, 8]``, as :meth:`.WeighKernel.weigh_beams` takes them."""
     elsewhere: NDArray[np.float64]
     """``float64[m]``, how likely each is somewhere in any building."""
     seen_so_far: NDArray[np.float64]

@@ -1,1 +1,4 @@
-"""The paper's reference: slow and obvious twins of what the engine computes, called by tests and studies alone."""
+"""What the engine is held against by tests, benchmarks and studies; no program of ours reaches it.
+
+The paper's slow and obvious twins of what the engine computes, its separated orientation, and tracking from a prior.
+"""

@@ -1,7 +1,8 @@
 """A range reading drawn on the grid: the paper's range vector z, pixelized for one heading.
 
-Everything that localization computes from a reading goes through a :class:`Probe`, so that every way to compute
-feasible poses agrees on the cells. [BrownDonald2000]_ sec. 2.3.3, fig. 17.
+The definition, for one reading at one heading; the kernels draw the same cells, all readings at all headings at once
+(:mod:`robotd.grid.kernels.draw.draw_kernel`), and the tests hold them against this.
+[BrownDonald2000]_ sec. 2.3.3, fig. 17.
 """
 
 import math

@@ -21,7 +21,7 @@ class Laid:
     cells: NDArray[np.intp]
     """Those that changed, as flat indices, ascending."""
     latest: NDArray[np.uint8]
-    """As :attr:`MapInUse.latest`, of this grid."""
+    """As :attr:`.MapInUse.latest`, of this grid."""
     digest: str
     """Of the grid."""
     stops: MapStops | None
@@ -35,7 +35,7 @@ def lay(
 
     Args:
         grid: what was known before.
-        latest: ``uint8[rows, cols]``, as :attr:`MapInUse.latest`.
+        latest: ``uint8[rows, cols]``, as :attr:`.MapInUse.latest`.
         stops: what the grid is made of; None if that is not known, and then it stays unknown.
         sweep: what was seen.
         map_from_robot: where the sweep began.

@@ -24,7 +24,7 @@ from robotd.localization.fit.refinement import (
     expected_ranges,
     refine,
 )
-from robotd.localization.fit.tracking import Tracked, TrackingSettings, track
+from robotd.localization.reference.tracking import Tracked, TrackingSettings, track
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
 

@@ -19,7 +19,7 @@ IN_VACANT = 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ChanceMap:
-    """What :func:`~robotd.grid.kernels.weigh_beams` needs of a map; all arrays are contiguous."""
+    """What :meth:`.WeighKernel.weigh_beams` needs of a map; all arrays are contiguous."""
 
     cells: NDArray[np.uint8]
     """``uint8[rows, cols]``, the evidence of the occupancy grid; what lies outside was never seen."""

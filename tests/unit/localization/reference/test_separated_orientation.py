@@ -14,7 +14,8 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.localization.count.rank_grid import RankGrid
-from robotd.localization.heading.separated_orientation import (
+from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.reference.separated_orientation import (
     Axis,
     AxisVerdict,
     OrientationSettings,
@@ -24,7 +25,6 @@ from robotd.localization.heading.separated_orientation import (
     readings_axis,
     separated_orientation,
 )
-from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.sim.walls import Point, Walls, ray_cast
 from robotd.sim.world import load_world
 

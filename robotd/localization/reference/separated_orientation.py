@@ -9,7 +9,7 @@ localization must try theta slices instead.
 Directions of walls are those of lines fitted to the surroundings of each hit, and of each wall cell at the outside of
 an obstacle. Each counts modulo 90 degrees, by the length of wall it stands for and by the fourth power of how straight
 it is, so that corners count little. That says which axis is dominant, and how much so; to a tenth of a degree it is
-found by :mod:`robotd.localization.heading.sharpest_direction`.
+found by :mod:`robotd.localization.reference.sharpest_direction`.
 
 **In simulated rooms**, 300 readings, sigma 2 cm, 5 % outliers, 152 sweeps of three rooms: with a cut-off of 6 m all
 were usable, 0.7 degrees off at most (mean 0.1), with a support of at least 0.74; with 2.1 m 142 were, 2.1 degrees off
@@ -43,7 +43,7 @@ from numpy.typing import NDArray
 from robotd.core.angles import wrap_rad
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.footprints import dilate, disk_footprint
-from robotd.localization.heading.sharpest_direction import sharpest_direction
+from robotd.localization.reference.sharpest_direction import sharpest_direction
 
 QUARTER_TURN_RAD = math.pi / 2.0
 _HISTOGRAM_BINS = 180

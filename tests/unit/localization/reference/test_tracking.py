@@ -13,7 +13,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.wall_field import WallField
 from robotd.localization.fit.refinement import PoseBox, RefinementSettings, Walls, expected_ranges
-from robotd.localization.fit.tracking import NotHere, Tracked, TrackingSettings, track
+from robotd.localization.reference.tracking import NotHere, Tracked, TrackingSettings, track
 
 SPEC = GridSpec(0.05, -2.0, 1.0, (130, 170))
 DRAWN = RefinementSettings(walls=Walls.FACES, map_error_m=0.0, map_error_rad=0.0)

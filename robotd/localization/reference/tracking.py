@@ -1,4 +1,7 @@
-"""Where is the robot, when it is known within a few decimetres and degrees? The case of every stop but the first.
+"""Where is the robot, when it is known within a few decimetres and degrees? No program asks this yet.
+
+The daemon counts within the prior (:mod:`robotd.localization.stop`); this is what it is measured against, by tests and
+benchmarks.
 
 In three steps: a lattice of poses in the prior box, on which the heads of a part of the readings are laid; the best of
 them refined (:mod:`robotd.localization.fit.refinement`) within the box; and the count of the readings that this pose

@@ -1,1 +1,0 @@
-"""The heading before the position: separated orientation."""

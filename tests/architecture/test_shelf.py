@@ -1,0 +1,84 @@
+"""What no program reaches stands on a shelf that says so; all else in the package is there for a program to run."""
+
+import ast
+from functools import cache
+from pathlib import Path
+
+from robotd.cli.main import WORDS
+
+ROOT = Path(__file__).parents[2]
+SHELF = "robotd.localization.reference"
+"""What tests, benchmarks and studies hold the engine against."""
+ON_THE_SHELF = {
+    "bodies",
+    "directional_flood",
+    "error_map",
+    "feasible_poses",
+    "flooded_poses",
+    "floods",
+    "probe",
+    "separated_orientation",
+    "sharpest_direction",
+    "smallest_error",
+    "tracking",
+}
+TWINS_ELSEWHERE = {"robotd.exact.pairwise"}
+"""The slow twin of the plane sweep stands beside it."""
+PROGRAMS = {
+    "robotd.app",
+    "robotd.cli.main",
+    "robotd.client",
+    *(f"robotd.cli.verbs.{module}" for module, *_ in WORDS.values()),
+    "robotd.grid.kernels.build",  # these three make what is compiled and generated
+    "robotd.sim.firmware.build",
+    "firmware_proto.generate",
+}
+FILES = {
+    ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): file
+    for room in ("robotd", "firmware_proto")
+    for file in (ROOT / room).rglob("*.py")
+}
+
+
+@cache
+def imports(module: str) -> frozenset[str]:
+    """Return the modules of ours that a module imports, wherever in it."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(FILES[module].read_text())):
+        if isinstance(node, ast.Import):
+            names |= {item.name for item in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names |= {node.module, *(f"{node.module}.{item.name}" for item in node.names)}
+    return frozenset(names & FILES.keys())
+
+
+def reached(programs: set[str]) -> set[str]:
+    """Return the modules that are imported, directly or not."""
+    found: set[str] = set()
+    waiting = list(programs)
+    while waiting:
+        module = waiting.pop()
+        if module not in found:
+            found.add(module)
+            waiting += imports(module)
+    return found
+
+
+def holds_code(module: str) -> bool:
+    """Whether there is more in a module than a docstring."""
+    return len(ast.parse(FILES[module].read_text()).body) > 1
+
+
+def test_what_no_program_reaches_is_what_stands_on_the_shelf() -> None:
+    unreached = {module for module in FILES.keys() - reached(PROGRAMS) if holds_code(module)}
+    assert unreached == {f"{SHELF}.{name}" for name in ON_THE_SHELF} | TWINS_ELSEWHERE
+
+
+def test_the_programs_are_there_and_reach_the_house() -> None:
+    assert FILES.keys() >= PROGRAMS
+    assert {"robotd.localization.localizer", "robotd.hardware.link.dialogue"} <= reached({"robotd.app"})
+    assert reached({"robotd.client"}) < reached(PROGRAMS)
+
+
+def test_the_engine_does_not_lean_on_the_shelf() -> None:
+    assert not {module for module in reached(PROGRAMS) if module.startswith(SHELF + ".")}
