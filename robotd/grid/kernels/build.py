@@ -1,8 +1,6 @@
-"""How the C kernels are compiled: cffi in API mode, limited ABI. Read by setup.py, never imported by the program.
+"""How the C kernels are compiled: cffi in API mode, limited ABI. Read by setup.py, never imported by the program."""
 
-A kernel is a shelf: what Python calls is declared in its headers of the name of a source, the rest is the sources' own.
-"""
-
+import re
 from pathlib import Path
 
 from cffi import FFI
@@ -10,17 +8,27 @@ from cffi import FFI
 HERE = Path(__file__).parent
 SHELF = "robotd/grid/kernels"
 SOURCES = sorted(source.relative_to(HERE).as_posix() for source in HERE.glob("*/*.c"))
-DECLARED = sorted(
-    (f"{source.removesuffix('.c')}.h" for source in SOURCES if (HERE / source).with_suffix(".h").exists()),
-    key=lambda header: (header != "search/planes.h", header),  # search.h knows what planes.h declares
+DECLARED = (
+    "shared/shared.h",
+    *(
+        header
+        for header in (f"{source.removesuffix('.c')}.h" for source in SOURCES if not source.startswith("shared/"))
+        if (HERE / header).exists()
+    ),
 )
-"""The headers that Python reads."""
+"""What Python calls: the header of each source, and before them what they share."""
+
+
+def declarations(header: str) -> str:
+    """Return a header without the preprocessor's lines, of which cffi knows nothing."""
+    return re.sub(r"(?m)^#.*\n", "", (HERE / header).read_text())
+
 
 builder = FFI()
-builder.cdef("".join((HERE / header).read_text() for header in DECLARED))
+builder.cdef("".join(map(declarations, DECLARED)))
 builder.set_source(
     "robotd.grid.kernels._native",
-    "#include <stdint.h>\n" + "".join(f'#include "{header}"\n' for header in DECLARED),
+    "".join(f'#include "{header}"\n' for header in DECLARED),
     sources=[f"{SHELF}/{source}" for source in SOURCES],
     include_dirs=[SHELF],
     depends=sorted(f"{SHELF}/{header.relative_to(HERE).as_posix()}" for header in HERE.glob("*/*.h")),

@@ -14,13 +14,12 @@ from robotd.grid.kernels.grow import grow_native
 from robotd.grid.kernels.insert import insert_native
 from robotd.grid.kernels.pack import pack_native
 from robotd.grid.kernels.search import search_native
+from robotd.grid.kernels.shared.library import instruction_set
 from robotd.grid.kernels.table import Kernels, KernelsInUse
 from robotd.grid.kernels.weigh import weigh_native
 
 NATIVE = Kernels(
-    about=KernelsInUse(
-        compiled=True, instructions=count_native.instruction_set(), reason="compiled when robotd was installed"
-    ),
+    about=KernelsInUse(compiled=True, instructions=instruction_set(), reason="compiled when robotd was installed"),
     cast=cast_native,
     count=count_native,
     distance=distance_native,

@@ -3,18 +3,12 @@
  * Both fields are worked out in two passes of bytes, 16 to a vector: along the columns the way to the nearest source,
  * capped, then along the rows the least over the few neighbours that the cap leaves.
  */
-#include <math.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "cast/cast.h"
 
-#define REACH 8
-#define DEPTH 4
-#define SKIP_MAX 15
-#define ENDS 0
-#define BLOCKS 255
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
 #define ALONG 1e-300
 
 static inline uint8_t smaller(uint8_t a, uint8_t b)
@@ -54,8 +48,8 @@ static void along_columns(const uint8_t *cells, int32_t rows, int32_t cols, uint
 static void along_row(uint8_t *restrict ways, int32_t cols, int32_t reach, uint8_t *restrict padded)
 {
     const uint8_t far = (uint8_t)(reach * reach);
-    memset(padded, far, (size_t)cols + 2 * REACH);
-    uint8_t *middle = padded + REACH;
+    memset(padded, far, (size_t)cols + 2 * REACH_CELLS);
+    uint8_t *middle = padded + REACH_CELLS;
     for (int32_t col = 0; col < cols; col++)
         ways[col] = middle[col] = (uint8_t)(ways[col] * ways[col]);
     for (int32_t step = 1; step < reach; step++) {
@@ -71,12 +65,12 @@ void wall_codes(const uint8_t *walls, int32_t rows, int32_t cols, uint8_t *scrat
 {
     const size_t cells = (size_t)rows * (size_t)cols;
     uint8_t *outside = scratch, *inside = scratch + cells, *padded = scratch + 2 * cells;
-    along_columns(walls, rows, cols, 1, REACH, outside);
-    along_columns(walls, rows, cols, 0, DEPTH, inside);
+    along_columns(walls, rows, cols, 1, REACH_CELLS, outside);
+    along_columns(walls, rows, cols, 0, DEPTH_CELLS, inside);
     for (int32_t row = 0; row < rows; row++) {
         const size_t first = (size_t)row * (size_t)cols;
-        along_row(outside + first, cols, REACH, padded);
-        along_row(inside + first, cols, DEPTH, padded);
+        along_row(outside + first, cols, REACH_CELLS, padded);
+        along_row(inside + first, cols, DEPTH_CELLS, padded);
         for (int32_t col = 0; col < cols; col++)
             codes[first + col] = (int8_t)(outside[first + col] - inside[first + col]);
     }

@@ -3,9 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.cast.cast_kernel import REACH_CELLS, SKIP_MAX
-from robotd.grid.kernels.shared.buffers import floats, octets
+from robotd.grid.kernels.cast.cast_kernel import BLOCKS, DEPTH_CELLS, ENDS, FAR_CODE, REACH_CELLS, SKIP_MAX
+from robotd.grid.kernels.shared.library import agree, ffi, floats, lib, octets
+
+agree(REACH_CELLS=REACH_CELLS, FAR_CODE=FAR_CODE, DEPTH_CELLS=DEPTH_CELLS, SKIP_MAX=SKIP_MAX, ENDS=ENDS, BLOCKS=BLOCKS)
 
 
 def wall_codes(walls: NDArray[np.bool_]) -> NDArray[np.int8]:

@@ -6,16 +6,15 @@
  * the counters of one heading stay in the first-level cache, and what is kept of a batch in the second. What a tile sees
  * of the map at an offset is looked at only where it can matter: its columns, taken together over 32 rows, tell.
  */
-#include <pthread.h>
+#include "count/count.h"
+
 #include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include "count/count.h"
-#include "draw/draw.h"
+#include "shared/arena.h"
+#include "shared/packed.h"
+#include "shared/threads.h"
 
-#define TILE 32
-#define THREADS_MAX 16
 #define FEW 7
 #define FOUND_MAX 112 /* sixteen sevens */
 #define RUN 8         /* so many cells of a chain are walked before it is asked what is left */
@@ -40,8 +39,8 @@ typedef struct {
 static inline size_t seen_from(const count_job *job, const int32_t *tile, const int32_t *offset)
 {
     const uint32_t word = (uint32_t)(tile[0] + 2 + (offset[1] >> 6)), row = (uint32_t)(tile[1] + TILE + offset[0]);
-    const int is_near = word <= (uint32_t)job->words + 2 && row <= (uint32_t)job->rows + TILE;
-    return is_near ? word * ((size_t)job->rows + 2 * TILE) + row : 0;
+    const int is_near = word <= (uint32_t)job->map.words + 2 && row <= (uint32_t)job->map.rows + TILE;
+    return is_near ? word * column_of(&job->map) + row : 0;
 }
 
 /* Of columns that were taken together over the rows of a tile: those that its cells see. */
@@ -50,72 +49,28 @@ static inline uint64_t columns_from(const uint64_t *low, size_t stride, uint64_t
     return low[0] >> shift | low[stride] << 1 << (63 - shift);
 }
 
-#define NAME(x) x##_portable
-#define TARGET
-#define VECTOR 16
-#define FUNNEL(a, b, n) ((a) >> (n) | ((b) + (b)) << (63 - (n)))
-#define ANY(a) ((a)[0] | (a)[1])
-#define IS_ZERO(a) (ANY(a) == 0)
-#define XOR3(a, b, c) (a ^ b ^ c)
-#define MAJORITY(a, b, c) ((a & b) | (c & (a ^ b)))
+#include "shared/vector_portable.h"
+
 #include "count/count_body.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
-#include <immintrin.h>
 #define HAS_X86 1
+#include "shared/vector_avx2.h"
 
-#define NAME(x) x##_avx2
-#define TARGET __attribute__((target("avx2,bmi2")))
-#define VECTOR 32
-#define FUNNEL(a, b, n)                                                                                                \
-    ((VEC)_mm256_or_si256(_mm256_srl_epi64((__m256i)(a), _mm_cvtsi64_si128((long long)(n))),                           \
-                          _mm256_sll_epi64((__m256i)(b), _mm_cvtsi64_si128((long long)(64 - (n))))))
-#define ANY(a) ((a)[0] | (a)[1] | (a)[2] | (a)[3])
-#define IS_ZERO(a) _mm256_testz_si256((__m256i)(a), (__m256i)(a))
-#define XOR3(a, b, c) (a ^ b ^ c)
-#define MAJORITY(a, b, c) ((a & b) | (c & (a ^ b)))
 #include "count/count_body.h"
 
-#define TERNARY(a, b, c, table) ((VEC)_mm512_ternarylogic_epi64((__m512i)(a), (__m512i)(b), (__m512i)(c), table))
-#define NAME(x) x##_avx512
-#define TARGET __attribute__((target("avx512f,avx512vbmi2,bmi2")))
-#define VECTOR 64
-#define FUNNEL(a, b, n) ((VEC)_mm512_shrdv_epi64((__m512i)(a), (__m512i)(b), _mm512_set1_epi64((long long)(n))))
-#define ANY(a) ((uint64_t)_mm512_reduce_or_epi64((__m512i)(a)))
-#define IS_ZERO(a) (_mm512_test_epi64_mask((__m512i)(a), (__m512i)(a)) == 0)
-#define XOR3(a, b, c) TERNARY(a, b, c, 0x96)
-#define MAJORITY(a, b, c) TERNARY(a, b, c, 0xE8)
+#include "shared/vector_avx512.h"
+
 #include "count/count_body.h"
 #endif
 
-typedef enum { PORTABLE, AVX2, AVX512 } level;
-
-static level best_level(void)
-{
-#ifdef HAS_X86
-    if (!__builtin_cpu_supports("bmi2"))
-        return PORTABLE;
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vbmi2"))
-        return AVX512;
-    if (__builtin_cpu_supports("avx2"))
-        return AVX2;
-#endif
-    return PORTABLE;
-}
-
-const char *instruction_set(void)
-{
-    static const char *const names[] = {"portable", "avx2", "avx512"};
-    return names[best_level()];
-}
-
+/* What the threads share. */
 typedef struct {
     const count_job *job;
-    int32_t *next;
-    int32_t number;
-    int32_t subtract;
-    level level;
-} worker;
+    bodies kept[THREADS_MAX];
+    int32_t instructions;
+    int32_t next; /* tile */
+} counting;
 
 /* n - s = ~(~n + s), so taking away is adding to the complement. */
 static void complement(const count_job *job, int32_t tile)
@@ -126,18 +81,18 @@ static void complement(const count_job *job, int32_t tile)
         counters[i] = ~counters[i];
 }
 
-static void count_tile(const worker *self, int32_t tile, const bodies *kept)
+static void count_tile(const counting *all, int32_t tile, const bodies *kept)
 {
-    const count_job *job = self->job;
+    const count_job *job = all->job;
     static const int32_t here[2] = {0, 0};
-    memcpy(kept->planes + (size_t)job->slots * TILE, job->free + seen_from(job, job->tiles + 2 * tile, here),
-           TILE * sizeof *kept->planes);
+    memcpy(kept->planes + (size_t)job->drawn.slots * TILE,
+           job->map.free + seen_from(job, job->map.tiles + 2 * tile, here), TILE * sizeof *kept->planes);
 #ifdef HAS_X86
-    if (self->level == AVX512) {
+    if (all->instructions == AVX512) {
         count_tile_avx512(job, tile, kept);
         return;
     }
-    if (self->level == AVX2) {
+    if (all->instructions == AVX2) {
         count_tile_avx2(job, tile, kept);
         return;
     }
@@ -145,61 +100,51 @@ static void count_tile(const worker *self, int32_t tile, const bodies *kept)
     count_tile_portable(job, tile, kept);
 }
 
-static void *work(void *argument)
+static void count_tiles(void *shared, int32_t number)
 {
-    const worker *self = argument;
-    const size_t slots = (size_t)self->job->slots, size = (slots + 3) * TILE;
-    uint64_t *planes = self->job->spare + (size_t)self->number * (size + 2 * slots), *columns = planes + size;
-    const bodies kept = {planes, columns, (int32_t *)(columns + slots)};
-    memset(planes + (slots + 1) * TILE, 0, TILE * sizeof *planes);
-    memset(planes + (slots + 2) * TILE, 0xff, TILE * sizeof *planes);
-    for (;;) {
-        const int32_t tile = __atomic_fetch_add(self->next, 1, __ATOMIC_RELAXED);
-        if (tile >= self->job->tile_count)
-            return NULL;
-        if (self->subtract)
-            complement(self->job, tile);
-        count_tile(self, tile, &kept);
-        if (self->subtract)
-            complement(self->job, tile);
+    counting *all = shared;
+    const count_job *job = all->job;
+    const bodies *kept = &all->kept[number];
+    uint64_t *after = kept->planes + (size_t)job->drawn.slots * TILE + TILE;
+    memset(after, 0, TILE * sizeof *after);
+    memset(after + TILE, 0xff, TILE * sizeof *after);
+    for (int32_t tile; (tile = take_one(&all->next, job->map.tile_count)) >= 0;) {
+        if (job->subtract)
+            complement(job, tile);
+        count_tile(all, tile, kept);
+        if (job->subtract)
+            complement(job, tile);
     }
 }
 
-static void run(const count_job *job, int32_t subtract, int32_t threads, level with)
+/* Take what each thread needs from an arena. */
+static void share_scratch(const count_job *job, arena *from, bodies *kept)
 {
-    int32_t next = 0;
-    worker workers[THREADS_MAX];
-    pthread_t handles[THREADS_MAX];
-    int32_t started = 1;
-    for (int32_t i = 0; i < threads && i < THREADS_MAX; i++)
-        workers[i] = (worker){job, &next, i, subtract, with};
-    while (started < threads && started < THREADS_MAX &&
-           pthread_create(&handles[started], NULL, work, &workers[started]) == 0)
-        started++;
-    work(&workers[0]); /* a thread that could not be started is no harm: the tiles are taken one by one */
-    for (int32_t i = 1; i < started; i++)
-        pthread_join(handles[i], NULL);
+    const size_t slots = (size_t)job->drawn.slots;
+    for (int32_t i = 0; i < clamp(job->threads, 1, THREADS_MAX); i++) {
+        TAKE(from, kept[i].planes, (slots + 3) * TILE);
+        TAKE(from, kept[i].columns, slots);
+        TAKE(from, kept[i].plane_of, slots);
+    }
 }
 
-int32_t count_feasible(count_job *job, int32_t subtract, int32_t threads, int32_t instructions)
+int64_t count_scratch_words(const count_job *job)
 {
-    const size_t size = ((size_t)job->words + 4) * ((size_t)job->rows + 2 * TILE);
-    job->free = job->planes;
-    job->blocking = job->free + size;
-    job->grown = job->blocking + size;
-    job->stopping = job->grown + size;
-    job->ending = job->stopping + size;
-    job->chains = job->drawn + job->drawn[0];
-    job->groups = job->drawn + job->drawn[1];
-    job->beams = job->drawn + job->drawn[2];
-    job->batches = job->drawn + job->drawn[3];
-    job->lists = job->drawn + job->drawn[4];
-    job->batch_count = (int32_t)(job->lists - job->batches) - 1;
-    job->slots = job->drawn[6];
-    const level best = best_level();
-    if (instructions > (int32_t)best)
+    bodies none[THREADS_MAX];
+    arena sizes = {NULL, 0};
+    share_scratch(job, &sizes, none);
+    return (int64_t)sizes.used;
+}
+
+int32_t count_feasible(count_job *job)
+{
+    counting all = {.job = job, .instructions = instructions_for(job->instructions)};
+    arena scratch = {job->scratch, 0};
+    if (all.instructions < 0)
         return 0;
-    run(job, subtract, threads, instructions < 0 ? best : (level)instructions);
+    unfold(&job->map);
+    share_scratch(job, &scratch, all.kept);
+    share_among_threads(count_tiles, &all, job->threads);
     return 1;
 }
 

@@ -1,18 +1,13 @@
-/* The counting of one tile, written once and compiled for several instruction sets: count.c includes this file with
- *   NAME(x)          the name of x for this instruction set
- *   TARGET           the attribute that allows its instructions
- *   VECTOR           how many bytes a vector has
- *   FUNNEL(a, b, n)  the low 64 bits of (b, a) >> n, lane by lane, 0 <= n < 64
- *   ANY(a)           the OR of its lanes
- *   IS_ZERO(a)       whether that is 0
- *   XOR3(a, b, c)    a ^ b ^ c           MAJORITY(a, b, c)  two of them or more
- */
+/* The counting of one tile, written once and compiled for several instruction sets (shared/vector.h). */
 
-typedef uint64_t NAME(vec) __attribute__((vector_size(VECTOR), aligned(8), may_alias));
-#define VEC NAME(vec)
-#define LANES ((int)(VECTOR / sizeof(uint64_t)))
 #define VECTORS (TILE / LANES)
 #define AT(words, i) (*(const VEC *)((words) + (i) * LANES))
+
+#define CELLS VEC
+#define ADDER(x) NAME(x)
+#define SUM3 XOR3
+#define CARRY3 MAJORITY
+#include "shared/carry_save.h"
 
 static inline TARGET uint64_t NAME(any)(const VEC *words)
 {
@@ -27,18 +22,18 @@ static inline TARGET uint64_t NAME(any)(const VEC *words)
 static inline TARGET int NAME(narrow)(const count_job *job, const int32_t *tile, const int32_t *beam, const int32_t *end,
                                       const bodies *kept)
 {
-    const size_t stride = (size_t)job->rows + 2 * TILE;
-    VEC *free = (VEC *)(kept->planes + (size_t)job->slots * TILE), seen[VECTORS] = {{0}};
+    const size_t stride = column_of(&job->map);
+    VEC *free = (VEC *)(kept->planes + (size_t)job->drawn.slots * TILE), seen[VECTORS] = {{0}};
     const uint64_t columns = NAME(any)(free);
     for (; beam < end; beam += 3) {
         if (beam[1] == NO_HEAD)
             return 1;
         const size_t at = seen_from(job, tile, beam + 1);
         const uint64_t shift = (uint64_t)(beam[2] & 63);
-        if ((columns_from(job->ending + at, stride, shift) & columns) == 0)
+        if ((columns_from(job->map.ending + at, stride, shift) & columns) == 0)
             continue;
         for (int i = 0; i < VECTORS; i++)
-            seen[i] |= FUNNEL(AT(job->grown + at, i), AT(job->grown + at + stride, i), shift);
+            seen[i] |= FUNNEL(AT(job->map.grown + at, i), AT(job->map.grown + at + stride, i), shift);
     }
     for (int i = 0; i < VECTORS; i++)
         free[i] &= seen[i];
@@ -49,12 +44,12 @@ static inline TARGET int NAME(narrow)(const count_job *job, const int32_t *tile,
 static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, int32_t group, const bodies *kept,
                                      const int twice)
 {
-    const size_t stride = (size_t)job->rows + 2 * TILE;
-    const count_job map = *job; /* a copy, that nothing written can change */
+    const size_t stride = column_of(&job->map);
+    const count_job own = *job; /* a copy, that nothing written can change */
     const int32_t place[2] = {tile[0], tile[1]};
-    const int32_t all_free = job->slots, none = job->slots + 1;
-    const int32_t *offset = job->chains + 3 * (size_t)job->groups[group];
-    const int32_t *end = job->chains + 3 * (size_t)job->groups[group + 1];
+    const int32_t all_free = job->drawn.slots, none = job->drawn.slots + 1;
+    const int32_t *offset = job->drawn.chains + 3 * (size_t)job->drawn.groups[group];
+    const int32_t *end = job->drawn.chains + 3 * (size_t)job->drawn.groups[group + 1];
     VEC open[VECTORS], met[VECTORS] = {{0}};
     for (int i = 0; i < VECTORS; i++)
         open[i] = AT(kept->planes + (size_t)all_free * TILE, i);
@@ -65,13 +60,13 @@ static inline TARGET void NAME(walk)(const count_job *job, const int32_t *tile, 
         VEC all_gone = {0};
         int32_t slot;
         do {
-            const size_t at = seen_from(&map, place, offset);
+            const size_t at = seen_from(&own, place, offset);
             const uint64_t shift = (uint64_t)(offset[1] & 63);
             slot = offset[2];
             offset += 3;
-            if ((columns_from(map.stopping + at, stride, shift) & columns) == 0)
+            if ((columns_from(own.map.stopping + at, stride, shift) & columns) == 0)
                 continue;
-            const uint64_t *low = map.blocking + at, *high = low + stride;
+            const uint64_t *low = own.map.blocking + at, *high = low + stride;
             for (int i = 0; i < VECTORS; i++) {
                 const VEC blocking = FUNNEL(AT(low, i), AT(high, i), shift);
                 VEC gone = open[i] & blocking;
@@ -155,19 +150,7 @@ static inline TARGET void NAME(add_seven)(uint64_t *counter, const source *beams
         VEC plane[7];
         for (int beam = 0; beam < 7; beam++)
             plane[beam] = NAME(plane)(beams + beam, i);
-        const VEC sum = XOR3(plane[0], plane[1], plane[2]), more = XOR3(plane[3], plane[4], plane[5]);
-        const VEC carry1 = MAJORITY(plane[0], plane[1], plane[2]), carry2 = MAJORITY(plane[3], plane[4], plane[5]);
-        const VEC carry3 = MAJORITY(sum, more, plane[6]);
-        const VEC ones = XOR3(sum, more, plane[6]), twos = XOR3(carry1, carry2, carry3);
-        const VEC fours = MAJORITY(carry1, carry2, carry3);
-        VEC *n = (VEC *)counter + i;
-        const VEC n0 = n[0], n1 = n[VECTORS], n2 = n[2 * VECTORS];
-        VEC carry = n0 & ones;
-        n[0] = n0 ^ ones;
-        n[VECTORS] = XOR3(n1, twos, carry);
-        carry = MAJORITY(n1, twos, carry);
-        n[2 * VECTORS] = XOR3(n2, fours, carry);
-        carries[i] = MAJORITY(n2, fours, carry);
+        carries[i] = NAME(add_three_bits)((VEC *)counter + i, VECTORS, NAME(sum_of_seven)(plane));
     }
     NAME(ripple)(counter, carries, 3, bits);
 }
@@ -193,26 +176,26 @@ static inline TARGET int32_t NAME(telling)(const count_job *job, const int32_t *
                                            const int32_t *end, const bodies *kept, source *found, int32_t count,
                                            uint32_t *everywhere)
 {
-    const count_job map = *job; /* a copy, that what is written cannot change */
+    const count_job own = *job; /* a copy, that what is written cannot change */
     const bodies open = *kept;
     const int32_t place[2] = {tile[0], tile[1]};
-    const size_t stride = (size_t)map.rows + 2 * TILE;
-    const uint64_t *all = open.planes + (size_t)(map.slots + 2) * TILE;
+    const size_t stride = column_of(&own.map);
+    const uint64_t *all = open.planes + (size_t)(own.drawn.slots + 2) * TILE;
     const int32_t *beam = *next;
     uint32_t all_over = 0;
     for (; beam < end && count < FOUND_MAX; beam += 3) {
         const int32_t slot = beam[0], plane = open.plane_of[slot];
         const uint64_t *body = open.planes + (size_t)plane * TILE;
         if (beam[1] == NO_HEAD) {
-            const int32_t free = plane == map.slots;
+            const int32_t free = plane == own.drawn.slots;
             found[count] = (source){all, all, 0, body};
             all_over += (uint32_t)free;
             count += !free & (open.columns[slot] != 0);
         } else {
-            const size_t at = seen_from(&map, place, beam + 1);
+            const size_t at = seen_from(&own, place, beam + 1);
             const uint64_t shift = (uint64_t)(beam[2] & 63);
-            found[count] = (source){map.grown + at, map.grown + at + stride, shift, body};
-            count += (columns_from(map.ending + at, stride, shift) & open.columns[slot]) != 0;
+            found[count] = (source){own.map.grown + at, own.map.grown + at + stride, shift, body};
+            count += (columns_from(own.map.ending + at, stride, shift) & open.columns[slot]) != 0;
         }
     }
     *next = beam;
@@ -223,7 +206,7 @@ static inline TARGET int32_t NAME(telling)(const count_job *job, const int32_t *
 static TARGET void NAME(count_list)(const count_job *job, const int32_t *tile, const int32_t *beam, const int32_t *end,
                                     const bodies *kept, uint64_t *counter)
 {
-    const uint64_t *free = kept->planes + (size_t)job->slots * TILE, *none = free + TILE;
+    const uint64_t *free = kept->planes + (size_t)job->drawn.slots * TILE, *none = free + TILE;
     source found[FOUND_MAX];
     int32_t count = 0;
     uint32_t everywhere = 0;
@@ -248,35 +231,25 @@ static TARGET void NAME(count_list)(const count_job *job, const int32_t *tile, c
 
 static TARGET void NAME(count_tile)(const count_job *job, int32_t number, const bodies *kept)
 {
-    const int32_t *tile = job->tiles + 2 * number;
+    const int32_t *tile = job->map.tiles + 2 * number;
     const size_t counter_size = (size_t)job->bits * TILE;
     uint64_t *counters = job->counters + (size_t)number * (size_t)job->headings * counter_size;
-    for (int32_t batch = 0; batch < job->batch_count; batch++) {
-        const int32_t *list = job->lists + (size_t)batch * (size_t)job->headings;
-        if (job->batch_count == 1 && list[job->headings] - list[0] <= FEW &&
-            !NAME(narrow)(job, tile, job->beams + 3 * (size_t)list[0], job->beams + 3 * (size_t)list[job->headings], kept))
+    for (int32_t batch = 0; batch < job->drawn.batch_count; batch++) {
+        const int32_t *list = job->drawn.lists + (size_t)batch * (size_t)job->headings;
+        if (job->drawn.batch_count == 1 && list[job->headings] - list[0] <= FEW &&
+            !NAME(narrow)(job, tile, job->drawn.beams + 3 * (size_t)list[0], job->drawn.beams + 3 * (size_t)list[job->headings], kept))
             continue;
-        for (int32_t group = job->batches[batch]; group < job->batches[batch + 1]; group++)
-            if (job->blocked_by > 1)
+        for (int32_t group = job->drawn.batches[batch]; group < job->drawn.batches[batch + 1]; group++)
+            if (job->map.blocked_by > 1)
                 NAME(walk)(job, tile, group, kept, 1);
             else
                 NAME(walk)(job, tile, group, kept, 0);
         for (int32_t heading = 0; heading < job->headings; heading++)
-            NAME(count_list)(job, tile, job->beams + 3 * (size_t)list[heading],
-                             job->beams + 3 * (size_t)list[heading + 1], kept,
+            NAME(count_list)(job, tile, job->drawn.beams + 3 * (size_t)list[heading],
+                             job->drawn.beams + 3 * (size_t)list[heading + 1], kept,
                              counters + (size_t)heading * counter_size);
     }
 }
 
 #undef AT
-#undef VEC
-#undef LANES
 #undef VECTORS
-#undef NAME
-#undef TARGET
-#undef VECTOR
-#undef FUNNEL
-#undef ANY
-#undef IS_ZERO
-#undef XOR3
-#undef MAJORITY

@@ -2,20 +2,10 @@
 
 import numpy as np
 
-from robotd.grid.kernels._native import ffi, lib
 from robotd.grid.kernels.draw.draw_kernel import Beams
-from robotd.grid.kernels.shared.buffers import ints, words
-from robotd.grid.kernels.shared.packed_map import PAD_WORDS, TILE_ROWS, PackedMap, Words
-
-INSTRUCTION_SETS = ("portable", "avx2", "avx512")
-_THREADS_MAX = 16
-"""As in count.c."""
-
-
-def instruction_set() -> str:
-    """Return which instructions this processor lets the counting use."""
-    name: bytes = ffi.string(lib.instruction_set())
-    return name.decode()
+from robotd.grid.kernels.draw.draw_native import drawn_of
+from robotd.grid.kernels.shared.library import ffi, instructions_named, ints, lib, put_map, words
+from robotd.grid.kernels.shared.packed_map import PackedMap, Words
 
 
 def count_feasible(
@@ -32,17 +22,14 @@ def count_feasible(
     Raises:
         ValueError: this processor lacks those instructions.
     """
-    (tiles, headings, bits, _), (_, word_count, row_count) = counters.shape, the_map.planes.shape
-    workers, slots = min(threads, _THREADS_MAX), beams.slots
-    spare = np.empty(workers * ((slots + 3) * TILE_ROWS + 2 * slots), np.uint64)
     job = ffi.new("count_job *")
-    job.planes, job.blocked_by = words(the_map.planes), the_map.blocked_by
-    job.words, job.rows = word_count - 2 * PAD_WORDS, row_count - 2 * TILE_ROWS
-    job.tiles, job.tile_count = ints(the_map.tiles), tiles
-    job.drawn, job.headings, job.bits = ints(beams.numbers), headings, bits
-    job.counters, job.spare = words(counters), words(spare)
-    level = -1 if instructions is None else INSTRUCTION_SETS.index(instructions)
-    if not lib.count_feasible(job, subtract, workers, level):
+    put_map(job.map, the_map)
+    job.drawn = drawn_of(beams)
+    job.headings, job.bits, job.counters = counters.shape[1], counters.shape[2], words(counters)
+    job.subtract, job.threads, job.instructions = subtract, threads, instructions_named(instructions)
+    scratch = words(np.empty(lib.count_scratch_words(job), np.uint64))
+    job.scratch = scratch
+    if not lib.count_feasible(job):
         raise ValueError(f"this processor has no {instructions}")
 
 

@@ -2,22 +2,11 @@
  * along the rows the lower envelope of one parabola a column, found in one sweep to and fro (Meijster, Roerdink and
  * Hesselink, "A general algorithm for computing distance transforms in linear time", 2000). Whole numbers throughout.
  */
-#include <stddef.h>
-#include <stdint.h>
-
 #include "distance/distance.h"
 
-#define NOWHERE INT32_MAX
+#include <stddef.h>
 
-static inline int32_t least(int32_t a, int32_t b)
-{
-    return a < b ? a : b;
-}
-
-static inline int32_t greatest_of(int32_t a, int32_t b)
-{
-    return a > b ? a : b;
-}
+#include "shared/numbers.h"
 
 /* One row farther; what is beyond the limit stays there. */
 static inline int32_t next(int32_t way, uint8_t source, int32_t limit)
@@ -28,7 +17,7 @@ static inline int32_t next(int32_t way, uint8_t source, int32_t limit)
 /* along = rows to the nearest source of the same column, for the rows of the window and the columns first to end. */
 static void along_columns(const distance_job *job, int32_t first, int32_t end)
 {
-    const int32_t top = greatest_of(0, job->first_row - job->limit), bottom = least(job->rows, job->end_row + job->limit);
+    const int32_t top = larger(0, job->first_row - job->limit), bottom = smaller(job->rows, job->end_row + job->limit);
     int32_t *way = job->spare;
     for (int32_t col = first; col < end; col++)
         way[col] = job->outside && top == 0 ? 0 : NOWHERE;
@@ -52,7 +41,7 @@ static void along_columns(const distance_job *job, int32_t first, int32_t end)
             continue;
         int32_t *along = job->along + (size_t)(row - job->first_row) * (size_t)job->cols;
         for (int32_t col = first; col < end; col++)
-            along[col] = least(along[col], way[col]);
+            along[col] = smaller(along[col], way[col]);
     }
 }
 
@@ -112,7 +101,7 @@ static void along_row(const distance_job *job, const int32_t *along, int32_t fir
 
 void squared_distances(const distance_job *job)
 {
-    const int32_t first = greatest_of(0, job->first_col - job->limit), end = least(job->cols, job->end_col + job->limit);
+    const int32_t first = larger(0, job->first_col - job->limit), end = smaller(job->cols, job->end_col + job->limit);
     along_columns(job, first, end);
     for (int32_t row = job->first_row; row < job->end_row; row++)
         along_row(job, job->along + (size_t)(row - job->first_row) * (size_t)job->cols, first, end,

@@ -1,4 +1,10 @@
 /* The squared Euclidean distance to the nearest source: what Python calls. */
+#ifndef ROBOTD_DISTANCE_H
+#define ROBOTD_DISTANCE_H
+
+#include <stdint.h>
+
+enum { NOWHERE = 2147483647 };
 
 typedef struct {
     const uint8_t *sources;    /* [rows][cols], 0 or 1 */
@@ -15,5 +21,7 @@ typedef struct {
     int32_t *spare;            /* [3 * (cols + 2)], the same */
 } distance_job;
 
-/* Write the squared distance from each cell of the window to the nearest source, INT32_MAX if none is near enough. */
+/* Write the squared distance from each cell of the window to the nearest source, NOWHERE if none is near enough. */
 void squared_distances(const distance_job *job);
+
+#endif

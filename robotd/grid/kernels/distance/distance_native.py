@@ -3,9 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.shared.buffers import ints
+from robotd.grid.kernels.distance.distance_kernel import NOWHERE
+from robotd.grid.kernels.shared.library import agree, ffi, ints, lib
 from robotd.grid.window import CellWindow
+
+agree(NOWHERE=NOWHERE)
 
 
 def squared_distances(

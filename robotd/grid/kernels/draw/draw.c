@@ -1,29 +1,24 @@
 /* Beams drawn on the grid, and put into groups that share a chain of cells. draw_twin.py does the same in NumPy.
  *
- * The rules of ray.py and probe.py, rounded as they are (the build forbids contraction; sines and cosines come from
- * NumPy). Directions that are nearly the same are tried as one group; it is one only if its least and its greatest step
+ * Directions that are nearly the same are tried as one group; it is one only if its least and its greatest step
  * give the same chain, since floor(0.5 + k * step) never falls as the step grows. Otherwise its beams are put into groups
  * of exactly equal steps.
  */
-#include <math.h>
+#include "draw/draw.h"
+
 #include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include "draw/draw.h"
-#include "shared/rounding.h"
+#include "draw/reading_on_grid.h"
+#include "shared/arena.h"
 
-#define FAR_CELLS 268435456.0
 #define DIRECTIONS 1073741824.0
-#define FIRST 7 /* numbers of the parts come before them */
 #define TURN 6.283185307179586
 
 typedef struct {
-    double step[2];
-    int64_t start[2];
+    reading_on_grid at;
     int64_t direction;
-    int32_t length;
-    int32_t head[2];
+    int32_t length; /* of its chain, which begins with the robot's own cell */
 } beam;
 
 void find_bearings(const draw_job *job)
@@ -34,34 +29,21 @@ void find_bearings(const draw_job *job)
             *bearing++ = job->readings[5 * (size_t)reading] + job->headings[heading];
 }
 
-static inline int64_t nearest(double cells)
-{
-    return floor_of(greatest_of(least_of(cells, FAR_CELLS), -FAR_CELLS) + 0.5);
-}
-
 static inline beam draw(const draw_job *job, int32_t reading, int32_t heading)
 {
     const size_t headings = (size_t)job->heading_count, number = (size_t)reading * headings + (size_t)heading;
     const size_t count = (size_t)job->reading_count * headings;
     const double *r = job->readings + 5 * (size_t)reading, *h = job->headings + heading;
-    const double *bearing = job->ahead + number, ahead[2] = {bearing[count], bearing[2 * count]};
-    const double turned_sin = h[headings], turned_cos = h[2 * headings];
+    const double *bearing = job->ahead + number, turned_sin = h[headings], turned_cos = h[2 * headings];
     const double row = (turned_sin * r[2] + turned_cos * r[3]) / job->resolution_m;
     const double col = (turned_cos * r[2] - turned_sin * r[3]) / job->resolution_m;
-    const double range_cells = r[1] / job->resolution_m;
-    const double dominant = greatest_of(fabs(ahead[0]), fabs(ahead[1]));
-    const double free_cells = greatest_of(least_of(range_cells - job->error_radius_cells, job->reach_cells), 0.0);
-    const int64_t steps = ceiling_of(free_cells * dominant);
     beam b;
-    b.step[0] = ahead[0] / dominant;
-    b.step[1] = ahead[1] / dominant;
-    b.start[0] = nearest(row);
-    b.start[1] = nearest(col);
+    b.at = draw_reading(row, col, bearing[count], bearing[2 * count], r[1] / job->resolution_m, job->error_radius_cells,
+                        job->reach_cells);
+    if (r[4] > 0.0)
+        b.at.head[0] = b.at.head[1] = NO_HEAD;
     b.direction = nearest_of(*bearing * (DIRECTIONS / TURN)) & ((int64_t)DIRECTIONS - 1);
-    b.length = (int32_t)(steps > 1 ? steps : 1) + (b.start[0] != 0 || b.start[1] != 0);
-    const int is_miss = r[4] > 0.0;
-    b.head[0] = is_miss ? NO_HEAD : (int32_t)nearest(row + range_cells * ahead[0]);
-    b.head[1] = is_miss ? NO_HEAD : (int32_t)nearest(col + range_cells * ahead[1]);
+    b.length = b.at.cells + (b.at.start[0] != 0 || b.at.start[1] != 0);
     return b;
 }
 
@@ -92,12 +74,12 @@ static void join(const draw_job *job, int32_t group, const beam *b)
 {
     double *steps = job->steps + 4 * (size_t)group;
     if (job->sizes[group] == 0) {
-        memcpy(steps, b->step, sizeof b->step);
-        memcpy(steps + 2, b->step, sizeof b->step);
+        memcpy(steps, b->at.step, sizeof b->at.step);
+        memcpy(steps + 2, b->at.step, sizeof b->at.step);
     }
     for (int axis = 0; axis < 2; axis++) {
-        steps[axis] = b->step[axis] < steps[axis] ? b->step[axis] : steps[axis];
-        steps[axis + 2] = b->step[axis] > steps[axis + 2] ? b->step[axis] : steps[axis + 2];
+        steps[axis] = b->at.step[axis] < steps[axis] ? b->at.step[axis] : steps[axis];
+        steps[axis + 2] = b->at.step[axis] > steps[axis + 2] ? b->at.step[axis] : steps[axis + 2];
     }
     job->sizes[group] = b->length > job->sizes[group] ? b->length : job->sizes[group];
 }
@@ -113,15 +95,25 @@ static int is_one_chain(const draw_job *job, int32_t group)
     return 1;
 }
 
-static void share_out(draw_job *job)
+static void share_scratch(draw_job *job, arena *from)
 {
     const size_t beams = (size_t)job->reading_count * (size_t)job->heading_count;
-    job->keys = job->spare;
-    job->steps = (double *)(job->spare + 10 * beams);
-    job->sizes = (int32_t *)(job->spare + 18 * beams);
-    job->drawn = job->sizes + 2 * beams;
-    job->batch_of = job->drawn + 4 * beams;
-    job->table = job->batch_of + 2 * beams;
+    job->table_size = 2;
+    while ((size_t)job->table_size <= 2 * beams)
+        job->table_size *= 2;
+    TAKE(from, job->keys, 10 * beams);
+    TAKE(from, job->steps, 8 * beams);
+    TAKE(from, job->sizes, 2 * beams);
+    TAKE(from, job->drawn, 4 * beams);
+    TAKE(from, job->batch_of, 2 * beams);
+    TAKE(from, job->table, job->table_size);
+}
+
+int64_t draw_scratch_words(draw_job *job)
+{
+    arena sizes = {NULL, 0};
+    share_scratch(job, &sizes);
+    return (int64_t)sizes.used;
 }
 
 /* How many numbers the drawing takes at most, now that the groups are known; and how many slots a batch may have. */
@@ -133,24 +125,25 @@ static int64_t room_for_chains(draw_job *job)
     else if (job->slots < 2 * job->longest)
         job->slots = 2 * job->longest;
     const int64_t parts = 2 * beams / job->slots + 1, batches = parts < job->group_count ? parts : job->group_count;
-    return FIRST + 3 * (int64_t)job->cell_count + job->group_count + 1 + 3 * beams + batches + 1 +
+    return 3 * (int64_t)job->cell_count + job->group_count + 1 + 3 * beams + batches + 1 +
            batches * job->heading_count + 1;
 }
 
 int64_t draw_groups(draw_job *job)
 {
     int32_t count = 0;
-    share_out(job);
+    arena scratch = {job->scratch, 0};
+    share_scratch(job, &scratch);
     memset(job->table, 0xff, (size_t)job->table_size * sizeof *job->table);
     int32_t *drawn = job->drawn;
     for (int32_t reading = 0; reading < job->reading_count; reading++)
         for (int32_t heading = 0; heading < job->heading_count; heading++, drawn += 4) {
             const beam b = draw(job, reading, heading);
-            const int64_t key[5] = {b.direction, 0, b.start[0], b.start[1], 0};
+            const int64_t key[5] = {b.direction, 0, b.at.start[0], b.at.start[1], 0};
             drawn[0] = group_of(job, key, &count);
             drawn[1] = b.length;
-            drawn[2] = b.head[0];
-            drawn[3] = b.head[1];
+            drawn[2] = b.at.head[0];
+            drawn[3] = b.at.head[1];
             join(job, drawn[0], &b);
         }
     const int32_t tried = count;
@@ -166,8 +159,8 @@ int64_t draw_groups(draw_job *job)
             if (job->sizes[drawn[0]] != 0)
                 continue;
             const beam b = draw(job, reading, heading);
-            int64_t key[5] = {0, 0, b.start[0], b.start[1], 1};
-            memcpy(key, b.step, sizeof b.step);
+            int64_t key[5] = {0, 0, b.at.start[0], b.at.start[1], 1};
+            memcpy(key, b.at.step, sizeof b.at.step);
             drawn[0] = group_of(job, key, &count);
             join(job, drawn[0], &b);
         }
@@ -214,8 +207,8 @@ static int32_t share_slots(const draw_job *job, const int32_t *groups, int32_t *
     return batch;
 }
 
-/* List the beams by batch and heading. Returns the end of the lists. */
-static int32_t *list_beams(const draw_job *job, const int32_t *groups, const int32_t *chains, int32_t batches,
+/* List the beams by batch and heading. */
+static void list_beams(const draw_job *job, const int32_t *groups, const int32_t *chains, int32_t batches,
                            int32_t *lists, int32_t *beams)
 {
     const int32_t headings = job->heading_count, beam_count = job->reading_count * headings;
@@ -237,13 +230,12 @@ static int32_t *list_beams(const draw_job *job, const int32_t *groups, const int
         b[1] = d[2];
         b[2] = d[3];
     }
-    return lists + list_count + 1;
 }
 
-void draw_chains(const draw_job *job, int32_t *numbers)
+void draw_chains(const draw_job *job, int32_t *numbers, drawn_beams *drawn)
 {
     const int32_t beam_count = job->reading_count * job->heading_count, group_count = job->group_count;
-    int32_t *chains = numbers + FIRST, *groups = chains + 3 * (size_t)job->cell_count;
+    int32_t *chains = numbers, *groups = chains + 3 * (size_t)job->cell_count;
     int32_t *beams = groups + group_count + 1, *batches = beams + 3 * (size_t)beam_count;
     groups[0] = 0;
     for (int32_t group = 0; group < group_count; group++) {
@@ -253,9 +245,9 @@ void draw_chains(const draw_job *job, int32_t *numbers)
     for (int32_t i = 0; i < beam_count; i++)
         chains[3 * (size_t)(groups[job->drawn[4 * i]] + job->drawn[4 * i + 1] - 1) + 2] = 0;
     const int32_t batch_count = share_slots(job, groups, chains, batches);
-    int32_t *lists = batches + batch_count + 1, *end = list_beams(job, groups, chains, batch_count, lists, beams);
-    const int32_t *const parts[] = {chains, groups, beams, batches, lists, end};
-    for (int i = 0; i < FIRST - 1; i++)
-        numbers[i] = (int32_t)(parts[i] - numbers);
-    numbers[FIRST - 1] = job->slots;
+    int32_t *lists = batches + batch_count + 1;
+    list_beams(job, groups, chains, batch_count, lists, beams);
+    *drawn = (drawn_beams){chains,           groups,      beams,      batches,     lists,
+                           job->cell_count,  group_count, beam_count, batch_count, job->heading_count,
+                           job->slots};
 }

@@ -1,7 +1,7 @@
 """Readings drawn on the grid at all headings: chains of cells, and the beams whose bodies begin them."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,18 @@ def turned(headings_rad: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack((headings_rad, np.sin(headings_rad), np.cos(headings_rad)))
 
 
+@dataclass(frozen=True, slots=True)
+class BeamCounts:
+    """How much of everything there is in drawn beams, and so where it stands in their numbers."""
+
+    cell_count: int
+    group_count: int
+    beam_count: int
+    batch_count: int
+    heading_count: int
+    slots: int
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Beams:
     """Readings drawn on the grid at all headings; what shares a chain of cells is together.
@@ -40,25 +52,9 @@ class Beams:
     """
 
     numbers: NDArray[np.int32]
-    """All of it in one array: where each of five parts begins, where the last ends, how many slots there are; and these
-    parts: chains, groups, beams, batches, lists."""
-
-    @classmethod
-    def of(
-        cls,
-        *,
-        chains: NDArray[np.int32],
-        groups: NDArray[np.int32],
-        beams: NDArray[np.int32],
-        batches: NDArray[np.int32],
-        lists: NDArray[np.int32],
-        slots: int,
-    ) -> "Beams":
-        """Put the parts together."""
-        parts = [part.reshape(-1) for part in (chains, groups, beams, batches, lists)]
-        first = len(parts) + 2
-        bounds = np.cumsum([first, *(part.size for part in parts)])
-        return cls(np.concatenate([*(bounds, [slots]), *parts], dtype=np.int32))
+    """All parts one after the other, as they are named below."""
+    drawn: Any
+    """A :class:`BeamCounts`; or the struct of the kernel in C, which has the same numbers under the same names."""
 
     @property
     def chains(self) -> NDArray[np.int32]:
@@ -66,35 +62,41 @@ class Beams:
 
         The slot is -1 if none does. Each chain begins with ``(0, 0)``.
         """
-        return self._part(0).reshape(-1, 3)
+        return self._part(0, 3 * self.drawn.cell_count).reshape(-1, 3)
 
     @property
     def groups(self) -> NDArray[np.int32]:
         """``int32[groups + 1]``: first cell of each chain, and the end of the last."""
-        return self._part(1)
+        return self._part(3 * self.drawn.cell_count, self.drawn.group_count + 1)
 
     @property
     def beams(self) -> NDArray[np.int32]:
         """``int32[beams, 3]``: slot of the body, ``(row, col)`` of the head; ``NO_HEAD`` twice for a miss."""
-        return self._part(2).reshape(-1, 3)
+        first = 3 * self.drawn.cell_count + self.drawn.group_count + 1
+        return self._part(first, 3 * self.drawn.beam_count).reshape(-1, 3)
 
     @property
     def batches(self) -> NDArray[np.int32]:
         """``int32[batches + 1]``: first group of each batch, and the end of the last."""
-        return self._part(3)
+        return self._part(self._lists - self.drawn.batch_count - 1, self.drawn.batch_count + 1)
 
     @property
     def lists(self) -> NDArray[np.int32]:
         """``int32[batches * headings + 1]``: first beam of each batch and heading, and the end of the last."""
-        return self._part(4)
+        return self._part(self._lists, self.drawn.batch_count * self.drawn.heading_count + 1)
 
     @property
     def slots(self) -> int:
         """No batch has more than so many."""
-        return int(self.numbers[6])
+        return int(self.drawn.slots)
 
-    def _part(self, number: int) -> NDArray[np.int32]:
-        part: NDArray[np.int32] = self.numbers[self.numbers[number] : self.numbers[number + 1]]
+    @property
+    def _lists(self) -> int:
+        cells_and_beams = 3 * (self.drawn.cell_count + self.drawn.beam_count)
+        return int(cells_and_beams + self.drawn.group_count + 1 + self.drawn.batch_count + 1)
+
+    def _part(self, first: int, count: int) -> NDArray[np.int32]:
+        part: NDArray[np.int32] = self.numbers[first : first + count]
         return part
 
 

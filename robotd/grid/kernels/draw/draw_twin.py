@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS, NO_HEAD, SLOTS, Beams, BeamSettings
+from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS, NO_HEAD, SLOTS, BeamCounts, Beams, BeamSettings
 from robotd.grid.ray import ray_steps
 
 _DIRECTIONS = 1 << 30
@@ -125,11 +125,6 @@ def _listed(drawn: _Drawn, chains: _Chains, headings: int) -> Beams:
     order = np.argsort(lists, kind="stable")
     bounds = np.searchsorted(lists[order], np.arange(len(batches) * headings + 1))
     beams = np.column_stack((slot_of[end_of], drawn.heads))[order]
-    return Beams.of(
-        chains=np.ascontiguousarray(np.column_stack((chains.cells, slot_of)), np.int32),
-        groups=chains.ends.astype(np.int32),
-        batches=np.array([*batches, len(wanted)], np.int32),
-        lists=bounds.astype(np.int32),
-        beams=np.ascontiguousarray(beams, np.int32),
-        slots=slots,
-    )
+    parts = (np.column_stack((chains.cells, slot_of)), chains.ends, beams, np.array([*batches, len(wanted)]), bounds)
+    counts = BeamCounts(len(chains.cells), len(wanted), len(beams), len(batches), headings, slots)
+    return Beams(np.concatenate([part.reshape(-1) for part in parts], dtype=np.int32, casting="unsafe"), counts)

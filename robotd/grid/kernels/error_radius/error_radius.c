@@ -3,18 +3,16 @@
  * Bodies are walked 64 cells at a time; a cell is touched once by every reading, where its beam is stopped. The quantile
  * is found bit by bit from the top, by counting which readings need less: that runs over all cells of a row at once.
  */
-#include <pthread.h>
+#include "error_radius/error_radius.h"
+
 #include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include "draw/draw.h"
-#include "error_radius/error_radius.h"
 #include "shared/packed.h"
+#include "shared/threads.h"
 
-#define WORD 64
+#define WORD WORD_CELLS
 #define NEVER UINT16_MAX
-#define THREADS_MAX 16
 
 typedef struct {
     const errors_job *job;
@@ -33,14 +31,14 @@ static void stop(uint64_t stopped, uint16_t length, uint16_t *needed)
 static void walk(const place *at, const int32_t *reading, uint16_t *needed)
 {
     const errors_job *job = at->job;
-    const size_t stride = (size_t)job->rows + 2 * TILE;
+    const size_t stride = column_of(&job->map);
     uint64_t open[TILE], met[TILE];
     memcpy(open, at->free, sizeof open);
-    memset(met, job->blocked_by > 1 ? 0 : 0xff, sizeof met);
+    memset(met, job->map.blocked_by > 1 ? 0 : 0xff, sizeof met);
     memset(needed, 0, TILE * WORD * sizeof *needed);
     for (int32_t cell = reading[0]; cell < reading[1]; cell++) {
         const int32_t *offset = job->chains + 2 * (size_t)cell, shift = offset[1] & 63;
-        const uint64_t *blocking = words_at(job->blocking, job->words, job->rows, at->tile, offset[0], offset[1]);
+        const uint64_t *blocking = words_at(&job->map, job->map.blocking, at->tile, offset[0], offset[1]);
         uint64_t stopped[TILE], any = 0, left = 0;
         for (int i = 0; i < TILE; i++) {
             const uint64_t here = funnel(blocking[i], blocking[stride + i], shift);
@@ -134,7 +132,7 @@ static void solve(place *at)
 {
     const errors_job *job = at->job;
     const int32_t top = at->tile[1] - job->origin_row, left = at->tile[0] * WORD - job->origin_col;
-    memcpy(at->free, words_at(job->free, job->words, job->rows, at->tile, 0, 0), sizeof at->free);
+    memcpy(at->free, words_at(&job->map, job->map.free, at->tile, 0, 0), sizeof at->free);
     for (int32_t number = 0; number < job->reading_count; number++) {
         const int32_t *reading = job->readings + 4 * (size_t)number;
         uint16_t *needed = at->needed + (size_t)number * TILE * WORD;
@@ -157,38 +155,27 @@ static void solve(place *at)
     }
 }
 
+/* What the threads share. */
 typedef struct {
     const errors_job *job;
-    int32_t *next;
-    int32_t number;
-} worker;
+    int32_t next; /* tile */
+} solving;
 
-static void *work(void *argument)
+static void solve_tiles(void *shared, int32_t number)
 {
-    const worker *self = argument;
-    const errors_job *job = self->job;
+    solving *all = shared;
+    const errors_job *job = all->job;
     place at = {.job = job};
-    at.needed = job->needed + (size_t)self->number * (size_t)job->reading_count * TILE * WORD;
-    for (;;) {
-        const int32_t tile = __atomic_fetch_add(self->next, 1, __ATOMIC_RELAXED);
-        if (tile >= job->tile_count)
-            return NULL;
-        at.tile = job->tiles + 2 * (size_t)tile;
+    at.needed = job->needed + (size_t)number * (size_t)job->reading_count * TILE * WORD;
+    for (int32_t tile; (tile = take_one(&all->next, job->map.tile_count)) >= 0;) {
+        at.tile = job->map.tiles + 2 * (size_t)tile;
         solve(&at);
     }
 }
 
-void share_errors(const errors_job *job, int32_t threads)
+void share_errors(errors_job *job)
 {
-    int32_t next = 0, started = 1;
-    worker workers[THREADS_MAX];
-    pthread_t handles[THREADS_MAX];
-    for (int32_t i = 0; i < THREADS_MAX; i++)
-        workers[i] = (worker){job, &next, i};
-    while (started < threads && started < THREADS_MAX &&
-           pthread_create(&handles[started], NULL, work, &workers[started]) == 0)
-        started++;
-    work(&workers[0]); /* a thread that could not be started is no harm: the tiles are taken one by one */
-    for (int32_t i = 1; i < started; i++)
-        pthread_join(handles[i], NULL);
+    solving all = {job, 0};
+    unfold(&job->map);
+    share_among_threads(solve_tiles, &all, job->threads);
 }

@@ -3,13 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels._native import ffi, lib
+from robotd.grid.kernels.draw.draw_kernel import NO_HEAD
 from robotd.grid.kernels.error_radius.error_radius_kernel import Bodies
-from robotd.grid.kernels.shared.buffers import ints, shorts, words
+from robotd.grid.kernels.shared.library import agree, ffi, ints, lib, put_map, shorts
 from robotd.grid.kernels.shared.packed_map import TILE_ROWS, WORD_CELLS, PackedMap
 
-_THREADS_MAX = 16
-"""As in errors.c."""
+agree(NO_HEAD=NO_HEAD)
 
 
 def share_errors(
@@ -18,16 +17,15 @@ def share_errors(
     """See :class:`.ErrorRadiusKernel`."""
     rows, cols = the_map.shape
     errors = np.full(the_map.shape, np.iinfo(np.uint16).max, np.uint16)
-    threads = min(threads, _THREADS_MAX, max(1, len(the_map.tiles)))
+    threads = min(threads, lib.THREADS_MAX, max(1, len(the_map.tiles)))
     needed = np.empty((threads, len(bodies.readings), TILE_ROWS * WORD_CELLS), np.uint16)
     job = ffi.new("errors_job *")
-    job.free, job.blocking, job.blocked_by = words(the_map.free), words(the_map.blocking), the_map.blocked_by
-    job.words, job.rows = the_map.words, the_map.rows
-    job.tiles, job.tile_count = ints(the_map.tiles), len(the_map.tiles)
+    put_map(job.map, the_map)
     (job.origin_row, job.origin_col), job.map_rows, job.map_cols = the_map.origin, rows, cols
     job.distances, job.outside = shorts(distances), outside
     job.chains, job.lengths = ints(bodies.chains), shorts(bodies.lengths)
     job.readings, job.reading_count, job.wanted = ints(bodies.readings), len(bodies.readings), wanted
     job.needed, job.errors = shorts(needed), shorts(errors)
-    lib.share_errors(job, threads)
+    job.threads = threads
+    lib.share_errors(job)
     return errors

@@ -1,13 +1,11 @@
 /* Counting poses that cannot be excluded: per tile and fan, the paths of cells that may be free, line by line. */
-#include <pthread.h>
+#include "fans/fans.h"
+
 #include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include "fans/fans.h"
 #include "shared/packed.h"
-
-#define THREADS_MAX 16
+#include "shared/threads.h"
 
 /* One line of a fan: where paths end, for every cell of the window; and what is open, for one cell more on either side. */
 typedef struct {
@@ -20,24 +18,18 @@ typedef struct {
     const fan_job *job;
     const int32_t *tile;
     uint64_t *counters; /* of the tile */
-    int32_t subtract;
 } place;
-
-static inline const uint64_t *seen(const fan_job *job, const uint64_t *map, const int32_t *tile, int32_t row, int32_t col)
-{
-    return words_at(map, job->words, job->rows, tile, row, col);
-}
 
 /* What is open on a line, `along` lines and from `first` - 1 to `last` + 1 cells aside of the robot's own. */
 static void look(const place *at, const int32_t *fan, int32_t along, int32_t first, int32_t last, line *to)
 {
     const fan_job *job = at->job;
-    const size_t stride = (size_t)job->rows + 2 * TILE;
+    const size_t stride = column_of(&job->map);
     to->first = first;
     to->last = last;
     for (int32_t aside = first - 1; aside <= last + 1; aside++) {
         const int32_t row = fan[0] == 0 ? along : aside, col = fan[0] == 0 ? aside : along, shift = col & 63;
-        const uint64_t *blocking = seen(job, job->blocking, at->tile, row, col);
+        const uint64_t *blocking = words_at(&job->map, job->map.blocking, at->tile, row, col);
         uint64_t *open = to->open[aside - first + 1];
         for (int i = 0; i < TILE; i++)
             open[i] = ~funnel(blocking[i], blocking[stride + i], shift);
@@ -96,15 +88,15 @@ static void count(const place *at, const int32_t *beam, const uint64_t *passed)
     uint64_t carry[TILE], any = 0;
     memcpy(carry, passed, sizeof carry);
     if (beam[2] >= 0) {
-        const uint64_t *head = seen(job, job->grown[beam[2]], at->tile, beam[3], beam[4]);
-        const size_t stride = (size_t)job->rows + 2 * TILE;
+        const uint64_t *head = words_at(&job->map, job->grown[beam[2]], at->tile, beam[3], beam[4]);
+        const size_t stride = column_of(&job->map);
         const int32_t shift = beam[4] & 63;
         for (int i = 0; i < TILE; i++)
             carry[i] &= funnel(head[i], head[stride + i], shift);
     }
     for (int i = 0; i < TILE; i++)
         any |= carry[i];
-    const uint64_t flip = at->subtract ? ~(uint64_t)0 : 0;
+    const uint64_t flip = job->subtract ? ~(uint64_t)0 : 0;
     uint64_t *counter = at->counters + (size_t)beam[1] * (size_t)job->bits * TILE;
     for (int32_t bit = 0; bit < job->bits && any != 0; bit++, counter += TILE) {
         any = 0;
@@ -123,7 +115,7 @@ static void count_fan(const place *at, int32_t number)
     const int32_t *fan = job->lines + 7 * (size_t)number, end = job->lists[number + 1];
     line lines[2];
     uint64_t passed[TILE];
-    memcpy(passed, seen(job, job->free, at->tile, 0, 0), sizeof passed);
+    memcpy(passed, words_at(&job->map, job->map.free, at->tile, 0, 0), sizeof passed);
     const line *before = NULL;
     if (fan[6]) {
         look(at, fan, 0, 0, 0, &lines[1]);
@@ -147,35 +139,28 @@ static void count_fan(const place *at, int32_t number)
     }
 }
 
+/* What the threads share. */
 typedef struct {
     const fan_job *job;
-    int32_t *next;
-    int32_t subtract;
-} worker;
+    int32_t next; /* tile */
+} counting;
 
-static void *work(void *argument)
+static void count_tiles(void *shared, int32_t number)
 {
-    const worker *self = argument;
-    const fan_job *job = self->job;
+    counting *all = shared;
+    const fan_job *job = all->job;
     const size_t size = (size_t)job->headings * (size_t)job->bits * TILE;
-    for (;;) {
-        const int32_t tile = __atomic_fetch_add(self->next, 1, __ATOMIC_RELAXED);
-        if (tile >= job->tile_count)
-            return NULL;
-        const place at = {job, job->tiles + 2 * (size_t)tile, job->counters + (size_t)tile * size, self->subtract};
+    (void)number;
+    for (int32_t tile; (tile = take_one(&all->next, job->map.tile_count)) >= 0;) {
+        const place at = {job, job->map.tiles + 2 * (size_t)tile, job->counters + (size_t)tile * size};
         for (int32_t fan = 0; fan < job->fan_count; fan++)
             count_fan(&at, fan);
     }
 }
 
-void count_fans(const fan_job *job, int32_t subtract, int32_t threads)
+void count_fans(fan_job *job)
 {
-    int32_t next = 0, started = 1;
-    worker self = {job, &next, subtract};
-    pthread_t handles[THREADS_MAX];
-    while (started < threads && started < THREADS_MAX && pthread_create(&handles[started], NULL, work, &self) == 0)
-        started++;
-    work(&self); /* a thread that could not be started is no harm: the tiles are taken one by one */
-    for (int32_t i = 1; i < started; i++)
-        pthread_join(handles[i], NULL);
+    counting all = {job, 0};
+    unfold(&job->map);
+    share_among_threads(count_tiles, &all, job->threads);
 }

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 
 from robotd.grid.fans import FanBeams
-from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.shared.buffers import ints, words
+from robotd.grid.kernels.shared.library import ffi, ints, lib, put_map, words
 from robotd.grid.kernels.shared.packed_map import PackedMap, Words
 
 
@@ -18,14 +17,13 @@ def count_fans(
     threads: int = 1,
 ) -> None:
     """See :class:`.FansKernel`."""
-    tiles, headings, bits, _ = counters.shape
     fans, planes = fan_beams.fans, [words(plane) for plane in grown]
     job = ffi.new("fan_job *")
     pointers = ffi.new("uint64_t *[]", planes)
-    job.free, job.blocking, job.grown = words(the_map.free), words(the_map.blocking), pointers
-    job.words, job.rows = the_map.words, the_map.rows
-    job.tiles, job.tile_count = ints(the_map.tiles), tiles
+    put_map(job.map, the_map)
+    job.grown = pointers
     job.lines, job.windows = ints(fans.lines), ints(fans.windows)
     job.lists, job.fan_count, job.beams = ints(fan_beams.lists), len(fans.lines), ints(fan_beams.beams)
-    job.headings, job.bits, job.counters = headings, bits, words(counters)
-    lib.count_fans(job, subtract, threads)
+    job.headings, job.bits, job.counters = counters.shape[1], counters.shape[2], words(counters)
+    job.subtract, job.threads = subtract, threads
+    lib.count_fans(job)

@@ -1,17 +1,14 @@
 /* Fitting poses to walls. fit_twin.py does the same in NumPy, sums in the same order, so with the same roundings. */
-#include <math.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "fit/fit.h"
 
-#define REACH 8
-#define HEADS_MIN 3
-#define LAGS 8
-#define LEAST_SPREAD_CELLS 0.1
-#define UNKNOWN_CELLS 256.0
-#define UNKNOWN_RAD 3.141592653589793
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "cast/cast.h"
+
+const double LEAST_SPREAD_CELLS = 0.1, UNKNOWN_CELLS = 256.0, UNKNOWN_RAD = 3.141592653589793;
+
 #define ROUNDS_MAX 32
 #define NARROWING 0.7
 #define CLOSE 1e-4
@@ -27,7 +24,7 @@ static inline double interpolated(const fit_job *job, double x, double y, double
 {
     if (!(x >= 0.0 && y >= 0.0 && x < job->cols - 1 && y < job->rows - 1)) {
         *slope_x = *slope_y = 0.0;
-        return job->distances[REACH * REACH + 128];
+        return job->distances[FAR_CODE + 128];
     }
     const int32_t col = (int32_t)x, row = (int32_t)y;
     const double a = x - col, b = y - row, *distances = job->distances + 128;
@@ -143,7 +140,7 @@ static inline double within(double value, double low, double high)
 static void fit(const fit_job *job, const double *box, double *best)
 {
     const double *start = box, *low = box + 3, *high = box + 6;
-    double belief[3], at[3], step[3] = {0.0, 0.0, 0.0}, least = INFINITY, width = REACH;
+    double belief[3], at[3], step[3] = {0.0, 0.0, 0.0}, least = INFINITY, width = REACH_CELLS;
     for (int i = 0; i < 3; i++) {
         const double half = (high[i] - low[i]) / 2, room = half > 1e-9 ? half : 1e-9;
         belief[i] = PRIOR / (room * room);

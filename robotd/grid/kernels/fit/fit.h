@@ -1,4 +1,12 @@
 /* Fitting poses to walls: what Python calls. fit_kernel.py describes the arrays. */
+#ifndef ROBOTD_FIT_H
+#define ROBOTD_FIT_H
+
+#include <stdint.h>
+
+enum { HEADS_MIN = 3, LAGS = 8 };
+
+extern const double LEAST_SPREAD_CELLS, UNKNOWN_CELLS, UNKNOWN_RAD;
 
 typedef struct {
     const int8_t *codes;       /* [rows][cols] */
@@ -38,3 +46,5 @@ typedef struct {
 
 /* Find the best heading for each place of a lattice: the one at which the heads cost least. */
 void scan_poses(const scan_job *job);
+
+#endif

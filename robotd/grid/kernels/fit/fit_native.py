@@ -3,10 +3,20 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels._native import ffi, lib
 from robotd.grid.kernels.cast.cast_kernel import FAR_CODE
-from robotd.grid.kernels.fit.fit_kernel import Fits, Lattice
-from robotd.grid.kernels.shared.buffers import floats, ints
+from robotd.grid.kernels.fit.fit_kernel import (
+    HEADS_MIN,
+    LAGS,
+    LEAST_SPREAD_CELLS,
+    UNKNOWN_CELLS,
+    UNKNOWN_RAD,
+    Fits,
+    Lattice,
+)
+from robotd.grid.kernels.shared.library import agree, ffi, floats, ints, lib
+
+agree(HEADS_MIN=HEADS_MIN, LAGS=LAGS, LEAST_SPREAD_CELLS=LEAST_SPREAD_CELLS)
+agree(UNKNOWN_CELLS=UNKNOWN_CELLS, UNKNOWN_RAD=UNKNOWN_RAD)
 
 
 def fit_poses(

@@ -1,11 +1,10 @@
 /* Growing by a disk in two passes: along the columns the way to the nearest cell of the set in each, then along the rows
  * whether any column's is no longer than the disk is high there. Bytes throughout, so that compilers make vectors of it.
  */
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "grow/grow.h"
+
+#include <stddef.h>
+#include <string.h>
 
 #define FAR 255
 

@@ -1,4 +1,8 @@
 /* Growing a set of cells by a disk: what Python calls. */
+#ifndef ROBOTD_GROW_H
+#define ROBOTD_GROW_H
+
+#include <stdint.h>
 
 typedef struct {
     const uint8_t *mask;       /* [rows][cols], 0 or 1 */
@@ -17,3 +21,5 @@ typedef struct {
 
 /* Set the cells of the window from which the disk meets the set, clear the others. */
 void grow_disk(const grow_job *job);
+
+#endif

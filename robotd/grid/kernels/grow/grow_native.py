@@ -4,8 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid.footprints import disk_footprint
-from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.shared.buffers import octets
+from robotd.grid.kernels.shared.library import ffi, lib, octets
 from robotd.grid.window import CellWindow
 
 _REACH_MAX = 254

@@ -3,12 +3,13 @@
  * The rule of ray.py: a beam is sampled once per cell of its dominant axis, at start + k * step. Products and sums are
  * rounded one by one (the build forbids contraction), and in the order of insert_twin.py; so the cells are those of NumPy.
  */
+#include "insert/insert.h"
+
 #include <math.h>
 #include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include "insert/insert.h"
+#include "draw/reading_on_grid.h"
 
 typedef struct {
     double row, col, row_step, col_step;
@@ -83,13 +84,13 @@ static void draw(const insert_job *job, int32_t i)
     const double y_m = job->robot_y_m + job->robot_sin * r[2] + job->robot_cos * r[3];
     const double end_row = in_cells(y_m + r[1] * sine, job->origin_y_m, job->resolution_m);
     const double end_col = in_cells(x_m + r[1] * cosine, job->origin_x_m, job->resolution_m);
-    const double dominant = fmax(fabs(sine), fabs(cosine));
+    const direction ahead = direction_of(sine, cosine);
     beam *b = (beam *)job->beams + i;
     b->row = in_cells(y_m, job->origin_y_m, job->resolution_m);
     b->col = in_cells(x_m, job->origin_x_m, job->resolution_m);
-    b->row_step = sine / dominant;
-    b->col_step = cosine / dominant;
-    clip(b, ceil(fmax(r[1] / job->resolution_m, 0.0) * dominant), job->rows, job->cols);
+    b->row_step = ahead.step[0];
+    b->col_step = ahead.step[1];
+    clip(b, ceil(fmax(r[1] / job->resolution_m, 0.0) * ahead.dominant), job->rows, job->cols);
     const int ends_inside =
         end_row >= 0.0 && end_row < (double)job->rows && end_col >= 0.0 && end_col < (double)job->cols;
     job->hits[i] = ends_inside && !(r[4] > 0.0) ? (int64_t)end_row * job->cols + (int64_t)end_col : -1;

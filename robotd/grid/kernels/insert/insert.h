@@ -1,4 +1,8 @@
 /* A sweep into the occupancy grid: what Python calls. */
+#ifndef ROBOTD_INSERT_H
+#define ROBOTD_INSERT_H
+
+#include <stdint.h>
 
 typedef struct {
     uint8_t *cells;            /* [rows][cols], changed */
@@ -26,3 +30,5 @@ typedef struct {
 /* Lower the cells that beams run through and raise those they end in (occupancy.py), and put the cells whose value
  * changed into `changed`, ascending. Returns how many. */
 int64_t insert_sweep(const insert_job *job);
+
+#endif

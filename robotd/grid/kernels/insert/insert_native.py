@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.shared.buffers import floats, longs, octets
+from robotd.grid.kernels.shared.library import ffi, floats, lib, longs, octets
 from robotd.grid.tables import UpdateTable
 
 

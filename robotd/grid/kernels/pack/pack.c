@@ -1,32 +1,9 @@
 /* 64 cells a word, words of one column together: packed_map.py says how. */
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "pack/pack.h"
 
-/* Eight bytes of 0 or 1 as eight bits, the first one lowest. */
-static inline uint64_t octet(const uint8_t *cells)
-{
-#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
-    uint64_t eight;
-    memcpy(&eight, cells, 8);
-    return eight * UINT64_C(0x0102040810204080) >> 56; /* no two partial products meet in one bit */
-#else
-    uint64_t bits = 0;
-    for (int i = 0; i < 8; i++)
-        bits |= (uint64_t)cells[i] << i;
-    return bits;
-#endif
-}
+#include <stddef.h>
 
-static inline uint64_t whole_word(const uint8_t *cells)
-{
-    uint64_t bits = 0;
-    for (int i = 0; i < 8; i++)
-        bits |= octet(cells + 8 * i) << 8 * i;
-    return bits;
-}
+#include "shared/bits.h"
 
 void pack_cells(const uint8_t *mask, int32_t cols, const int32_t *window, int32_t top, int32_t left,
                 int32_t stride, uint64_t *words)

@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.shared.buffers import octets
+from robotd.grid.kernels.shared.library import ffi, lib, octets
 from robotd.grid.kernels.shared.packed_map import PAD_WORDS, TILE_ROWS, WORD_CELLS, Words
 from robotd.grid.window import CellWindow
 

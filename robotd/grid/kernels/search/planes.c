@@ -1,7 +1,11 @@
 /* Filling the planes of a search_map, or what a changed window of the map changes in them. */
+#include "search/planes.h"
+
 #include <string.h>
 
 #include "search/planes_layout.h"
+#include "shared/arena.h"
+#include "shared/bits.h"
 
 /* The map as rows of words, with a margin of what lies outside: one word of columns and MARGIN rows. */
 #define MARGIN (2 * WINDOW + RING)
@@ -35,21 +39,10 @@ static int64_t bitmap_size(const search_map *map)
     return (int64_t)(block_rows(map, WINDOW) * WINDOW + 2 * MARGIN) * row_words(map);
 }
 
-int64_t search_scratch_size(const search_map *map)
+int64_t search_planes_scratch_words(const search_map *map)
 {
     const int64_t near_words = (int64_t)map->rows * map->cols / 8 + 1;
     return 3 * bitmap_size(map) > near_words ? 3 * bitmap_size(map) : near_words;
-}
-
-/* Eight bytes of 0 or 1, to bits. */
-static inline uint64_t eight(const uint8_t *bytes)
-{
-    uint64_t word;
-    memcpy(&word, bytes, 8);
-#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-    word = __builtin_bswap64(word);
-#endif
-    return word * UINT64_C(0x0102040810204080) >> 56;
 }
 
 static uint64_t packed(const uint8_t *row, int32_t first, int32_t cols, uint64_t outside)
@@ -57,11 +50,8 @@ static uint64_t packed(const uint8_t *row, int32_t first, int32_t cols, uint64_t
     uint64_t word = 0;
     if (first >= cols)
         return outside;
-    if (first + 64 <= cols) {
-        for (int i = 0; i < 8; i++)
-            word |= eight(row + first + 8 * i) << (8 * i);
-        return word;
-    }
+    if (first + 64 <= cols)
+        return whole_word(row + first);
     for (int32_t col = first; col < cols; col++)
         word |= (uint64_t)row[col] << (col - first);
     return word | outside << (cols - first);

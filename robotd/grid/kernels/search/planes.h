@@ -6,6 +6,10 @@
  * `pooled[keys * pool * pool][words + 2][block_rows]` and two columns more. Near: the Chebyshev distance of each cell to
  * the nearest that blocks, `near[rows][cols]`, at most 63.
  */
+#ifndef ROBOTD_SEARCH_PLANES_H
+#define ROBOTD_SEARCH_PLANES_H
+
+#include <stdint.h>
 
 typedef struct {
     int32_t rows, cols;         /* of the map */
@@ -21,8 +25,10 @@ typedef struct {
 /* How many cells of `cells` and words of `pooled`, and how many words of scratch to fill them. */
 int64_t search_cells_size(const search_map *map);
 int64_t search_pooled_size(const search_map *map);
-int64_t search_scratch_size(const search_map *map);
+int64_t search_planes_scratch_words(const search_map *map);
 
 /* Make everything that depends on the cells of a window. */
 void search_prepare(const search_map *map, int32_t row_first, int32_t row_last, int32_t col_first, int32_t col_last,
                     uint64_t *scratch);
+
+#endif

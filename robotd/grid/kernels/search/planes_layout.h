@@ -1,8 +1,12 @@
 /* Where things lie in the planes of a search_map: shared by what fills them and what reads them. */
+#ifndef ROBOTD_PLANES_LAYOUT_H
+#define ROBOTD_PLANES_LAYOUT_H
+
 #include <stddef.h>
 #include <stdint.h>
 
 #include "search/planes.h"
+#include "shared/numbers.h"
 
 #define WINDOW 16
 #define NEAR_MAX 63
@@ -18,11 +22,6 @@ static inline int32_t up(int32_t value, int32_t step)
 static inline int32_t floor_div(int32_t value, int32_t step) /* step is a power of two */
 {
     return (value & -step) / step;
-}
-
-static inline int32_t clamp(int32_t value, int32_t low, int32_t high)
-{
-    return value < low ? low : value > high ? high : value;
 }
 
 /* Cells: columns of 16, and rows with a window's margin on either side. */
@@ -84,3 +83,5 @@ static inline int32_t far_heads(const search_map *map, int32_t key)
 {
     return map->outside_ends && !(map->outside_blocks && key > 0);
 }
+
+#endif

@@ -6,13 +6,15 @@
  * an answer, heads and ends of bodies are counted cell by cell, 256 at a time; (4) for the cells that are left, the
  * bodies are walked. Whatever the order, what is returned depends on the ranks alone.
  */
-#include <pthread.h>
+#include "search/search.h"
+
 #include <string.h>
 
 #include "search/search_masks.h"
 #include "search/search_window.h"
+#include "shared/arena.h"
+#include "shared/threads.h"
 
-#define THREADS_MAX 16
 #define HOPES 64 /* so many bounds are made finer before the search, and so many windows of them tried */
 #define SEEDS 16
 #define STEPS 12
@@ -23,19 +25,6 @@ static int32_t units_of(const search_job *job)
     if (job->by_blocks)
         return block_words(job->map, WINDOW) * (block_rows(job->map, WINDOW) / 8);
     return up(job->area[1] - job->area[0], WINDOW) * up(job->area[3] - job->area[2], WINDOW);
-}
-
-static size_t worker_words(const search_job *job)
-{
-    return (size_t)job->reading_count * ((sizeof(beam) + POOLS * sizeof(pooled_beam) + sizeof(window)) / 8 + 1) + 8;
-}
-
-int64_t search_size(const search_job *job)
-{
-    const int64_t units = units_of(job), headings = job->heading_count;
-    return (job->by_blocks ? headings * units * job->bits * 8 : 0) + units + (headings * units + headings) / 2 + 2 +
-           headings * (int64_t)(sizeof(hope) / 4 + 1) +
-           THREADS_MAX * (int64_t)worker_words(job);
 }
 
 static void place_units(search *s)
@@ -72,11 +61,11 @@ static int8_t key_of(const search_map *map, const beam *b)
 {
     const int32_t ring = 2 * RING + 1;
     int8_t keys[2];
-    if (b->cells < map->blocked_by)
+    if (b->at.cells < map->blocked_by)
         return 0;
     for (int which = 0; which < 2; which++) {
         const int32_t *end = which == 0 || map->blocked_by == 1 ? b->last : b->before;
-        const int32_t row = end[0] - b->head[0] + RING, col = end[1] - b->head[1] + RING;
+        const int32_t row = end[0] - b->at.head[0] + RING, col = end[1] - b->at.head[1] + RING;
         keys[which] = row >= 0 && row < ring && col >= 0 && col < ring ? map->key_of[row * ring + col] : 0;
     }
     return keys[0] == keys[1] ? keys[0] : 0;
@@ -95,9 +84,9 @@ static void pool_beams(worker *self, int which)
         const beam *b = self->beams + i;
         if (b->is_miss)
             continue;
-        const int32_t row = floor_div(b->head[0], pool), col = floor_div(b->head[1], pool);
+        const int32_t row = floor_div(b->at.head[0], pool), col = floor_div(b->at.head[1], pool);
         self->pooled[which][self->hits++] = (pooled_beam){
-            pooled_phase(job->map, pool, key_of(job->map, b), b->head[0] - row * pool, b->head[1] - col * pool),
+            pooled_phase(job->map, pool, key_of(job->map, b), b->at.head[0] - row * pool, b->at.head[1] - col * pool),
             floor_div(col, 64), row, (uint64_t)(col & 63)};
     }
 }
@@ -202,42 +191,37 @@ static int32_t descend(worker *self, int32_t heading, int32_t unit, int32_t *pla
     return bound + s->misses;
 }
 
-static void *work(void *argument)
+/* Search the units of a heading that can hold an answer. */
+static void search_heading(worker *self, int32_t heading)
 {
-    worker *self = argument;
-    search *s = self->shared;
-    for (;;) {
-        const int32_t next = __atomic_fetch_add(&s->next, 1, __ATOMIC_RELAXED);
-        if (next >= (s->phase == BOUNDING ? s->job->heading_count : s->ordered))
-            return NULL;
-        if (s->phase == BOUNDING) {
-            bound_heading(self, next);
+    const search *s = self->shared;
+    int drawn = 0;
+    for (int32_t unit = 0; unit < s->units; unit++) {
+        if (s->job->by_blocks && s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] < least_of(s))
             continue;
-        }
-        const int32_t heading = s->order[next];
-        int drawn = 0;
-        for (int32_t unit = 0; unit < s->units; unit++) {
-            if (s->job->by_blocks && s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] < least_of(s))
-                continue;
-            if (!drawn)
-                draw(self, heading);
-            drawn = 1;
-            search_unit(self, heading, unit);
-        }
+        if (!drawn)
+            draw(self, heading);
+        drawn = 1;
+        search_unit(self, heading, unit);
     }
 }
 
-static void share(search *s, worker *workers)
+static void work(void *shared, int32_t number)
 {
-    pthread_t handles[THREADS_MAX];
-    int32_t started = 1;
+    search *s = shared;
+    worker *self = &s->workers[number];
+    const int32_t count = s->phase == BOUNDING ? s->job->heading_count : s->ordered;
+    for (int32_t next; (next = take_one(&s->next, count)) >= 0;)
+        if (s->phase == BOUNDING)
+            bound_heading(self, next);
+        else
+            search_heading(self, s->order[next]);
+}
+
+static void share(search *s)
+{
     s->next = 0;
-    while (started < s->job->threads && started < THREADS_MAX &&
-           pthread_create(&handles[started], NULL, work, &workers[started]) == 0)
-        started++;
-    work(&workers[0]);
-    for (int32_t i = 1; i < started; i++)
-        pthread_join(handles[i], NULL);
+    share_among_threads(work, s, s->job->threads);
 }
 
 /* Bring the best of some to their beginning, in order; equal ones stay in the order of headings. */
@@ -307,7 +291,7 @@ static void from_the_middle(search *s)
 
 /* Find the best rank, if it may be far from what was seen: ask for high ranks first, then for lower ones, since that is
  * so much faster than asking for all that lie above a low one. */
-static void rank(search *s, worker *workers, int32_t bound)
+static void rank(search *s, int32_t bound)
 {
     search_job *job = s->job;
     const int32_t step = larger(1, job->reading_count / STEPS);
@@ -317,56 +301,74 @@ static void rank(search *s, worker *workers, int32_t bound)
         if (job->best_rank >= job->least_rank && least <= job->best_rank + step / 2)
             return;
         s->least = least;
-        share(s, workers);
+        share(s);
         if (job->best_rank >= least || least == low)
             return;
     }
 }
 
+/* Take all that a search keeps from an arena. */
+static void share_scratch(search *s, const search_job *job, arena *from)
+{
+    const size_t units = (size_t)units_of(job), headings = (size_t)job->heading_count;
+    const size_t readings = (size_t)job->reading_count;
+    TAKE(from, s->tiles, units);
+    TAKE(from, s->bounds, headings * units);
+    TAKE(from, s->order, headings);
+    TAKE(from, s->hopes, headings);
+    for (int32_t i = 0; i < clamp(job->threads, 1, THREADS_MAX); i++) {
+        worker *w = &s->workers[i];
+        TAKE(from, w->beams, readings);
+        for (int which = 0; which < POOLS; which++)
+            TAKE(from, w->pooled[which], readings);
+        TAKE(from, w->at.maybe, readings);
+    }
+    TAKE(from, s->counters, job->by_blocks ? headings * units * (size_t)job->bits * 8 : 0);
+}
+
+int64_t search_scratch_words(const search_job *job)
+{
+    search none;
+    arena sizes = {NULL, 0};
+    share_scratch(&none, job, &sizes);
+    return (int64_t)sizes.used;
+}
+
+/* Begin with nothing found. */
+static void begin(search *s, search_job *job)
+{
+    arena scratch = {job->scratch, 0};
+    s->job = job;
+    for (int i = 0; i < POOLS; i++)
+        s->grids[i] = (grid){pools[i], block_words(job->map, pools[i]), block_rows(job->map, pools[i]),
+                             pooled_stride(job->map, pools[i])};
+    for (int32_t i = 0; i < job->reading_count; i++)
+        s->misses += job->readings[4 * (size_t)i + 3] > 0.0;
+    share_scratch(s, job, &scratch);
+    for (int32_t i = 0; i < THREADS_MAX; i++)
+        s->workers[i].shared = s;
+    place_units(s);
+    job->best_rank = job->pose_count = 0;
+    s->least = larger(1, job->least_rank - job->slack);
+}
+
 int32_t search_poses(search_job *job)
 {
-    const kernel *with = kernel_of(job->instructions);
-    if (with == NULL)
+    search s = {.with = kernel_of(job->instructions)};
+    if (s.with == NULL)
         return 0;
-    search s = {.job = job, .with = with};
-    worker workers[THREADS_MAX];
-    uint64_t *scratch = job->scratch;
-    for (int i = 0; i < POOLS; i++)
-        s.grids[i] = (grid){pools[i], block_words(job->map, pools[i]), block_rows(job->map, pools[i]),
-                            pooled_stride(job->map, pools[i])};
-    for (int32_t i = 0; i < job->reading_count; i++)
-        s.misses += job->readings[4 * (size_t)i + 3] > 0.0;
-    s.tiles = (int32_t(*)[2])scratch;
-    scratch += units_of(job);
-    place_units(&s);
-    s.bounds = (int32_t *)scratch;
-    s.order = s.bounds + (size_t)job->heading_count * (size_t)s.units;
-    scratch += ((size_t)job->heading_count * (size_t)s.units + (size_t)job->heading_count) / 2 + 1;
-    s.hopes = (hope *)scratch;
-    scratch += (size_t)job->heading_count * (sizeof(hope) / 4 + 1);
-    for (int32_t i = 0; i < THREADS_MAX; i++) {
-        workers[i].shared = &s;
-        workers[i].beams = (beam *)scratch;
-        for (int which = 0; which < POOLS; which++)
-            workers[i].pooled[which] =
-                (pooled_beam *)(workers[i].beams + job->reading_count) + (size_t)which * (size_t)job->reading_count;
-        workers[i].at.maybe = (window *)(workers[i].pooled[POOLS - 1] + job->reading_count);
-        scratch += worker_words(job);
-    }
-    s.counters = scratch;
+    begin(&s, job);
     pthread_mutex_init(&s.lock, NULL);
-    job->best_rank = job->pose_count = 0;
-    s.least = larger(1, job->least_rank - job->slack);
     if (job->by_blocks) {
         s.phase = BOUNDING;
-        share(&s, workers);
-        rank(&s, workers, seed(&s, workers));
+        share(&s);
+        rank(&s, seed(&s, &s.workers[0]));
     } else
         from_the_middle(&s);
     s.phase = COLLECTING;
     s.least = larger(1, larger(job->least_rank, job->best_rank) - job->slack);
     if (!job->by_blocks || job->best_rank >= job->least_rank) {
-        share(&s, workers);
+        share(&s);
         compact(&s);
     }
     if (job->best_rank < job->least_rank) {

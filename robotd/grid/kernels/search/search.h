@@ -2,6 +2,13 @@
  *
  * No allocation here: every buffer comes from the caller. search_twin.py gives the same answers.
  */
+#ifndef ROBOTD_SEARCH_H
+#define ROBOTD_SEARCH_H
+
+#include <stdint.h>
+
+#include "search/planes.h"
+#include "shared/shared.h"
 
 typedef struct {
     const search_map *map;
@@ -20,15 +27,17 @@ typedef struct {
     int32_t bits;              /* planes of a counter, at least 3; 2^bits > reading_count */
     int32_t threads;
     int32_t instructions;      /* as in count_feasible */
-    uint64_t *scratch;
+    uint64_t *scratch;         /* search_scratch_words() of it */
     int32_t *poses;            /* [2 * limit + 256][4]: heading, row, column, rank */
     int32_t best_rank;         /* out */
     int32_t least;             /* out: every pose of at least this rank is returned, and no other */
     int32_t pose_count;        /* out */
 } search_job;
 
-/* Words of scratch. */
-int64_t search_size(const search_job *job);
+/* How much scratch a search needs. */
+int64_t search_scratch_words(const search_job *job);
 
 /* Search. Returns 0, having done nothing, if the processor does not have these instructions. */
 int32_t search_poses(search_job *job);
+
+#endif

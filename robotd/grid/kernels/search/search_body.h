@@ -1,16 +1,18 @@
-/* The search of one heading, written once and compiled for several instruction sets: search.c includes this file with
- *   NAME(x)          the name of x for this instruction set
- *   TARGET           the attribute that allows its instructions
- *   VECTOR           how many bytes a vector has
- *   FUNNEL(a, b, n)  the low 64 bits of (b, a) >> n, lane by lane, 0 <= n < 64
- *   SLIDE(a, b, n)   the low 16 bits of (b, a) >> n, lane by lane, 0 <= n < 16
- *   XOR3(a, b, c)    a ^ b ^ c           MAJORITY(a, b, c)  two of them or more
- */
+/* The search of one heading, written once and compiled for several instruction sets (shared/vector.h). */
 
-typedef uint64_t NAME(vec) __attribute__((vector_size(VECTOR), aligned(8), may_alias));
-#define VEC NAME(vec)
-#define LANES ((int)(VECTOR / sizeof(uint64_t)))
 #define VECTORS (8 / LANES)
+
+#define CELLS VEC
+#define ADDER(x) NAME(x)
+#define SUM3 XOR3
+#define CARRY3 MAJORITY
+#include "shared/carry_save.h"
+
+#define CELLS window
+#define ADDER(x) NAME(window_##x)
+#define SUM3(a, b, c) ((a) ^ (b) ^ (c))
+#define CARRY3(a, b, c) (((a) & (b)) | ((c) & ((a) ^ (b))))
+#include "shared/carry_save.h"
 
 /* Where to find what the blocks of a tile may meet at a head. */
 static inline TARGET const uint64_t *NAME(place)(const grid *of, const pooled_beam *b, const int32_t *tile, uint64_t *shift)
@@ -43,23 +45,8 @@ static TARGET void NAME(bound_tile)(const grid *of, const pooled_beam *beams, in
                 const uint64_t *at = from[i] + v * LANES;
                 plane[i] = FUNNEL(*(const VEC *)at, *(const VEC *)(at + of->stride), shift[i]);
             }
-            const VEC sum = XOR3(plane[0], plane[1], plane[2]), more = XOR3(plane[3], plane[4], plane[5]);
-            const VEC carry1 = MAJORITY(plane[0], plane[1], plane[2]), carry2 = MAJORITY(plane[3], plane[4], plane[5]);
-            const VEC carry3 = MAJORITY(sum, more, plane[6]);
-            const VEC ones = XOR3(sum, more, plane[6]), twos = XOR3(carry1, carry2, carry3);
-            const VEC fours = MAJORITY(carry1, carry2, carry3);
-            const VEC n0 = n[v], n1 = n[VECTORS + v], n2 = n[2 * VECTORS + v];
-            VEC carry = n0 & ones;
-            n[v] = n0 ^ ones;
-            n[VECTORS + v] = XOR3(n1, twos, carry);
-            carry = MAJORITY(n1, twos, carry);
-            n[2 * VECTORS + v] = XOR3(n2, fours, carry);
-            carry = MAJORITY(n2, fours, carry);
-            for (int32_t bit = 3; bit < bits; bit++) {
-                const VEC old = n[bit * VECTORS + v];
-                n[bit * VECTORS + v] = old ^ carry;
-                carry &= old;
-            }
+            const VEC carry = NAME(add_three_bits)(n + v, VECTORS, NAME(sum_of_seven)(plane));
+            NAME(carry_on)(n + v, VECTORS, 3, bits, carry);
         }
     }
     for (; first < count; first++) {
@@ -67,12 +54,8 @@ static TARGET void NAME(bound_tile)(const grid *of, const pooled_beam *beams, in
         const uint64_t *from = NAME(place)(of, beams + first, tile, &shift);
         for (int v = 0; v < VECTORS; v++) {
             const uint64_t *at = from + v * LANES;
-            VEC carry = FUNNEL(*(const VEC *)at, *(const VEC *)(at + of->stride), shift);
-            for (int32_t bit = 0; bit < bits; bit++) {
-                const VEC old = n[bit * VECTORS + v];
-                n[bit * VECTORS + v] = old ^ carry;
-                carry &= old;
-            }
+            const VEC one = FUNNEL(*(const VEC *)at, *(const VEC *)(at + of->stride), shift);
+            NAME(carry_on)(n + v, VECTORS, 0, bits, one);
         }
     }
     memcpy(counter, n, (size_t)(bits * 8) * sizeof(uint64_t));
@@ -85,7 +68,7 @@ static inline TARGET window NAME(seen)(const search_map *map, const uint16_t *pl
     const uint32_t strip = (uint32_t)(floor_div(col, WINDOW) + 2), from = (uint32_t)(row + WINDOW);
     const int is_near = strip <= (uint32_t)strips(map) + 2 && from <= stride - WINDOW;
     const uint16_t *at = plane + (is_near ? strip * stride + from : 0); /* all that is far outside is like the corner */
-    return SLIDE(*(const window *)at, *(const window *)(at + stride), col & (WINDOW - 1));
+    return (window)SLIDE(*(const window *)at, *(const window *)(at + stride), col & (WINDOW - 1));
 }
 
 static inline TARGET int NAME(any)(window cells)
@@ -102,18 +85,7 @@ static inline TARGET window NAME(maybe)(const search_map *map, const beam *b, in
         blocked &= NAME(seen)(map, cell_plane(map, BLOCKING), row + b->before[0], col + b->before[1]);
     if (b->is_miss)
         return ~blocked;
-    return NAME(seen)(map, cell_plane(map, GROWN), row + b->head[0], col + b->head[1]) & ~blocked;
-}
-
-/* Add one miss to the counters of some cells; returns those whose counters overflow. */
-static inline TARGET window NAME(add_one)(sheet *at, window carry)
-{
-    for (int32_t bit = 0; bit < at->bits; bit++) {
-        const window old = at->misses[bit];
-        at->misses[bit] = old ^ carry;
-        carry &= old;
-    }
-    return carry;
+    return NAME(seen)(map, cell_plane(map, GROWN), row + b->at.head[0], col + b->at.head[1]) & ~blocked;
 }
 
 /* Count what the ends of the beams say; returns whether any cell is left. Counters begin so that they overflow with
@@ -134,24 +106,8 @@ static TARGET int NAME(count_ends)(const search_job *job, const beam *beams, she
             at->maybe[first + i] = NAME(maybe)(map, beams + first + i, at->row, at->col);
             miss[i] = ~at->maybe[first + i];
         }
-        const window sum = XOR3_(miss[0], miss[1], miss[2]), more = XOR3_(miss[3], miss[4], miss[5]);
-        const window carry1 = MAJORITY_(miss[0], miss[1], miss[2]), carry2 = MAJORITY_(miss[3], miss[4], miss[5]);
-        const window carry3 = MAJORITY_(sum, more, miss[6]);
-        const window ones = XOR3_(sum, more, miss[6]), twos = XOR3_(carry1, carry2, carry3);
-        const window fours = MAJORITY_(carry1, carry2, carry3);
-        window *n = at->misses;
-        window carry = n[0] & ones;
-        n[0] ^= ones;
-        const window n1 = n[1], n2 = n[2];
-        n[1] = XOR3_(n1, twos, carry);
-        carry = MAJORITY_(n1, twos, carry);
-        n[2] = XOR3_(n2, fours, carry);
-        carry = MAJORITY_(n2, fours, carry);
-        for (int32_t bit = 3; bit < at->bits; bit++) {
-            const window old = n[bit];
-            n[bit] = old ^ carry;
-            carry &= old;
-        }
+        const window over = NAME(window_add_three_bits)(at->misses, 1, NAME(window_sum_of_seven)(miss));
+        const window carry = NAME(window_carry_on)(at->misses, 1, 3, at->bits, over);
         at->alive &= ~carry;
         if (!NAME(any)(at->alive))
             return 0;
@@ -164,8 +120,8 @@ static TARGET int NAME(count_ends)(const search_job *job, const beam *beams, she
 static TARGET window NAME(blocked)(const search_map *map, const beam *b, const sheet *at, window cells)
 {
     window once = {0}, blocked = {0};
-    for (int32_t k = b->start[0] == 0 && b->start[1] == 0; k < b->cells;) {
-        const int32_t row = b->start[0] + whole(0.5 + k * b->step[0]), col = b->start[1] + whole(0.5 + k * b->step[1]);
+    for (int32_t k = b->at.start[0] == 0 && b->at.start[1] == 0; k < b->at.cells;) {
+        const int32_t row = body_cell(&b->at, 0, k), col = body_cell(&b->at, 1, k);
         const int32_t clear = clearance(map, at->middle[0] + row, at->middle[1] + col) - at->radius;
         if (clear > 0) {
             k += clear;
@@ -194,7 +150,7 @@ static TARGET int NAME(count_bodies)(const search_job *job, const beam *beams, s
         const window blocked = NAME(blocked)(job->map, beams + i, at, cells);
         if (!NAME(any)(blocked))
             continue;
-        const window dead = NAME(add_one)(at, blocked);
+        const window dead = NAME(window_carry_on)(at->misses, 1, 0, at->bits, blocked);
         if (!NAME(any)(at->alive & dead))
             continue;
         at->alive &= ~dead;
@@ -205,48 +161,28 @@ static TARGET int NAME(count_bodies)(const search_job *job, const beam *beams, s
     return 1;
 }
 
-/* Draw the beams of one heading; ray.py and probe.py say how. */
+/* Draw the beams of one heading. */
 static TARGET void NAME(draw_heading)(const search_job *job, int32_t heading, beam *beams)
 {
     const double *h = job->headings + 2 * (size_t)heading;
     const double *sines = job->sines + (size_t)heading * (size_t)job->reading_count;
     const double *cosines = job->cosines + (size_t)heading * (size_t)job->reading_count;
     for (int32_t i = 0; i < job->reading_count; i++) {
-        const double *r = job->readings + 4 * (size_t)i, sine = sines[i], cosine = cosines[i], range_cells = r[0];
+        const double *r = job->readings + 4 * (size_t)i;
         const int starts_here = r[1] == 0.0 && r[2] == 0.0;
         const double start_row = starts_here ? 0.0 : (h[0] * r[1] + h[1] * r[2]) / job->resolution_m;
         const double start_col = starts_here ? 0.0 : (h[1] * r[1] - h[0] * r[2]) / job->resolution_m;
-        const double tall = sine < 0.0 ? -sine : sine, wide = cosine < 0.0 ? -cosine : cosine;
-        const double dominant = tall > wide ? tall : wide, slope = (tall > wide ? cosine : sine) / dominant;
-        const double shortened = range_cells - job->error_radius_cells;
-        const double bounded = shortened < job->reach_cells ? shortened : job->reach_cells;
         beam *b = beams + i;
-        b->step[0] = tall > wide ? (sine < 0.0 ? -1.0 : 1.0) : slope;
-        b->step[1] = tall > wide ? slope : (cosine < 0.0 ? -1.0 : 1.0);
-        b->start[0] = nearest(start_row);
-        b->start[1] = nearest(start_col);
-        b->cells = bounded > 0.0 ? -whole(-(bounded * dominant)) : 1;
-        b->cells = b->cells < 1 ? 1 : b->cells;
+        b->at = draw_reading(start_row, start_col, sines[i], cosines[i], r[0], job->error_radius_cells, job->reach_cells);
         b->is_miss = r[3] > 0.0;
-        b->head[0] = nearest(start_row + range_cells * sine);
-        b->head[1] = nearest(start_col + range_cells * cosine);
         for (int axis = 0; axis < 2; axis++) {
-            b->last[axis] = b->start[axis] + whole(0.5 + (b->cells - 1) * b->step[axis]);
+            b->last[axis] = body_cell(&b->at, axis, b->at.cells - 1);
             if (job->map->blocked_by > 1)
-                b->before[axis] = b->cells < 2 ? 0 : b->start[axis] + whole(0.5 + (b->cells - 2) * b->step[axis]);
+                b->before[axis] = b->at.cells < 2 ? 0 : body_cell(&b->at, axis, b->at.cells - 2);
         }
     }
 }
 
 static const kernel NAME(kernel) = {NAME(draw_heading), NAME(bound_tile), NAME(count_ends), NAME(count_bodies)};
 
-#undef VEC
-#undef LANES
 #undef VECTORS
-#undef NAME
-#undef TARGET
-#undef VECTOR
-#undef FUNNEL
-#undef SLIDE
-#undef XOR3
-#undef MAJORITY

@@ -7,11 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels._native import ffi, lib
-from robotd.grid.kernels.count.count_native import INSTRUCTION_SETS
 from robotd.grid.kernels.search.endings import endings
 from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question
-from robotd.grid.kernels.shared.buffers import floats, ints, octets, words
+from robotd.grid.kernels.shared.library import ffi, floats, instructions_named, ints, lib, octets, words
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.window import CellWindow
 
@@ -44,7 +42,7 @@ def _filled(
     c_map = _map_of(ground, key_of)
     c_map.cells, c_map.pooled = ffi.from_buffer("uint16_t[]", cells), words(pooled)
     c_map.near = octets(near)
-    scratch = np.empty(lib.search_scratch_size(c_map), np.uint64)
+    scratch = np.empty(lib.search_planes_scratch_words(c_map), np.uint64)
     lib.search_prepare(c_map, window.first_row, window.end_row, window.first_col, window.end_col, words(scratch))
     return Planes(ground, key_of, cells, pooled, near, c_map)
 
@@ -78,8 +76,8 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     job.by_blocks = question.by_blocks
     job.slack, job.least_rank, job.limit = question.slack, question.least_rank, limit
     job.bits, job.threads = max(3, len(readings).bit_length()), threads
-    job.instructions = -1 if instructions is None else INSTRUCTION_SETS.index(instructions)
-    scratch = np.empty(lib.search_size(job), np.uint64)
+    job.instructions = instructions_named(instructions)
+    scratch = np.empty(lib.search_scratch_words(job), np.uint64)
     job.scratch, job.poses = words(scratch), ints(poses)
     if not lib.search_poses(job):
         raise ValueError(f"this processor has no {instructions}")

@@ -1,20 +1,20 @@
 /* What the search keeps of a beam, of a grid of blocks and of a window of 16 x 16 cells. Included by search.c. */
 #include <string.h>
 
+#include "draw/reading_on_grid.h"
 #include "search/planes_layout.h"
 #include "search/search.h"
+#include "shared/numbers.h"
 
 #define BITS_MAX 16
-#define FAR_CELLS 268435456.0
 
 typedef uint16_t window __attribute__((vector_size(32), aligned(2), may_alias)); /* a row of 16 cells in each lane */
 typedef uint64_t pair __attribute__((vector_size(32), aligned(2), may_alias));
 
-/* A reading at a heading; offsets are (row, col) from the robot's cell. */
+/* A reading at a heading, and the last cell of its body, and the one before it. */
 typedef struct {
-    double step[2];
-    int32_t start[2], cells;        /* of the chain that is the body, without the robot's own cell where it starts elsewhere */
-    int32_t head[2], last[2], before[2]; /* the last cell of the body, and the one before it */
+    reading_on_grid at;
+    int32_t last[2], before[2];
     int32_t is_miss;
 } beam;
 
@@ -46,22 +46,6 @@ typedef struct {
     int (*count_bodies)(const search_job *, const beam *, sheet *);
 } kernel;
 
-static inline int32_t whole(double value) /* floor, of what fits */
-{
-    const int32_t truncated = (int32_t)value;
-    return truncated - (value < truncated);
-}
-
-static inline int32_t nearest(double cells)
-{
-    return whole((cells < -FAR_CELLS ? -FAR_CELLS : cells > FAR_CELLS ? FAR_CELLS : cells) + 0.5);
-}
-
-static inline int32_t larger(int32_t a, int32_t b)
-{
-    return a > b ? a : b;
-}
-
 /* No cell that blocks is nearer than this. */
 static inline int32_t clearance(const search_map *map, int32_t row, int32_t col)
 {
@@ -87,9 +71,6 @@ static void surround(sheet *at)
     at->middle[1] = at->col + (left + right) / 2;
     at->radius = larger(last - first + 1, right - left + 1) / 2;
 }
-
-#define XOR3_(a, b, c) ((a) ^ (b) ^ (c))
-#define MAJORITY_(a, b, c) (((a) & (b)) | ((c) & ((a) ^ (b))))
 
 /* Set alive the cells of a window where poses are asked for. */
 static int open_window(const search_job *job, int32_t row, int32_t col, sheet *at)

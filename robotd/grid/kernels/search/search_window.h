@@ -8,8 +8,20 @@ typedef struct {
     int32_t bound, heading, unit, place[2];
 } hope;
 
-/* All that the threads share. A unit is what is bounded at once: a tile of blocks, or one window. */
+struct search;
+
+/* What one of them keeps. */
 typedef struct {
+    struct search *shared;
+    beam *beams;                    /* [readings] */
+    pooled_beam *pooled[POOLS];     /* [readings], of the heads of hits */
+    int32_t hits;
+    int32_t drawn;                  /* on how many grids they lie for this heading */
+    sheet at;
+} worker;
+
+/* All that the threads share. A unit is what is bounded at once: a tile of blocks, or one window. */
+typedef struct search {
     search_job *job;
     const kernel *with;
     grid grids[POOLS];
@@ -25,16 +37,8 @@ typedef struct {
     int32_t misses;                 /* how many readings met nothing */
     int32_t least;                  /* what a pose must explain to be returned, as far as is known */
     pthread_mutex_t lock;
+    worker workers[THREADS_MAX];
 } search;
-
-typedef struct {
-    search *shared;
-    beam *beams;                    /* [readings] */
-    pooled_beam *pooled[POOLS];     /* [readings], of the heads of hits */
-    int32_t hits;
-    int32_t drawn;                  /* on how many grids they lie for this heading */
-    sheet at;
-} worker;
 
 static void raise_least(search *s, int32_t least)
 {

@@ -3,13 +3,10 @@
  * Nothing but sums, products and quotients, one by one and in the order of the twin, so that the results are NumPy's
  * to the last bit (the build forbids contraction).
  */
-#include <math.h>
-#include <stdint.h>
-
 #include "weigh/weigh.h"
 
-enum { AS_MAPPED, IN_UNKNOWN, IN_VACANT, CLASSES };
-enum { UNKNOWN = 128, SKIP_MAX = 15 };
+#include "cast/cast.h"
+#include "draw/reading_on_grid.h"
 
 static const double ASIDE[3] = {-1.4142135623730951, 0.0, 1.4142135623730951}; /* in spreads across the beam */
 static const double SHARE[3] = {0.25, 0.5, 0.25};
@@ -85,10 +82,10 @@ void weigh_beams(const uint8_t *cells, const uint8_t *skips, int32_t rows, int32
         for (int32_t j = 0; j < beam_count; j++, chances += CLASSES) {
             const double *beam = beams + 8 * j;
             const double row_way = sin * beam[2] + cos * beam[3], col_way = cos * beam[2] - sin * beam[3];
-            const double longest = fabs(row_way) > fabs(col_way) ? fabs(row_way) : fabs(col_way);
+            const direction way = direction_of(row_way, col_way);
             const int is_miss = beam[7] > 0.0;
-            const double pace = 1.0 / longest;
-            ray r = {row_way / longest, col_way / longest, pace, beam[4], beam[5],
+            const double pace = 1.0 / way.dominant;
+            ray r = {way.step[0], way.step[1], pace, beam[4], beam[5],
                      is_miss ? beam[4] : beam[4] + FAR * beam[5], (int64_t)(beam[4] / pace + 0.5), is_miss, {1.0}};
             for (int i = 1; i <= SKIP_MAX; i++)
                 r.faded[i] = r.faded[i - 1] * (1.0 - stops[UNKNOWN] * pace);

@@ -3,9 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels._native import lib
-from robotd.grid.kernels.shared.buffers import floats, octets
-from robotd.grid.kernels.weigh.weigh_kernel import ChanceMap
+from robotd.grid.kernels.shared.library import agree, floats, lib, octets
+from robotd.grid.kernels.weigh.weigh_kernel import AS_MAPPED, IN_UNKNOWN, IN_VACANT, UNKNOWN, ChanceMap
+
+agree(AS_MAPPED=AS_MAPPED, IN_UNKNOWN=IN_UNKNOWN, IN_VACANT=IN_VACANT, UNKNOWN=UNKNOWN)
 
 
 def weigh_beams(the_map: ChanceMap, poses: NDArray[np.float64], beams: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,6 +1,6 @@
-/* Rounding without a call, for the sources; not read by cffi. All for numbers less than 2^51 either way. */
-#ifndef ROBOTD_ROUNDING_H
-#define ROBOTD_ROUNDING_H
+/* Whole numbers: rounding without a call, for numbers less than 2^51 either way, and bounds. */
+#ifndef ROBOTD_NUMBERS_H
+#define ROBOTD_NUMBERS_H
 
 #include <stdint.h>
 
@@ -23,14 +23,26 @@ static inline int64_t nearest_of(double value)
     return (int64_t)(value + large - large);
 }
 
-static inline double least_of(double a, double b)
+/* Floor, of what fits. */
+static inline int32_t whole(double value)
+{
+    const int32_t cut = (int32_t)value;
+    return cut - (value < cut);
+}
+
+static inline int32_t smaller(int32_t a, int32_t b)
 {
     return a < b ? a : b;
 }
 
-static inline double greatest_of(double a, double b)
+static inline int32_t larger(int32_t a, int32_t b)
 {
     return a > b ? a : b;
+}
+
+static inline int32_t clamp(int32_t value, int32_t low, int32_t high)
+{
+    return value < low ? low : value > high ? high : value;
 }
 
 #endif
