@@ -283,9 +283,10 @@ def test_the_kernels_in_use_are_named_with_a_reason() -> None:
     assert kernels_in_use.in_use().about.reason in str(kernels_in_use.in_use().about)
 
 
-def test_what_is_chosen_computes_until_something_else_is() -> None:
+@pytest.mark.parametrize(("draws", "counts"), [(NATIVE, TWINS), (TWINS, NATIVE)], ids=["c draws", "numpy draws"])
+def test_what_is_chosen_computes_until_something_else_is(draws: Kernels, counts: Kernels) -> None:
     """A table of mixed rows stands for a processor that does one thing better."""
-    own, mixed = kernels_in_use.in_use(), replace(TWINS, draw=NATIVE.draw)
+    own, mixed = kernels_in_use.in_use(), replace(counts, draw=draws.draw)
     readings = [RangeReading(0, 0.1 * k, ReadingStatus.OK, 2.0 + k) for k in range(9)]
     headings, the_map = np.array(even_headings(5)), packed(np.eye(100, dtype=np.bool_))
     blank = the_map.blank_counters(5, 4)
