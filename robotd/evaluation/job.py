@@ -59,10 +59,13 @@ class Job:
 
     def __call__(self, query: Query) -> Result:
         """Seek a scan, nothing known."""
-        localizer = _localizer_of(self)
-        readings = readings_of(query.scan, self.settings.reach)
+        ready_map, settings = _ready_map_of(self), self.settings
+        readings = readings_of(query.scan, settings.reach)
         cpu_s, wall_s = time.process_time(), time.perf_counter()
-        localizer.begin(self.settings.localization.headings_all_round())
+        headings_rad = settings.localization.headings_all_round()
+        localizer = Localizer.at_stop(
+            ready_map, "", headings_rad, judgement=settings.judgement, threads=settings.threads
+        )
         localizer.add(*readings)
         estimate = localizer.estimate(0, final=True)
         cpu_s, wall_s = time.process_time() - cpu_s, time.perf_counter() - wall_s
@@ -75,14 +78,13 @@ def run(job: Job, queries: Iterable[Query], map_: Map = map) -> Iterator[Result]
     yield from map_(job, queries)
 
 
-_ready: dict[str, Localizer] = {}
-"""The latest job's localizer by the job's digest: a map is made ready once a process, not once a batch."""
+_ready: dict[str, ReadyMap] = {}
+"""The latest job's map by the job's digest: a map is made ready once a process, not once a batch."""
 
 
-def _localizer_of(job: Job) -> Localizer:
+def _ready_map_of(job: Job) -> ReadyMap:
     if job.digest not in _ready:
         settings = job.settings
-        ready_map = ReadyMap.of(job.grid, settings.localization, settings.error_model)
         _ready.clear()  # a process that works through a thousand logs keeps one map
-        _ready[job.digest] = Localizer(ready_map, "", settings.judgement, threads=settings.threads)
+        _ready[job.digest] = ReadyMap.of(job.grid, settings.localization, settings.error_model)
     return _ready[job.digest]

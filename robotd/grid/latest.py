@@ -11,7 +11,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading
 from robotd.grid import kernels
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 
 NOTHING, PASSED, HIT = 0, 1, 2
 """Values of a cell: no sweep met it; beams ran through it and none ended in it; one ended in it."""
@@ -24,5 +24,5 @@ def latest_with(
 ) -> NDArray[np.uint8]:
     """Return what was said last with one more sweep, ``uint8[rows, cols]``; what went in is left as it is."""
     found = latest.copy()
-    kernels.in_use().insert.insert_sweep(found, numbers_of(readings), map_from_robot, spec, _TABLES, at_once=True)
+    kernels.in_use().insert.insert_sweep(found, Readings.of(readings).rows, map_from_robot, spec, _TABLES, at_once=True)
     return found

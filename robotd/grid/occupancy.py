@@ -15,7 +15,7 @@ from robotd.core.map_stop import MapStop
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid import kernels
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.grid.tables import NO_INFORMATION, lower_table, raise_table
 
 
@@ -108,17 +108,17 @@ class OccupancyGrid:
         Returns:
             Flat indices ``row * cols + col`` of the cells whose value changed, ascending. O(readings x cells a beam).
         """
-        return self._insert(numbers_of(self.usable(sweep)), map_from_robot)
+        return self._insert(Readings.of(self.usable(sweep)), map_from_robot)
 
     def lay_in(self, stop: MapStop) -> NDArray[np.intp]:
         """Update the cells by a stop as :meth:`insert` does by its sweep, without making that of it."""
         beams = stop.beams(misses=self.settings.over_range is OverRange.CLEAR)
-        return self._insert(beams, stop.map_from_robot)
+        return self._insert(Readings(beams), stop.map_from_robot)
 
-    def _insert(self, readings: NDArray[np.float64], map_from_robot: Pose2) -> NDArray[np.intp]:
+    def _insert(self, readings: Readings, map_from_robot: Pose2) -> NDArray[np.intp]:
         tables, at_once = (self._lower, self._raise), self.settings.policy is UpdatePolicy.PER_SWEEP
         return kernels.in_use().insert.insert_sweep(
-            self.cells, readings, map_from_robot, self.spec, tables, at_once=at_once
+            self.cells, readings.rows, map_from_robot, self.spec, tables, at_once=at_once
         )
 
     def digest(self) -> str:

@@ -1,9 +1,12 @@
 """Poses of high rank: the one form in which counting, searching and the conservative mode answer."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from robotd.core.grid_spec import GridSpec
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,6 +65,17 @@ class PoseSet:
     def holds_cell(self, row: int, col: int) -> bool:
         """Return whether the robot is in this cell in one of them, at any heading."""
         return bool(((self.poses[:, 1] == row) & (self.poses[:, 2] == col)).any())
+
+    def in_metres(self, spec: GridSpec, headings_rad: Sequence[float]) -> NDArray[np.float64]:
+        """Return them as x, y [m] and heading [rad] in the map frame, ``float64[n, 3]``.
+
+        Args:
+            spec: where the cells lie.
+            headings_rad: what the headings are.
+        """
+        cells = self.poses[:, 1:] + 0.5
+        x_m, y_m = spec.origin_x_m + cells[:, 1] * spec.resolution_m, spec.origin_y_m + cells[:, 0] * spec.resolution_m
+        return np.stack((x_m, y_m, np.array(headings_rad)[self.poses[:, 0]]), axis=1)
 
     def cells(self) -> NDArray[np.intp]:
         """Return their cells ``(row, col)``, ``intp[k, 2]``, ascending and each once."""

@@ -1,7 +1,8 @@
-"""Readings as an array, for everything that computes on many at once."""
+"""Readings as columns, for everything that computes on many at once."""
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,25 +10,95 @@ from numpy.typing import NDArray
 from robotd.core.reading import RangeReading, ReadingStatus
 
 
-def numbers_of(readings: Sequence[RangeReading]) -> NDArray[np.float64]:
-    """Return measured readings as ``float64[n, 5]``.
+@dataclass(frozen=True, slots=True, eq=False)
+class Readings:
+    """The measured readings of one stop, hits and misses, in the order in which they were made; robot frame."""
 
-    Per reading: bearing [rad], range [m], x and y of the beam's start [m], all in the robot frame; and 1 for a miss, 0
-    for a hit.
+    rows: NDArray[np.float64]
+    """``float64[n, 5]``, contiguous, as the kernels take them: the columns that are named below, 1 for a miss."""
 
-    Raises:
-        ValueError: a reading measured nothing.
-    """
-    miss, pack = ReadingStatus.MISS, _FIVE.pack
-    try:
-        packed = [  # a third faster than numpy.fromiter
-            pack(r.bearing_rad, r.range_m, r.origin_x_m, r.origin_y_m, 1.0 if r.status is miss else 0.0)
-            for r in readings
-        ]
-    except struct.error as error:
-        unmeasured = next(reading.status for reading in readings if reading.range_m is None)
-        raise ValueError(f"a {unmeasured} reading has no range") from error
-    return np.frombuffer(bytearray().join(packed), np.float64).reshape(-1, 5)
+    @classmethod
+    def of(cls, readings: Iterable[RangeReading]) -> "Readings":
+        """Take measured readings.
+
+        Raises:
+            ValueError: a reading measured nothing.
+        """
+        miss, pack, several = ReadingStatus.MISS, _FIVE.pack, tuple(readings)
+        try:
+            packed = [  # a third faster than numpy.fromiter
+                pack(r.bearing_rad, r.range_m, r.origin_x_m, r.origin_y_m, 1.0 if r.status is miss else 0.0)
+                for r in several
+            ]
+        except struct.error as error:
+            unmeasured = next(reading.status for reading in several if reading.range_m is None)
+            raise ValueError(f"a {unmeasured} reading has no range") from error
+        return cls(np.frombuffer(bytearray().join(packed), np.float64).reshape(-1, 5))
+
+    @classmethod
+    def none(cls) -> "Readings":
+        """Return no readings."""
+        return cls(np.empty((0, 5)))
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.rows)
+
+    def __getitem__(self, which: slice | NDArray[np.intp] | NDArray[np.bool_]) -> "Readings":
+        """Return some of them: a slice, by indices, or by a mask."""
+        return Readings(np.ascontiguousarray(self.rows[which]))
+
+    def joined(self, later: "Readings") -> "Readings":
+        """Return these and later ones."""
+        return Readings(np.concatenate((self.rows, later.rows)))
+
+    def with_ranges(self, range_m: NDArray[np.float64]) -> "Readings":
+        """Return the same readings with other ranges ``float64[n]``."""
+        rows = self.rows.copy()
+        rows[:, 1] = range_m
+        return Readings(rows)
+
+    @property
+    def bearing_rad(self) -> NDArray[np.float64]:
+        """Direction of each beam, ``float64[n]``."""
+        column: NDArray[np.float64] = self.rows[:, 0]
+        return column
+
+    @property
+    def range_m(self) -> NDArray[np.float64]:
+        """How far each obstacle is from the beam's start; for a miss, how far none is: ``float64[n]``."""
+        column: NDArray[np.float64] = self.rows[:, 1]
+        return column
+
+    @property
+    def start_x_m(self) -> NDArray[np.float64]:
+        """Where each beam starts, ``float64[n]``."""
+        column: NDArray[np.float64] = self.rows[:, 2]
+        return column
+
+    @property
+    def start_y_m(self) -> NDArray[np.float64]:
+        """Where each beam starts, ``float64[n]``."""
+        column: NDArray[np.float64] = self.rows[:, 3]
+        return column
+
+    @property
+    def is_miss(self) -> NDArray[np.bool_]:
+        """Which met nothing up to the cut-off, ``bool[n]``."""
+        column: NDArray[np.bool_] = self.rows[:, 4] > 0.0
+        return column
+
+    @property
+    def is_hit(self) -> NDArray[np.bool_]:
+        """Which met an obstacle, ``bool[n]``."""
+        return ~self.is_miss
+
+    @property
+    def heads_m(self) -> NDArray[np.float64]:
+        """Where each beam ends, ``float64[n, 2]``: x, y."""
+        x_m = self.start_x_m + self.range_m * np.cos(self.bearing_rad)
+        y_m = self.start_y_m + self.range_m * np.sin(self.bearing_rad)
+        return np.stack((x_m, y_m), axis=1)
 
 
 _FIVE = struct.Struct("5d")

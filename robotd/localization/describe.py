@@ -5,15 +5,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robotd.contract.estimate import Covariance, Extent, Region
 from robotd.core.angles import wrap_rad
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.pose_set import PoseSet
+from robotd.grid.readings import Readings
 from robotd.localization.count.explained import explained_at
 from robotd.localization.fit.refinement import PoseBox, RefinedPoses, RefinementSettings, refine
+from robotd.localization.judged_regions import JudgedRegion
 from robotd.localization.places.shapes import best_pose, centre_of, circle_of, cover_of, extent_of
 from robotd.localization.ready_map import ReadyMap
 
@@ -29,47 +30,36 @@ class Situation:
 
     the_map: ReadyMap
     headings_rad: tuple[float, ...]
-    readings: NDArray[np.float64]
-    """``float64[n, 5]``, of :func:`robotd.grid.readings.numbers_of`."""
+    readings: Readings
     refinement: RefinementSettings
 
     @property
     def spec(self) -> GridSpec:
         """Where the cells lie."""
-        return self.the_map.ternary.spec
+        return self.the_map.spec
 
     def refined(self, boxes: Sequence[PoseBox]) -> RefinedPoses:
         """Return the pose in each box that fits the readings best."""
         return refine(self.the_map.walls, self.readings, boxes, self.refinement)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class JudgedRegion:
-    """One region, and what the second look says of it."""
-
-    piece: PoseSet
-    belief: float = 0.0
-    begin: Pose2 | None = None
-    """The best place in or near to it, if the second look took it into consideration."""
-
-
-def described(answers: Sequence[JudgedRegion], situation: Situation) -> tuple[Region, ...]:
+def described(regions: Sequence[JudgedRegion], situation: Situation) -> tuple[Region, ...]:
     """Return regions as they are told, in the same order."""
-    if not answers:
+    if not regions:
         return ()
-    extents = [extent_of(answer.piece.poses, situation.spec, situation.headings_rad) for answer in answers]
-    boxes = [_box(answer, extent, situation) for answer, extent in zip(answers, extents, strict=True)]
+    extents = [extent_of(region.piece.poses, situation.spec, situation.headings_rad) for region in regions]
+    boxes = [_box(region, extent, situation) for region, extent in zip(regions, extents, strict=True)]
     wide = situation.refined(boxes)
     # The box round a region that is no box holds cells that are not in it: there its nearest cell must do.
     narrow = situation.refined(
-        [_box_of_cell(answer.piece, box, situation) for answer, box in zip(answers, boxes, strict=True)]
+        [_box_of_cell(region.piece, box, situation) for region, box in zip(regions, boxes, strict=True)]
     )
     fits = (
-        _Fit.of(wide if _holds(answer.piece, wide.pose(number), situation) else narrow, number)
-        for number, answer in enumerate(answers)
+        _Fit.of(wide if _holds(region.piece, wide.pose(number), situation) else narrow, number)
+        for number, region in enumerate(regions)
     )
     return tuple(
-        _described(answer, extent, fit, situation) for answer, extent, fit in zip(answers, extents, fits, strict=True)
+        _described(region, extent, fit, situation) for region, extent, fit in zip(regions, extents, fits, strict=True)
     )
 
 
@@ -87,14 +77,14 @@ class _Fit:
         return cls(refined.pose(number), (x, y, heading), float(refined.residual_m[number]))
 
 
-def _described(answer: JudgedRegion, extent: Extent, fit: _Fit, situation: Situation) -> Region:
-    piece, spec, headings_rad = answer.piece, situation.spec, situation.headings_rad
+def _described(region: JudgedRegion, extent: Extent, fit: _Fit, situation: Situation) -> Region:
+    piece, spec, headings_rad = region.piece, situation.spec, situation.headings_rad
     cells = piece.cells()
     heading, row, col = best_pose(piece)
     prepared = situation.the_map.prepared
     explained = explained_at(prepared, situation.readings, (row, col), headings_rad[heading])
     return Region(
-        belief=answer.belief,
+        belief=region.belief,
         pose=fit.pose,
         covariance=fit.covariance,
         residual_m=fit.residual_m,
@@ -109,13 +99,13 @@ def _described(answer: JudgedRegion, extent: Extent, fit: _Fit, situation: Situa
     )
 
 
-def _box(answer: JudgedRegion, extent: Extent, situation: Situation) -> PoseBox:
+def _box(region: JudgedRegion, extent: Extent, situation: Situation) -> PoseBox:
     """Return the box round a region; where a place in it is known to be the best, only what is near to that."""
-    begin = answer.begin or _best_of(answer.piece, situation)
+    begin = region.begin or _best_of(region.piece, situation)
     x_m = min(max(begin.x_m, extent.x_min_m), extent.x_max_m)
     y_m = min(max(begin.y_m, extent.y_min_m), extent.y_max_m)
     heading_rad = _heading_in(extent, begin.heading_rad)
-    half_m, half_rad = (math.inf, math.inf) if answer.begin is None else (_NEAR_M, _NEAR_RAD)
+    half_m, half_rad = (math.inf, math.inf) if region.begin is None else (_NEAR_M, _NEAR_RAD)
     bounds = Extent(
         max(extent.x_min_m, x_m - half_m),
         min(extent.x_max_m, x_m + half_m),

@@ -1,24 +1,32 @@
 """A map made ready for all that localization does on it: counting readings, searching, and refining poses."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from robotd.contract.area import Area
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
 from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles
 from robotd.localization.conservative.conservative_rank import ConservativeMap
+from robotd.localization.conservative.unexcluded import UnexcludedStop
+from robotd.localization.count.limits import FEW_HEADINGS
+from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
 from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.search.bounded_search import SearchMap
+from robotd.localization.search.cell_disk import CellDisk
 from robotd.localization.settings import LocalizationSettings
+from robotd.localization.stop import CountedStop, SearchedStop, Stop
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReadyMap:
-    """What is worked out once for a map; it never changes until it is used up, so it may be shared by threads."""
+    """What is worked out once for a map; it never changes, so it may be shared by threads."""
 
     ternary: TernaryMap
     settings: LocalizationSettings
@@ -33,6 +41,29 @@ class ReadyMap:
     """For the second look."""
     sure: ConservativeMap | None
     """For the conservative mode; None if it is not asked for."""
+
+    @property
+    def spec(self) -> GridSpec:
+        """Where the cells lie."""
+        return self.ternary.spec
+
+    def stop(self, headings_rad: Sequence[float], within: Area | None = None, *, threads: int = 1) -> Stop:
+        """Begin a stop: a robot stands somewhere on this map, and nothing was measured yet.
+
+        Args:
+            headings_rad: the headings to try, map frame, ascending; in the conservative mode the true one lies within
+                half a step of one of them.
+            within: where the robot is; None is anywhere.
+            threads: how many threads may share the work; no answer depends on it.
+        """
+        headings_rad, settings = tuple(headings_rad), self.settings
+        disk = None if within is None else CellDisk.of(within, self.spec)
+        if self.sure is not None:
+            share = settings.outlier_share
+            return UnexcludedStop(self.sure, headings_rad, disk, outlier_share=share, threads=threads)
+        if disk is None and len(headings_rad) <= FEW_HEADINGS:
+            return CountedStop(RankGrid(self.prepared, headings_rad, threads=threads), settings)
+        return SearchedStop(self.searched, headings_rad, disk, settings, threads=threads)
 
     @classmethod
     def of(
@@ -51,8 +82,8 @@ class ReadyMap:
     def updated(self, grid: OccupancyGrid, changed: CellWindow) -> "ReadyMap":
         """Return the map of a grid that differs from the one this is of in a window alone.
 
-        The same as made from nothing. O(cells of the window, and of a rim round it), and a copy of what is kept. This
-        map is used up: what it keeps for the search becomes the new one's.
+        The same as made from nothing; this one stays as it is. O(cells of the window, and of a rim round it), and a
+        copy of what is kept.
         """
         if changed.is_empty:
             return self

@@ -1,84 +1,102 @@
-"""The poses that explain the most of one stop's readings, and all that come near them; asked for after any reading.
+"""The readings of one stop against all its poses: rnk and loc, asked for after any reading.
 
 There are two ways to the same answer. Where the heading is known, so that there are few to try, readings are counted
 as they come (:mod:`.rank_grid`), and asking costs next to nothing. Where it is not, all counts of a building would take
-gigabytes: then the readings are kept, and asking searches (:mod:`.bounded_search`).
+gigabytes: then the readings are kept, and asking searches (:mod:`.bounded_search`). The conservative mode has a third
+(:mod:`.unexcluded`), which asks something else.
 """
 
 import math
-from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 
-from robotd.contract.area import Area
-from robotd.core.reading import RangeReading
 from robotd.grid.pose_set import PoseSet
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
+from robotd.localization.count.limits import POSES_TOLD_MAX
 from robotd.localization.count.rank_grid import RankGrid
-from robotd.localization.ready_map import ReadyMap
-from robotd.localization.search.bounded_search import best_poses
+from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk
-
-FEW_HEADINGS = 32
-"""So many are counted as the readings come: 256 x 256 cells then take 10 MB."""
-
-POSES_MAX = 1 << 15
-"""More answers than this are none; a place that is one has some hundred."""
+from robotd.localization.settings import LocalizationSettings
 
 
-class Count:
-    """The readings of one stop against all its poses."""
+class Stop(Protocol):
+    """A robot that stands and measures."""
 
-    def __init__(self, the_map: ReadyMap, headings_rad: Sequence[float], within: Area | None, *, threads: int) -> None:
-        """Begin with no readings.
+    @property
+    def headings_rad(self) -> tuple[float, ...]:
+        """The headings that are tried, map frame, ascending."""
 
-        Args:
-            the_map: the map.
-            headings_rad: the headings to try, ascending.
-            within: where the robot is; None is anywhere.
-            threads: how many threads may share the work; no answer depends on it.
-        """
-        self.headings_rad = tuple(headings_rad)
-        self.readings: list[RangeReading] = []
+    @property
+    def readings(self) -> Readings:
+        """What was measured so far."""
+
+    def add(self, readings: Readings) -> None:
+        """Take readings; many at once cost less than one after the other."""
+
+    def best_poses(self) -> PoseSet:
+        """Return the poses that explain the most readings, and all that come near them."""
+
+
+class CountedStop:
+    """Counts readings as they come."""
+
+    def __init__(self, ranks: RankGrid, settings: LocalizationSettings) -> None:
+        """Begin with counters in which nothing was counted."""
+        self.headings_rad = ranks.headings_rad
+        self.readings = Readings.none()
+        self._ranks = ranks
+        self._settings = settings
+
+    def add(self, readings: Readings) -> None:
+        """Count readings."""
+        self._ranks.add(readings)
+        self.readings = self.readings.joined(readings)
+
+    def best_poses(self) -> PoseSet:
+        """Look up the best poses."""
+        return self._ranks.best_poses(*_asked_for(self._settings, len(self.readings)))
+
+
+class SearchedStop:
+    """Keeps readings, and searches when it is asked."""
+
+    def __init__(
+        self,
+        the_map: SearchMap,
+        headings_rad: tuple[float, ...],
+        within: CellDisk | None,
+        settings: LocalizationSettings,
+        *,
+        threads: int,
+    ) -> None:
+        """Begin with no readings; arguments as of :meth:`.ReadyMap.stop`."""
+        self.headings_rad = headings_rad
+        self.readings = Readings.none()
         self._map = the_map
         self._within = within
+        self._settings = settings
         self._threads = threads
-        is_counted = within is None and len(self.headings_rad) <= FEW_HEADINGS
-        self._ranks = RankGrid(the_map.prepared, self.headings_rad, threads=threads) if is_counted else None
 
-    def add(self, *readings: RangeReading) -> None:
-        """Take measured readings.
+    def add(self, readings: Readings) -> None:
+        """Keep readings."""
+        self.readings = self.readings.joined(readings)
 
-        Raises:
-            ValueError: a reading measured nothing; then none is taken.
-        """
-        if self._ranks is not None:
-            self._ranks.add(*readings)
-        else:
-            numbers_of(readings)
-        self.readings.extend(readings)
-
-    def answers(self) -> PoseSet:
-        """Return the poses that explain most readings, and all that come as near to them as the settings say."""
-        settings, readings = self._map.settings, len(self.readings)
-        return self.best(math.ceil(settings.rival_share * readings), math.ceil(settings.localized_share * readings))
-
-    def best(self, slack: int, least_rank: int) -> PoseSet:
-        """Return the poses that explain ``slack`` readings fewer than the best, if that explains ``least_rank``."""
-        if self._ranks is not None:
-            return self._ranks.best_poses(slack, least_rank)
-        return self._searched(slack, least_rank)
-
-    def _searched(self, slack: int, least_rank: int) -> PoseSet:
-        prior = None if self._within is None else CellDisk.of(self._within, self._map.ternary.spec)
-        numbers, headings_rad = numbers_of(self.readings), np.array(self.headings_rad)
+    def best_poses(self) -> PoseSet:
+        """Search for the best poses."""
+        slack, least_rank = _asked_for(self._settings, len(self.readings))
         return best_poses(
-            self._map.searched,
-            numbers,
-            headings_rad,
+            self._map,
+            self.readings,
+            np.array(self.headings_rad),
             slack=slack,
             least_rank=max(1, least_rank),
-            prior=prior,
-            limit=POSES_MAX,
+            prior=self._within,
+            limit=POSES_TOLD_MAX,
             threads=self._threads,
         )
+
+
+def _asked_for(settings: LocalizationSettings, readings: int) -> tuple[int, int]:
+    """Return how many readings fewer than the best a pose may explain, and how many the best must."""
+    return math.ceil(settings.rival_share * readings), math.ceil(settings.localized_share * readings)

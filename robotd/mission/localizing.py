@@ -15,6 +15,7 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import RangeReading
+from robotd.localization.estimator import Estimator
 from robotd.localization.localizer import Localizer
 from robotd.mission.compute import cores
 from robotd.mission.context import MissionContext, Reporter
@@ -77,9 +78,9 @@ def _headings(context: MissionContext, mission: Localize, here: Odometry) -> tup
 class Narrowing:
     """A sweep under way: takes readings as they come, publishes estimates as they firm up."""
 
-    def __init__(self, context: MissionContext, localizer: Localizer, readings_between: int) -> None:
+    def __init__(self, context: MissionContext, estimator: Estimator, readings_between: int) -> None:
         self._context = context
-        self._localizer = localizer
+        self._estimator = estimator
         self._readings_between = readings_between
         self._batches: asyncio.Queue[tuple[RangeReading, ...] | None] = asyncio.Queue()  # bounded by one sweep
         self._batch: list[RangeReading] = []
@@ -92,10 +93,12 @@ class Narrowing:
         job = place.readiness.hand_over(place.grid, context.settings.localization, context.settings.error_model)
         ready = await context.compute.run("prepare", job)
         place.readiness.keep(ready)
-        localizer = Localizer(ready, place.map_id, context.settings.judgement, threads=cores())
-        localizer.begin(headings_rad, mission.within)
+        judgement = context.settings.judgement
+        estimator = Localizer.at_stop(
+            ready, place.map_id, headings_rad, mission.within, judgement=judgement, threads=cores()
+        )
         is_searched = mission.heading is PriorHeading.UNKNOWN
-        return cls(context, localizer, -(-context.settings.sweep.readings // _ESTIMATES) if is_searched else _BATCH)
+        return cls(context, estimator, -(-context.settings.sweep.readings // _ESTIMATES) if is_searched else _BATCH)
 
     def offer(self, reading: RangeReading) -> None:
         """Take a reading."""
@@ -127,8 +130,8 @@ class Narrowing:
     def _narrow(
         self, batch: tuple[RangeReading, ...], time_ns: int, final: bool
     ) -> tuple[PoseEstimate, ResultEntry | None]:
-        self._localizer.add(*(reading for reading in batch if reading.is_measured))
-        estimate = self._localizer.estimate(time_ns, final=final)
+        self._estimator.add(*(reading for reading in batch if reading.is_measured))
+        estimate = self._estimator.estimate(time_ns, final=final)
         return estimate, result_of(estimate)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.localization.count.count_all import count_all
 from robotd.localization.count.rank_grid import even_headings
 from robotd.localization.search.bounded_search import best_poses
@@ -25,8 +25,8 @@ def main() -> None:
     sweep, obstacles = site.sweeps[0], site.obstacles
     headings_rad = np.array(even_headings(300))
     assert obstacles.free.any()
-    search = peak_mib(lambda: best_poses(site.search_map, numbers_of(sweep), headings_rad, slack=45, least_rank=150))
-    count = peak_mib(lambda: count_all(site.prepared, sweep, even_headings(_HEADINGS_COUNTED)))
+    search = peak_mib(lambda: best_poses(site.search_map, Readings.of(sweep), headings_rad, slack=45, least_rank=150))
+    count = peak_mib(lambda: count_all(site.prepared, Readings.of(sweep), even_headings(_HEADINGS_COUNTED)))
     print(f"peak {search:.0f} MiB to search, {count:.0f} MiB to count {_HEADINGS_COUNTED} headings")
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from robotd.core.grid_spec import GridSpec
+from robotd.grid.readings import Readings
 from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles
 from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
 from robotd.localization.count.rank_grid import even_headings
@@ -24,7 +25,7 @@ def ranks_of(case: Case, headings_rad: Sequence[float], *, share_of_bounds: floa
 def is_lost(case: Case, *, share_of_bounds: float = 1.0) -> bool:
     """Whether a reading excludes the true pose; only its slice is looked at."""
     ranks = ranks_of(case, even_headings(case.slices)[case.slice_number :][:1], share_of_bounds=share_of_bounds)
-    ranks.add(*case.readings)
+    ranks.add(Readings.of(case.readings))
     return int(ranks.rank[0][case.cell]) < ranks.readings
 
 
@@ -38,7 +39,7 @@ def main() -> None:
     for seed in range(arguments.seed, arguments.seed + arguments.cases):
         case = case_of(seed)
         ranks = ranks_of(case, even_headings(case.slices))
-        ranks.add(*case.readings)
+        ranks.add(Readings.of(case.readings))
         poses = ranks.cells_of_rank(ranks.readings)
         if not (poses == (case.slice_number, *case.cell)).all(axis=1).any():
             lost.append(seed)

@@ -5,13 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
 from robotd.evaluation.division import interleaved
 from robotd.evaluation.recorded import Reach, map_of, readings_of
 from robotd.grid.occupancy import GridSettings
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.wall_field import WallField
 from robotd.localization.fit.refinement import PoseBox, RefinementSettings, refine
@@ -46,10 +45,10 @@ class Building:
         self.search = SearchMap.of(obstacles, ternary.spec, ERROR_RADIUS_CELLS)
         self.field = WallField.of(ternary.spec, ternary.occupied, obstacles.blocking)
         self.queries = [
-            (numbers_of(readings_of(query.scan, REACH)), query.scan.laser_pose) for query in division.queries
+            (Readings.of(readings_of(query.scan, REACH)), query.scan.laser_pose) for query in division.queries
         ]
 
-    def best_cell(self, readings: NDArray[np.float64], near: Pose2) -> Pose2:
+    def best_cell(self, readings: Readings, near: Pose2) -> Pose2:
         """Return the middle of the poses that explain most readings, headings a third of a degree apart."""
         headings_rad = near.heading_rad + np.radians(np.arange(-9.0, 10.0) / 3.0)
         row, col = self.spec.cell_at(near.x_m, near.y_m)

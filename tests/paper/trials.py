@@ -12,6 +12,7 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import GridSettings, OccupancyGrid, OverRange, UpdatePolicy
 from robotd.grid.pose_set import PoseSet
+from robotd.grid.readings import Readings
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.places.pieces import pieces_of
@@ -84,7 +85,7 @@ def outcome_of(manner: Manner, grid: OccupancyGrid, readings: Sequence[RangeRead
     counted = manner.counted(readings)
     the_map = PreparedMap.of_binary(BinaryMap.from_grid(grid), ERROR_M / grid.spec.resolution_m)
     ranks = RankGrid(the_map, (truth.heading_rad,))
-    ranks.add(*counted)
+    ranks.add(Readings.of(counted))
     loc = ranks.best_poses()
     best, pieces = loc.poses, pieces_of(loc, ranks.headings_rad, most=len(loc)).best
     centres_m = tuple(_centre_m(piece, grid) for piece in pieces)

@@ -23,6 +23,7 @@ from robotd.contract.missions import DriveTo, Localize, MapStart
 from robotd.core.errors import RobotdError
 from robotd.core.reading import Sweep
 from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.readings import Readings
 from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.ready_map import ReadyMap
@@ -133,5 +134,5 @@ def rank_of(the_map: MapChanged, sweep: Sweep, heading_rad: float) -> RankGrid:
     settings = Config().localization
     grid = OccupancyGrid(the_map.spec, the_map.values)
     ranks = RankGrid(ReadyMap.of(grid, settings).prepared, (heading_rad,))
-    ranks.add(*sweep.measured)
+    ranks.add(Readings.of(sweep.measured))
     return ranks

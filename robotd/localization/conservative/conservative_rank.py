@@ -14,6 +14,7 @@ from robotd.grid import kernels
 from robotd.grid.fans import STARTS_MAX, FanBeams, direction_keys, draw_fans, start_keys
 from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS
 from robotd.grid.kernels.shared.packed_map import Words, pack
+from robotd.grid.readings import Readings
 from robotd.localization.conservative.conservative_poses import (
     ErrorBounds,
     SureObstacles,
@@ -77,8 +78,8 @@ class ConservativeRankGrid(RankGrid):
         super().__init__(the_map.prepared, headings_rad, threads=threads)
         self._sure = the_map
 
-    def _count_numbers(self, numbers: NDArray[np.float64], *, subtract: bool) -> None:
-        drawn = _DrawnReadings.of(numbers, self._headings, self._sure)
+    def _count_with_room(self, readings: Readings, *, subtract: bool) -> None:
+        drawn = _DrawnReadings.of(readings, self._headings, self._sure)
         for beams in drawn.fan_beams():
             threads = self._threads_for(len(beams.beams))
             kernels.in_use().fans.count_fans(
@@ -102,11 +103,9 @@ class _DrawnReadings:
     line_count: int
 
     @classmethod
-    def of(
-        cls, numbers: NDArray[np.float64], headings: NDArray[np.float64], the_map: ConservativeMap
-    ) -> "_DrawnReadings":
+    def of(cls, readings: Readings, headings: NDArray[np.float64], the_map: ConservativeMap) -> "_DrawnReadings":
         resolution_m, bounds = the_map.spec.resolution_m, the_map.bounds
-        bearing, range_cells, x, y, is_miss = (numbers / [1.0, *[resolution_m] * 3, 1.0]).T[:, :, None]
+        bearing, range_cells, x, y, is_miss = (readings.rows / [1.0, *[resolution_m] * 3, 1.0]).T[:, :, None]
         error_cells = bounds.range_error_m / resolution_m
         away = np.hypot(x + range_cells * np.cos(bearing), y + range_cells * np.sin(bearing))
         steps = np.where(is_miss > 0.0, 0, head_radius_steps(away, error_cells, bounds.heading_error_rad))

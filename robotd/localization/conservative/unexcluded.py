@@ -1,7 +1,7 @@
 """The poses that one stop's readings do not exclude: what the conservative mode asks, after any reading.
 
-Unlike :mod:`robotd.localization.stop`, which asks for the best, this asks for all poses whose rank is no less than the
-true one's can be (:mod:`.conservative_rank`): all readings but those that may break their bounds.
+Other stops ask for the best; this asks for all poses whose rank is no less than the true one's can be
+(:mod:`.conservative_poses`): all readings but those that may break their bounds.
 """
 
 import math
@@ -10,24 +10,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from robotd.contract.area import Area
-from robotd.core.reading import RangeReading
 from robotd.grid.pose_set import PoseSet
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
 from robotd.localization.count.count_all import MEMORY_BYTES, heading_batches
+from robotd.localization.count.limits import FEW_HEADINGS, POSES_TOLD_MAX
 from robotd.localization.search.cell_disk import CellDisk
-from robotd.localization.stop import FEW_HEADINGS, POSES_MAX
 
 
-class Unexcluded:
+class UnexcludedStop:
     """The readings of one stop against all its poses."""
 
     def __init__(
         self,
         the_map: ConservativeMap,
-        headings_rad: Sequence[float],
-        within: Area | None,
+        headings_rad: tuple[float, ...],
+        within: CellDisk | None,
         *,
         outlier_share: float,
         threads: int,
@@ -41,27 +39,21 @@ class Unexcluded:
             outlier_share: of the readings, these may break their bounds.
             threads: how many threads may share the work; no answer depends on it.
         """
-        self.headings_rad = tuple(headings_rad)
-        self.readings: list[RangeReading] = []
+        self.headings_rad = headings_rad
+        self.readings = Readings.none()
         self._map = the_map
         self._within = within
         self._outlier_share = outlier_share
         self._threads = threads
         self._kept = self._grid(self.headings_rad) if len(self.headings_rad) <= FEW_HEADINGS else None
 
-    def add(self, *readings: RangeReading) -> None:
-        """Take measured readings.
-
-        Raises:
-            ValueError: a reading measured nothing; then none is taken.
-        """
+    def add(self, readings: Readings) -> None:
+        """Count readings, or keep them where there are too many headings to count as they come."""
         if self._kept is not None:
-            self._kept.add(*readings)
-        else:
-            numbers_of(readings)
-        self.readings.extend(readings)
+            self._kept.add(readings)
+        self.readings = self.readings.joined(readings)
 
-    def answers(self) -> PoseSet:
+    def best_poses(self) -> PoseSet:
         """Return all poses that are not excluded.
 
         O(headings x readings x cells), and a multiple of what :class:`.RankGrid` takes.
@@ -70,7 +62,7 @@ class Unexcluded:
         best, count, found = 0, 0, []
         for first, ranks in self._grids():
             best, count = max(best, ranks.best_rank), count + ranks.count_of_rank(least_rank)
-            if count > POSES_MAX:
+            if count > POSES_TOLD_MAX:
                 return replace(PoseSet.nothing(best + 1), best_rank=best, is_all=False)
             poses = ranks.cells_of_rank(least_rank)
             found.append((poses + np.array([first, 0, 0]), ranks.rank_at(poses)))
@@ -87,7 +79,7 @@ class Unexcluded:
         batches = heading_batches(self._map.prepared, len(self.readings), self.headings_rad, MEMORY_BYTES)
         for first, batch_rad in batches:
             ranks = self._grid(batch_rad)
-            ranks.add(*self.readings)
+            ranks.add(self.readings)
             yield first, ranks
 
     def _grid(self, headings_rad: Sequence[float]) -> ConservativeRankGrid:
@@ -97,5 +89,5 @@ class Unexcluded:
         """Leave out cells of which no point is where the robot is known to be."""
         if self._within is None:
             return found
-        inside = CellDisk.of(self._within, self._map.spec).touches(found.poses[:, 1:])
+        inside = self._within.touches(found.poses[:, 1:])
         return replace(found.part(inside), best_rank=found.best_rank) if inside.any() else PoseSet.nothing()

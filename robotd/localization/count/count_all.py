@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from robotd.core.reading import RangeReading
 from robotd.grid.pose_set import PoseSet
+from robotd.grid.readings import Readings
 from robotd.localization.count.rank_grid import RankGrid, bits_of
 from robotd.localization.obstacles.prepared_map import PreparedMap
 
@@ -21,7 +21,7 @@ MEMORY_BYTES = 1 << 28
 
 def count_all(
     the_map: PreparedMap,
-    readings: Sequence[RangeReading],
+    readings: Readings,
     headings_rad: Sequence[float],
     *,
     slack: int = 0,
@@ -32,20 +32,20 @@ def count_all(
 
     Args:
         the_map: the map.
-        readings: measured readings.
+        readings: hits and misses.
         headings_rad: the headings to try, map frame.
         slack: poses that explain so many readings fewer than the best are wanted, too.
         threads: how many threads may share the counting; the answer does not depend on it.
         memory_bytes: how much the counters may take; they take no less than one heading needs.
 
     Raises:
-        ValueError: a reading measured nothing, or there are more than 65535.
+        ValueError: there are more than 65535.
         TooLarge: a single heading needs more memory than a rank grid may take.
     """
     best, found = 0, []
     for first, batch_rad in heading_batches(the_map, len(readings), headings_rad, memory_bytes):
         ranks = RankGrid(the_map, batch_rad, threads=threads)
-        ranks.add(*readings)
+        ranks.add(readings)
         best = max(best, ranks.best_rank)
         poses = ranks.cells_of_rank(max(1, best - slack))
         found.append((poses + np.array([first, 0, 0]), ranks.rank_at(poses)))

@@ -7,17 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid.ray import ray_steps, sample_counts
+from robotd.grid.readings import Readings
 from robotd.localization.obstacles.prepared_map import PreparedMap
 
 
 def explained_at(
-    the_map: PreparedMap, readings: NDArray[np.float64], cell: tuple[int, int], heading_rad: float
+    the_map: PreparedMap, readings: Readings, cell: tuple[int, int], heading_rad: float
 ) -> NDArray[np.bool_]:
     """Return for each reading whether it is feasible at a pose, ``bool[n]``.
 
     Args:
         the_map: the map.
-        readings: ``float64[n, 5]``, of :func:`robotd.grid.readings.numbers_of`.
+        readings: hits and misses.
         cell: ``(row, col)`` of the robot, in the grid.
         heading_rad: of the robot, in the map frame.
 
@@ -26,17 +27,17 @@ def explained_at(
     obstacles = the_map.obstacles
     if not obstacles.free[cell]:
         return np.zeros(len(readings), np.bool_)
-    bearing_rad, range_m, x_m, y_m, is_miss = readings.T
+    x_m, y_m = readings.start_x_m, readings.start_y_m
     cos, sin = np.cos(heading_rad), np.sin(heading_rad)
     at = np.stack((sin * x_m + cos * y_m, cos * x_m - sin * y_m), axis=1) / the_map.spec.resolution_m
-    bearings_rad = heading_rad + bearing_rad
-    range_cells = range_m / the_map.spec.resolution_m
+    bearings_rad = heading_rad + readings.bearing_rad
+    range_cells = readings.range_m / the_map.spec.resolution_m
     starts = np.array(cell) + _nearest(at)
     free_cells = np.minimum(range_cells - the_map.error_radius_cells, 2 * max(the_map.spec.shape))
     met = _met(obstacles.blocking, starts, bearings_rad, free_cells, outside=obstacles.outside_blocks)
     ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)
     heads = np.array(cell) + _nearest(at + range_cells[:, None] * ahead)
-    ends = _look_up(obstacles.grown, heads, outside=obstacles.outside_ends) | (is_miss > 0.0)
+    ends = _look_up(obstacles.grown, heads, outside=obstacles.outside_ends) | readings.is_miss
     explained: NDArray[np.bool_] = ends & (met < obstacles.blocked_by)
     return explained
 

@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.errors import TooLarge
-from robotd.core.reading import RangeReading
 from robotd.grid import kernels
 from robotd.grid.kernels.draw.draw_kernel import BeamSettings, turned
 from robotd.grid.kernels.shared.packed_map import PAD_WORDS, TILE_ROWS, WORD_CELLS, unpack
 from robotd.grid.pose_set import PoseSet
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.localization.obstacles.prepared_map import PreparedMap
 
 _READINGS_MAX = int(np.iinfo(np.uint16).max)
@@ -63,45 +62,44 @@ class RankGrid:
         self._refuse_if_too_large(bits_of(0))
         self._counters = self._map.blank_counters(len(self.headings_rad), bits_of(0))
 
-    def add(self, *readings: RangeReading) -> None:
-        """Count measured readings, hits or misses; many at once cost less than one after the other.
+    def add(self, readings: Readings) -> None:
+        """Count readings; many at once cost less than one after the other.
 
         O(directions x cells / 64 x length of the longest beam in cells + readings x headings x cells / 64), where the
         directions are those of all readings at all headings.
 
         Raises:
-            ValueError: a reading measured nothing, or it is the 65536th; then none was counted.
+            ValueError: there are more than 65535; then none was counted.
             TooLarge: the counts of so many readings would take more than 1 GiB; then none was counted.
         """
         if self.readings + len(readings) > _READINGS_MAX:
             raise ValueError(f"a rank grid counts {_READINGS_MAX} readings")
         self._count(readings, subtract=False)
 
-    def remove(self, *readings: RangeReading) -> None:
+    def remove(self, readings: Readings) -> None:
         """Take back readings that were added, in any order; costs what adding them did.
 
         Which readings were added is not remembered: taking back others leaves counts that mean nothing.
 
         Raises:
-            ValueError: a reading measured nothing, or more are taken back than were added; then nothing was.
+            ValueError: more are taken back than were added; then nothing was.
         """
         if len(readings) > self.readings:
             raise ValueError(f"{len(readings)} readings cannot be taken back of {self.readings}")
         self._count(readings, subtract=True)
 
-    def _count(self, readings: Sequence[RangeReading], *, subtract: bool) -> None:
-        if not readings:
+    def _count(self, readings: Readings, *, subtract: bool) -> None:
+        if len(readings) == 0:
             return
         total = self.readings + (-len(readings) if subtract else len(readings))
-        numbers = numbers_of(readings)
         self._make_room(bits_of(total))
-        self._count_numbers(numbers, subtract=subtract)
+        self._count_with_room(readings, subtract=subtract)
         self.readings = total
 
-    def _count_numbers(self, numbers: NDArray[np.float64], *, subtract: bool) -> None:
-        """Count readings ``float64[n, 5]``, for which the counters have room."""
-        beams = kernels.in_use().draw.draw_beams(numbers, self._headings, self._how)
-        threads = self._threads_for(len(numbers) * len(self.headings_rad))
+    def _count_with_room(self, readings: Readings, *, subtract: bool) -> None:
+        """Count readings for which the counters have room."""
+        beams = kernels.in_use().draw.draw_beams(readings.rows, self._headings, self._how)
+        threads = self._threads_for(len(readings) * len(self.headings_rad))
         kernels.in_use().count.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
 
     def _threads_for(self, beams: int) -> int:

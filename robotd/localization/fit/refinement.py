@@ -29,6 +29,7 @@ from robotd.core.pose import Pose2
 from robotd.grid import kernels
 from robotd.grid.kernels.cast.cast_kernel import ENDS
 from robotd.grid.kernels.fit.fit_kernel import Fits
+from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
 
 
@@ -92,9 +93,9 @@ class Heads:
     """``float64[m, 4]``: x, y of the start [cells], cosine and sine of the bearing; of hits and misses."""
 
     @classmethod
-    def of(cls, readings: NDArray[np.float64], resolution_m: float) -> "Heads":
-        """Take them from ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`."""
-        bearing_rad, range_, x, y, is_miss = columns = np.ascontiguousarray(readings.T)
+    def of(cls, readings: Readings, resolution_m: float) -> "Heads":
+        """Take them from readings, in cells."""
+        bearing_rad, range_, x, y, is_miss = columns = np.ascontiguousarray(readings.rows.T)
         columns[1:4] /= resolution_m
         cosine, sine, is_hit = np.cos(bearing_rad), np.sin(bearing_rad), is_miss == 0.0
         beams, at_cells = np.empty((len(readings), 4)), np.empty((len(readings), 2))
@@ -136,13 +137,13 @@ class ExpectedRanges:
 
 
 def refine(
-    field: WallField, readings: NDArray[np.float64], boxes: Sequence[PoseBox], settings: RefinementSettings
+    field: WallField, readings: Readings, boxes: Sequence[PoseBox], settings: RefinementSettings
 ) -> RefinedPoses:
     """Return the best poses within boxes, for one sweep.
 
     Args:
         field: the map.
-        readings: ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`; misses have no head and no say.
+        readings: ``m`` hits and misses; misses have no head and no say.
         boxes: where to begin, and what not to leave.
         settings: where walls lie, and how robust.
 
@@ -167,13 +168,13 @@ def refine_heads(
 
 
 def expected_ranges(
-    field: WallField, readings: NDArray[np.float64], poses: NDArray[np.float64], blocked_by: int
+    field: WallField, readings: Readings, poses: NDArray[np.float64], blocked_by: int
 ) -> ExpectedRanges:
     """Return how far each beam goes from continuous poses, exactly, to the side of the cell that stops it.
 
     Args:
         field: the map.
-        readings: ``float64[m, 5]``; their ranges do not matter.
+        readings: ``m`` of them; their ranges do not matter.
         poses: ``float64[n, 3]``: x, y [m] and heading [rad], map frame.
         blocked_by: how many blocking cells a beam must meet to be stopped, 1 or 2.
     """

@@ -10,8 +10,8 @@ begin, and how far off they are: that is what its places are recognized by.
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.grid.readings import Readings
 from robotd.localization.judge.error_model import ErrorModel
-from robotd.localization.judge.patches import heads_of
 
 _GOES_ON = 0.6
 """Chance that the wall of the last two heads goes on to the next one; or that a miss follows a miss."""
@@ -25,18 +25,18 @@ _PEAK = 0.36755259694786135
 """Of Student's t with three degrees of freedom."""
 
 
-def elsewhere(readings: NDArray[np.float64], model: ErrorModel) -> NDArray[np.float64]:
+def elsewhere(readings: Readings, model: ErrorModel) -> NDArray[np.float64]:
     """Return how likely each reading is, given those before it, somewhere in any building.
 
     Args:
-        readings: ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`, by bearing.
+        readings: ``m`` of them, by bearing.
         model: how readings err.
 
     Returns:
         ``float64[m]``: for hits the density [1/m], for misses the chance; without those that mean nothing.
     """
-    is_hit = readings[:, 4] == 0.0
-    known = model.anywhere(readings[:, 1], is_hit)
+    is_hit = readings.is_hit
+    known = model.anywhere(readings.range_m, is_hit)
     stays_open = np.flatnonzero(~is_hit[1:] & ~is_hit[:-1]) + 1
     known[stays_open] = _GOES_ON + (1.0 - _GOES_ON) * known[stays_open]
     if len(readings) > 2:
@@ -45,21 +45,22 @@ def elsewhere(readings: NDArray[np.float64], model: ErrorModel) -> NDArray[np.fl
     return known
 
 
-def _going_on(readings: NDArray[np.float64], model: ErrorModel) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _going_on(readings: Readings, model: ErrorModel) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Return the density of each reading but the first two if the wall of the two before goes on, and where it can."""
-    heads, is_hit = heads_of(readings), readings[:, 4] == 0.0
+    heads, is_hit, ahead = readings.heads_m, readings.is_hit, readings[2:]
     wall, last = heads[1:-1] - heads[:-2], heads[1:-1]
     length = np.maximum(np.hypot(wall[:, 0], wall[:, 1]), 1e-9)
-    way = np.stack((np.cos(readings[2:, 0]), np.sin(readings[2:, 0])), axis=1)
+    way = np.stack((np.cos(ahead.bearing_rad), np.sin(ahead.bearing_rad)), axis=1)
     aslant = way[:, 0] * wall[:, 1] - way[:, 1] * wall[:, 0]
     aslant = np.where(np.abs(aslant) < _SINE_MIN * length, np.copysign(_SINE_MIN * length, aslant), aslant)
-    to_last = last - readings[2:, 2:4]
+    starts = ahead.rows[:, 2:4]
+    to_last = last - starts
     expected_m = (to_last[:, 0] * wall[:, 1] - to_last[:, 1] * wall[:, 0]) / aslant
-    beyond = readings[2:, 2:4] + expected_m[:, None] * way - last
+    beyond = starts + expected_m[:, None] * way - last
     farther = np.hypot(beyond[:, 0], beyond[:, 1]) / length
     # The line through two heads errs by both of them, the more the farther it is drawn on.
     error_m = np.sqrt(model.range_sigma_m**2 * (1.0 + (1.0 + farther) ** 2 + farther**2) + _ROUGHNESS_M**2)
     spread_m = error_m * length / np.abs(aslant)
-    tail = 1.0 + ((readings[2:, 1] - expected_m) / spread_m) ** 2 / 3.0
+    tail = 1.0 + ((ahead.range_m - expected_m) / spread_m) ** 2 / 3.0
     is_wall = is_hit[2:] & is_hit[1:-1] & is_hit[:-2] & (expected_m > 0.0) & (farther < _FARTHEST)
     return _PEAK / (tail * tail * spread_m), is_wall

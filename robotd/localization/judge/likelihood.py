@@ -20,6 +20,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.grid import kernels
 from robotd.grid.kernels.cast.cast_kernel import SKIP_MAX
 from robotd.grid.kernels.weigh.weigh_kernel import IN_UNKNOWN, ChanceMap
+from robotd.grid.readings import Readings
 from robotd.grid.tables import NO_INFORMATION, SURELY_OCCUPIED
 from robotd.grid.window import CellWindow, influence
 from robotd.localization.judge.elsewhere import elsewhere
@@ -83,15 +84,15 @@ class Likelihood:
         """Return the likelihood on the same map for other errors."""
         return replace(self, model=model, chances=replace(self.chances, stops=_stops(model, self.spec.resolution_m)))
 
-    def sight(self, readings: NDArray[np.float64]) -> Sight:
-        """Return readings ``float64[m, 5]`` (:func:`~robotd.grid.readings.numbers_of`), by bearing, drawn."""
+    def sight(self, readings: Readings) -> Sight:
+        """Return readings, by bearing, drawn."""
         model, resolution_m = self.model, self.spec.resolution_m
-        bearing_rad, range_m, x_m, y_m, is_miss = readings.T
+        bearing_rad, range_m = readings.bearing_rad, readings.range_m
         across_m = np.hypot(model.map_sigma_m, model.map_sigma_rad * range_m)
         along_m = np.sqrt(model.range_sigma_m**2 + across_m**2 + resolution_m**2 / 12.0)
-        x, y, *lengths = np.stack((x_m, y_m, range_m, along_m, across_m)) / resolution_m
-        beams = np.stack((x, y, np.cos(bearing_rad), np.sin(bearing_rad), *lengths, is_miss), axis=1)
-        is_hit, likely = is_miss == 0.0, elsewhere(readings, model)
+        x, y, *lengths = np.stack((readings.start_x_m, readings.start_y_m, range_m, along_m, across_m)) / resolution_m
+        beams = np.stack((x, y, np.cos(bearing_rad), np.sin(bearing_rad), *lengths, readings.is_miss), axis=1)
+        is_hit, likely = readings.is_hit, elsewhere(readings, model)
         free = np.exp(-model.unmapped_per_m * range_m)
         return Sight(beams, likely, free, likely / model.anywhere(range_m, is_hit), model.meaningless(is_hit))
 

@@ -9,40 +9,36 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.grid.readings import Readings
+
 _COARSER = 1.15
 
 
-def heads_of(readings: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return where readings ``float64[m, 5]`` end, in the robot frame, ``float64[m, 2]`` [m]."""
-    bearing_rad, range_m, x_m, y_m, _ = readings.T
-    return np.stack((x_m + range_m * np.cos(bearing_rad), y_m + range_m * np.sin(bearing_rad)), axis=1)
-
-
-def spots_of(readings: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return what readings ``float64[m, 5]`` speak of, in the robot frame, ``float64[m, 2]`` [m]: their heads.
+def spots_of(readings: Readings) -> NDArray[np.float64]:
+    """Return what readings speak of, in the robot frame, ``float64[m, 2]`` [m]: their heads.
 
     A miss has none. It may be a dark or slanted piece of the very wall that its neighbours met, and misses side by side
     are often one such piece: it speaks of where its beam is as long as that of the hit nearest by bearing.
     """
-    is_hit = readings[:, 4] == 0.0
+    is_hit = readings.is_hit
     if is_hit.all() or not is_hit.any():
-        return heads_of(readings)
-    hits = readings[is_hit][np.argsort(readings[is_hit, 0], kind="stable")]
-    after = np.clip(np.searchsorted(hits[:, 0], readings[:, 0]), 1, max(len(hits) - 1, 1))
-    before, after = hits[after - 1], hits[np.minimum(after, len(hits) - 1)]
-    is_after = np.abs(after[:, 0] - readings[:, 0]) < np.abs(before[:, 0] - readings[:, 0])
-    spoken_of = readings.copy()
-    nearest_m = np.where(is_after, after[:, 1], before[:, 1])
-    spoken_of[:, 1] = np.where(is_hit, readings[:, 1], np.minimum(nearest_m, readings[:, 1]))
-    return heads_of(spoken_of)
+        return readings.heads_m
+    hits = readings[is_hit]
+    hits = hits[np.argsort(hits.bearing_rad, kind="stable")]
+    after = np.clip(np.searchsorted(hits.bearing_rad, readings.bearing_rad), 1, max(len(hits) - 1, 1))
+    before, later = hits[after - 1], hits[np.minimum(after, len(hits) - 1)]
+    is_after = np.abs(later.bearing_rad - readings.bearing_rad) < np.abs(before.bearing_rad - readings.bearing_rad)
+    nearest_m = np.where(is_after, later.range_m, before.range_m)
+    range_m = np.where(is_hit, readings.range_m, np.minimum(nearest_m, readings.range_m))
+    return readings.with_ranges(range_m).heads_m
 
 
-def spread_out(readings: NDArray[np.float64], gap_m: float, most: int) -> NDArray[np.intp]:
-    """Return which of ``float64[m, 5]`` have heads at least a gap from that of the last one chosen, by bearing.
+def spread_out(readings: Readings, gap_m: float, most: int) -> NDArray[np.intp]:
+    """Return which readings have heads at least a gap from that of the last one chosen, by bearing.
 
     The gap is widened until no more than ``most`` are left. O(m log m) for each gap.
     """
-    by_bearing = np.argsort(readings[:, 0], kind="stable")
+    by_bearing = np.argsort(readings.bearing_rad, kind="stable")
     heads: list[tuple[float, float]] = [(x_m, y_m) for x_m, y_m in spots_of(readings[by_bearing]).tolist()]
     kept = _apart(heads, gap_m)
     while len(kept) > most:
@@ -51,13 +47,13 @@ def spread_out(readings: NDArray[np.float64], gap_m: float, most: int) -> NDArra
     return by_bearing[kept]
 
 
-def thinned(readings: NDArray[np.float64], gap_m: float, most: int) -> NDArray[np.float64]:
+def thinned(readings: Readings, gap_m: float, most: int) -> Readings:
     """Return the readings themselves that :func:`spread_out` chooses, by bearing."""
     return readings[spread_out(readings, gap_m, most)]
 
 
-def weights(readings: NDArray[np.float64], patch_m: float) -> NDArray[np.float64]:
-    """Return the weight of each reading of ``float64[m, 5]``: one, shared with all whose heads lie within a patch.
+def weights(readings: Readings, patch_m: float) -> NDArray[np.float64]:
+    """Return the weight of each reading, ``float64[m]``: one, shared with all whose heads lie within a patch.
 
     Sharing fades linearly to the patch's length. The sum is how many things the readings say. O(m^2).
     """
@@ -65,7 +61,7 @@ def weights(readings: NDArray[np.float64], patch_m: float) -> NDArray[np.float64
     return weights
 
 
-def alike(readings: NDArray[np.float64], patch_m: float) -> NDArray[np.float64]:
+def alike(readings: Readings, patch_m: float) -> NDArray[np.float64]:
     """Return how far readings say the same, 0 to 1, ``float64[m, m]``."""
     heads = spots_of(readings)
     apart_m = np.hypot(heads[:, None, 0] - heads[:, 0], heads[:, None, 1] - heads[:, 1])

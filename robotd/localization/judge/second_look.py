@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from robotd.contract.estimate import PoseState
 from robotd.core.bounds import Within, refuse_outside
+from robotd.grid.readings import Readings
 from robotd.localization.judge.climbing import Hill, climb
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
@@ -103,7 +104,7 @@ class SecondLook:
 
 def second_look(
     likelihood: Likelihood,
-    readings: NDArray[np.float64],
+    readings: Readings,
     poses: NDArray[np.float64],
     ranks: NDArray[np.integer],
     settings: SecondLookSettings,
@@ -112,7 +113,7 @@ def second_look(
 
     Args:
         likelihood: of the map.
-        readings: ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`.
+        readings: hits and misses.
         poses: ``float64[n, 3]``: x, y [m] and heading [rad]: the best poses of the count and all that come near them.
         ranks: ``[n]``: how many readings each explains.
         settings: what counts as one place, and how sure is sure.
@@ -138,7 +139,7 @@ def second_look(
 
 
 def _glance(
-    likelihood: Likelihood, readings: NDArray[np.float64], starts: NDArray[np.float64], settings: SecondLookSettings
+    likelihood: Likelihood, readings: Readings, starts: NDArray[np.float64], settings: SecondLookSettings
 ) -> NDArray[np.float64]:
     """Return the starts, moved uphill, that are worth a closer look: with half the sharpness and fewer readings."""
     if len(starts) == 0 or len(readings) == 0:

@@ -10,6 +10,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS, NO_HEAD
 from robotd.grid.kernels.error_radius.error_radius_kernel import Bodies
 from robotd.grid.ray import ray_steps
+from robotd.grid.readings import Readings
 from robotd.localization.reference.error_map import NEVER
 
 _CENTRE = 0.5
@@ -17,21 +18,21 @@ RANGE_CELLS_MAX = 32_000
 """Errors of longer readings do not fit into sixteen bits with room to spare."""
 
 
-def draw_bodies(numbers: NDArray[np.float64], heading_rad: float, spec: GridSpec) -> Bodies:
+def draw_bodies(readings: Readings, heading_rad: float, spec: GridSpec) -> Bodies:
     """Draw readings.
 
     Args:
-        numbers: ``float64[n, 5]``, as :func:`robotd.grid.readings.numbers_of` returns them.
+        readings: hits and misses.
         heading_rad: of the robot, in the map frame.
         spec: of the map.
 
     Raises:
         ValueError: a reading is longer than 32 000 cells.
     """
-    bearing_rad, range_m, x_m, y_m, is_miss = numbers.T
+    x_m, y_m = readings.start_x_m, readings.start_y_m
     sin, cos = np.sin(heading_rad), np.cos(heading_rad)
     starts = np.stack((sin * x_m + cos * y_m, cos * x_m - sin * y_m), axis=1) / spec.resolution_m
-    bearings_rad, range_cells = heading_rad + bearing_rad, range_m / spec.resolution_m
+    bearings_rad, range_cells = heading_rad + readings.bearing_rad, readings.range_m / spec.resolution_m
     if range_cells.max(initial=0.0) > RANGE_CELLS_MAX:
         raise ValueError(f"a reading is {range_cells.max():.0f} cells long; at most {RANGE_CELLS_MAX}")
     errors, counts = errors_by_samples(bearings_rad, range_cells, reach_cells(spec))
@@ -40,7 +41,7 @@ def draw_bodies(numbers: NDArray[np.float64], heading_rad: float, spec: GridSpec
     offsets = np.floor(_CENTRE + k[:, None] * np.repeat(ray_steps(bearings_rad), counts, axis=0))
     ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)
     heads = _nearest(starts + range_cells[:, None] * ahead)
-    heads[is_miss > 0.0] = NO_HEAD
+    heads[readings.is_miss] = NO_HEAD
     return Bodies(
         chains=(offsets + np.repeat(_nearest(starts), counts, axis=0)).astype(np.int32),
         lengths=np.minimum(errors, NEVER).astype(np.uint16),

@@ -33,7 +33,7 @@ from robotd.core.reading import RangeReading
 from robotd.grid import kernels
 from robotd.grid.binary import BinaryMap
 from robotd.grid.distance import distance_transform
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.grid.translation import translated
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.reference.bodies import RANGE_CELLS_MAX, draw_bodies, errors_by_samples, reach_cells
@@ -126,7 +126,7 @@ def errors_on(
         ValueError: as there, or a reading is longer than 32 000 cells.
     """
     wanted = _readings_wanted(readings, share)
-    bodies = draw_bodies(numbers_of(readings), heading_rad, the_map.spec)
+    bodies = draw_bodies(Readings.of(readings), heading_rad, the_map.spec)
     shared = kernels.in_use().error_radius.share_errors(
         the_map.packed, the_map.distances, the_map.outside, bodies, wanted, threads=threads
     )

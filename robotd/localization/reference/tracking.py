@@ -27,6 +27,7 @@ from robotd.core.pose import Pose2
 from robotd.grid import kernels
 from robotd.grid.kernels.cast.cast_kernel import REACH_CELLS
 from robotd.grid.kernels.fit.fit_kernel import Lattice
+from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
 from robotd.localization.fit.refinement import (
     DISTANCES,
@@ -119,7 +120,7 @@ class NotHere:
 
 def track(
     field: WallField,
-    readings: NDArray[np.float64],
+    readings: Readings,
     prior: PoseBox,
     settings: TrackingSettings,
     refinement: RefinementSettings,
@@ -128,7 +129,7 @@ def track(
 
     Args:
         field: the map.
-        readings: ``float64[m, 5]`` of :func:`~robotd.grid.readings.numbers_of`, one sweep.
+        readings: ``m`` hits and misses, one sweep.
         prior: where it may be; the lattice begins at its start.
         settings: how to look, and what is enough.
         refinement: how to refine.
@@ -171,7 +172,7 @@ class _Search:
     """What is looked for, where and how."""
 
     field: WallField
-    readings: NDArray[np.float64]
+    readings: Readings
     heads: Heads
     prior: PoseBox
     settings: TrackingSettings
@@ -220,7 +221,7 @@ class _Search:
         """Return which readings each pose explains, ``bool[n, m]``."""
         settings = self.settings
         ways_m = ranges_along(self.field, self.heads.beams, poses.poses, settings.blocked_by).ranges_m
-        explained: NDArray[np.bool_] = ways_m >= self.readings[:, 1] - settings.unblocked_within_m
+        explained: NDArray[np.bool_] = ways_m >= self.readings.range_m - settings.unblocked_within_m
         explained &= ~(np.abs(poses.beyond_m) > settings.explained_within_m)
         return explained
 

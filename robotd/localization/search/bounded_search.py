@@ -15,6 +15,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.grid import kernels
 from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question
 from robotd.grid.pose_set import PoseSet
+from robotd.grid.readings import Readings
 from robotd.grid.window import CellWindow
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.search.cell_disk import CellDisk
@@ -38,9 +39,9 @@ class SearchMap:
         return cls(spec, kernels.in_use().search.make_planes(_ground(obstacles, error_radius_cells)))
 
     def updated(self, obstacles: Obstacles, window: CellWindow) -> "SearchMap":
-        """Return the map after cells changed, all of them in a window; O(cells near the window).
+        """Return the map after cells changed, all of them in a window; this one stays as it is.
 
-        The old map is used up: its arrays become the new one's.
+        O(cells near the window), and a copy.
         """
         ground = _ground(obstacles, self.planes.ground.error_radius_cells)
         return SearchMap(self.spec, kernels.in_use().search.renew_planes(self.planes, ground, window))
@@ -48,7 +49,7 @@ class SearchMap:
 
 def best_poses(
     search_map: SearchMap,
-    readings: NDArray[np.float64],
+    readings: Readings,
     headings_rad: NDArray[np.float64],
     *,
     slack: int,
@@ -61,7 +62,7 @@ def best_poses(
 
     Args:
         search_map: the map.
-        readings: ``float64[n, 5]``, as :func:`robotd.grid.readings.numbers_of` returns them.
+        readings: hits and misses.
         headings_rad: ``float64[headings]``, the headings to try, map frame.
         slack: poses that explain so many readings fewer than the best are wanted, too.
         least_rank: if no pose explains so many readings, none is returned.
@@ -78,9 +79,9 @@ def best_poses(
     window, spans = _spans(prior or CellWindow.whole(shape), shape)
     if len(readings) == 0 or len(headings_rad) == 0 or len(spans) == 0:
         return PoseSet.nothing(max(1, least_rank - slack))
-    farthest_m = float(np.abs(readings[:, 2:4]).max())
+    farthest_m = float(np.abs(readings.rows[:, 2:4]).max())
     question = Question(
-        readings=readings,
+        readings=readings.rows,
         headings_rad=headings_rad,
         resolution_m=search_map.spec.resolution_m,
         slack=slack,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
 from robotd.localization.count.rank_grid import even_headings
 from robotd.localization.fit.refinement import PoseBox, RefinementSettings, Walls, refine
@@ -21,8 +21,6 @@ from tests.benchmarks.peers.questions import PRIOR_M, PRIOR_RAD, Questions
 _HEADINGS = 300
 _DRAWN = RefinementSettings(walls=Walls.FACES, map_error_m=0.0, map_error_rad=0.0)
 """The map is the truth, and its walls are the faces of its cells."""
-
-Readings = NDArray[np.float64]
 
 
 def answers(questions: Questions) -> list[dict[str, object]]:
@@ -61,7 +59,7 @@ def _asked(
 ) -> dict[str, object]:
     errors_m, seconds = [], []
     for pose, prior, sweep in zip(questions.poses, questions.priors, questions.sweeps, strict=True):
-        readings = numbers_of(sweep.measured)
+        readings = Readings.of(sweep.measured)
         begin = time.perf_counter()
         found = locate(readings, prior)
         seconds.append(time.perf_counter() - begin)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
 from robotd.core.reading import Sweep
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from tests.benchmarks import workload
 
 POSES = 100
@@ -57,5 +57,5 @@ def _rows(poses: list[Pose2]) -> NDArray[np.float64]:
 
 
 def _ranges(sweep: Sweep) -> NDArray[np.float64]:
-    ranges_m: NDArray[np.float64] = numbers_of(sweep.readings)[:, 1]
+    ranges_m: NDArray[np.float64] = Readings.of(sweep.readings).range_m
     return ranges_m

@@ -6,10 +6,11 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.reading import RangeReading
 from robotd.grid import kernels
 from robotd.grid.kernels.draw.draw_kernel import BeamSettings, turned
 from robotd.grid.kernels.twins import TWINS
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.localization.count.rank_grid import RankGrid, even_headings
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
@@ -32,7 +33,7 @@ def all_poses(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
 
     def whole(threads: int) -> RankGrid:
         ranks = RankGrid(workload.map_of(occupied), headings, threads=threads)
-        ranks.add(*sweep)
+        ranks.add(Readings.of(sweep))
         return ranks
 
     title = f"{room}, all poses, {HEADINGS} headings, {len(sweep)} readings"
@@ -47,7 +48,7 @@ def all_poses(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
     ten = np.array(headings[:10])
     for name, module in (("in use", kernels.in_use()), ("NumPy twin", TWINS)):
         counters = the_map.blank_counters(10, 9)
-        beams = module.draw.draw_beams(numbers_of(few), turned(ten), HOW)
+        beams = module.draw.draw_beams(Readings.of(few).rows, turned(ten), HOW)
         run = partial(module.count.count_feasible, counters, the_map, beams)
         yield timed(f"{room}, 10 headings x {len(few)} readings, {name}", run, 5)
 
@@ -59,8 +60,12 @@ def one_reading(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
     counters = the_map.blank_counters(1, 16)
     sweep = sorted(workload.sweep_of(occupied).measured, key=lambda reading: reading.range_m or 0.0)
     for name, reading in (("median", sweep[len(sweep) // 2]), ("longest", sweep[-1])):
-        beams = kernels.in_use().draw.draw_beams(numbers_of((reading,)), turned(np.zeros(1)), HOW)
+        beams = kernels.in_use().draw.draw_beams(Readings.of((reading,)).rows, turned(np.zeros(1)), HOW)
         title = f"{room}, one reading ({name} range {reading.range_m:.2f} m), heading known"
         yield timed(f"{title}: counting", partial(kernels.in_use().count.count_feasible, counters, the_map, beams), 500)
         yield timed(f"{title}: counting, NumPy twin", partial(TWINS.count.count_feasible, counters, the_map, beams), 20)
-        yield timed(f"{title}: add()", partial(ranks.add, reading), 300, goal_ms=0.015)
+        yield timed(f"{title}: add()", partial(_add, ranks, reading), 300, goal_ms=0.015)
+
+
+def _add(ranks: RankGrid, reading: RangeReading) -> None:
+    ranks.add(Readings.of((reading,)))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.grid.binary import BinaryMap
+from robotd.grid.readings import Readings
 from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles
 from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
 from robotd.localization.count.rank_grid import even_headings
@@ -50,7 +51,7 @@ def conservative(occupied: NDArray[np.bool_]) -> Iterator[Timing]:
     sweep = workload.sweep_of(occupied).measured
 
     def count(threads: int) -> None:
-        ConservativeRankGrid(the_map, headings, threads=threads).add(*sweep)
+        ConservativeRankGrid(the_map, headings, threads=threads).add(Readings.of(sweep))
 
     for threads in (1, 2):
         title = f"S, conservative, {len(headings)} headings, {len(sweep)} readings: counting, {threads} thread(s)"

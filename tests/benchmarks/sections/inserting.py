@@ -6,7 +6,7 @@ from functools import partial
 from robotd.grid import kernels
 from robotd.grid.kernels.twins import TWINS
 from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
 
@@ -16,7 +16,7 @@ def timings() -> Iterator[Timing]:
     sweep = workload.sweep_of(workload.room())
     for policy in UpdatePolicy:
         grid = OccupancyGrid(workload.SPEC, settings=GridSettings(policy=policy))
-        readings, tables = numbers_of(sweep.measured), (grid._lower, grid._raise)
+        readings, tables = Readings.of(sweep.measured).rows, (grid._lower, grid._raise)
         at_once = policy is UpdatePolicy.PER_SWEEP
         title = f"S, one sweep into the map, {policy}"
         for name, module in (("in use", kernels.in_use()), ("NumPy twin", TWINS)):

@@ -12,7 +12,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid import kernels
 from robotd.grid.kernels.twins import TWINS
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
 from robotd.localization.fit.refinement import (
@@ -34,7 +34,7 @@ POSES = 200
 PRIOR_M, PRIOR_RAD = 0.3, math.radians(10.0)
 RIGHT_M = 0.05
 
-Query = tuple[NDArray[np.float64], Pose2]
+Query = tuple[Readings, Pose2]
 
 
 def timings() -> Iterator[Timing]:
@@ -46,7 +46,7 @@ def timings() -> Iterator[Timing]:
         field = WallField.of(spec, occupied, occupied)
         poses = workload.poses_in(occupied, POSES)
         queries = [
-            (numbers_of(workload.sweep_of(occupied, seed, pose).measured), pose) for seed, pose in enumerate(poses)
+            (Readings.of(workload.sweep_of(occupied, seed, pose).measured), pose) for seed, pose in enumerate(poses)
         ]
         yield from refining(name, field, queries, goal_mm=goals[0])
         yield from tracking(name, field, queries)

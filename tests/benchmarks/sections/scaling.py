@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
 from robotd.localization.count.count_all import count_all
 from robotd.localization.count.rank_grid import bits_of, even_headings
@@ -136,8 +136,8 @@ def _cut(sweep: tuple[RangeReading, ...], cut_off_m: float) -> tuple[RangeReadin
 
 def _counted(title: str, site: Site, headings: int) -> Timing:
     ready, headings_rad = site.prepared, even_headings(headings)
-    sweep = site.sweeps[0]
-    return _repeated(f"{title}: counting all poses", [lambda: count_all(ready, sweep, headings_rad)])
+    readings = Readings.of(site.sweeps[0])
+    return _repeated(f"{title}: counting all poses", [lambda: count_all(ready, readings, headings_rad)])
 
 
 def _searched(title: str, site: Site, headings: int) -> Timing:
@@ -145,7 +145,7 @@ def _searched(title: str, site: Site, headings: int) -> Timing:
     headings_rad, ready = np.array(even_headings(headings)), site.search_map
 
     def search(sweep: tuple[RangeReading, ...]) -> Callable[[], object]:
-        readings = numbers_of(sweep)
+        readings = Readings.of(sweep)
         slack, least = round(_RIVAL_SHARE * len(sweep)), round(_LEAST_SHARE * len(sweep))
         return lambda: best_poses(ready, readings, headings_rad, slack=slack, least_rank=least)
 

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.pose_set import PoseSet
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
 from robotd.localization.count.rank_grid import even_headings
@@ -34,7 +33,7 @@ class Case:
     """A pose, and what is measured there."""
 
     pose: Pose2
-    readings: NDArray[np.float64]
+    readings: Readings
 
 
 def timings() -> Iterator[Timing]:
@@ -47,7 +46,7 @@ def timings() -> Iterator[Timing]:
         ready = SearchMap.of(obstacles, spec, workload.ERROR_RADIUS_CELLS)
         poses = workload.poses_in(occupied, 200)
         cases = [
-            Case(pose, numbers_of(workload.sweep_of(occupied, 100 + number, pose).measured))
+            Case(pose, Readings.of(workload.sweep_of(occupied, 100 + number, pose).measured))
             for number, pose in enumerate(poses)
         ]
         yield _everywhere(name, ready, WallField.of(spec, occupied, occupied), cases, goal_ms)

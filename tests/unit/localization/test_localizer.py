@@ -70,8 +70,7 @@ def walk(occupied: NDArray[np.bool_], row: float, col: float, bearing: float) ->
 def localized(
     binary: BinaryMap, pose: Pose2, number: int = 60, settings: LocalizationSettings = SETTINGS
 ) -> PoseEstimate:
-    localizer = Localizer(ready(binary, settings), "a map", DRAWN)
-    localizer.begin((pose.heading_rad,))
+    localizer = Localizer.at_stop(ready(binary, settings), "a map", (pose.heading_rad,), judgement=DRAWN)
     for reading in seen_from(binary, pose, number):
         localizer.add(reading)
     return localizer.estimate(7, final=True)
@@ -105,8 +104,7 @@ def test_a_room_like_itself_is_ambiguous_and_both_places_are_told() -> None:
 
 def test_a_long_corridor_without_marks_is_ambiguous_though_its_region_is_one() -> None:
     corridor = room((-1.0, 1.0, 7.0, 3.0), (-1.0, -2.0, 7.0, -0.5))
-    localizer = Localizer(ready(corridor), "a map")
-    localizer.begin((0.0,))
+    localizer = Localizer.at_stop(ready(corridor), "a map", (0.0,))
     for reading in seen_from(corridor, Pose2(3.0, 0.25, 0.0), 60, cut_off_m=1.5):
         localizer.add(reading)
     estimate = localizer.estimate(0, final=True)
@@ -117,8 +115,7 @@ def test_a_long_corridor_without_marks_is_ambiguous_though_its_region_is_one() -
 def test_a_robot_that_was_turned_or_carried_elsewhere_is_lost() -> None:
     elsewhere = room((-1.0, -2.0, 0.0, 3.0), (6.0, -2.0, 7.0, 3.0), (2.0, 1.8, 2.2, 3.0), (3.5, -2.0, 3.7, -1.0))
     for binary, pose, believed_rad in ((LAB, Pose2(0.0, 0.0, 0.3), 1.1), (elsewhere, Pose2(3.0, 0.9, 0.3), 0.7)):
-        localizer = Localizer(ready(LAB), "a map")
-        localizer.begin((believed_rad,))
+        localizer = Localizer.at_stop(ready(LAB), "a map", (believed_rad,))
         for reading in seen_from(binary, pose, 60):
             localizer.add(reading)
         estimate = localizer.estimate(0, final=True)
@@ -129,8 +126,7 @@ def test_a_robot_that_was_turned_or_carried_elsewhere_is_lost() -> None:
 
 @pytest.mark.parametrize("pose", [Pose2(3.03, 0.41, 2.2), Pose2(6.1, 2.02, -1.0)])
 def test_a_robot_that_was_turned_by_nobody_knows_how_much_is_found(pose: Pose2) -> None:
-    localizer = Localizer(ready(LAB), "a map", DRAWN)
-    localizer.begin(SETTINGS.headings_all_round())
+    localizer = Localizer.at_stop(ready(LAB), "a map", SETTINGS.headings_all_round(), judgement=DRAWN)
     localizer.add(*seen_from(LAB, pose, 120))
     estimate = localizer.estimate(7, final=True)
     assert estimate.state is PoseState.LOCALIZED
@@ -141,8 +137,7 @@ def test_a_robot_that_was_turned_by_nobody_knows_how_much_is_found(pose: Pose2) 
 
 def test_a_robot_in_one_of_two_places_that_look_alike_is_found_where_it_is_known_to_be() -> None:
     two_bays = room((2.925, -2.0, 3.125, 3.0))
-    localizer = Localizer(ready(two_bays), "a map", DRAWN)
-    localizer.begin((0.0,), Area(0.0, 0.0, 2.5))
+    localizer = Localizer.at_stop(ready(two_bays), "a map", (0.0,), Area(0.0, 0.0, 2.5), judgement=DRAWN)
     localizer.add(*seen_from(two_bays, Pose2(0.9, 0.5, 0.0), 60))
     estimate = localizer.estimate(0, final=True)
     assert estimate.state is PoseState.LOCALIZED
@@ -154,15 +149,24 @@ def test_too_few_readings_say_nothing() -> None:
     assert localized(LAB, Pose2(0.0, 0.0, 0.0), SETTINGS.readings_min - 1).state is PoseState.LOST
 
 
-def test_a_new_stop_forgets_the_old_one() -> None:
-    localizer = Localizer(ready(LAB), "a map")
-    for pose in (Pose2(0.0, 0.0, 0.0), Pose2(6.1, 2.0, 1.0)):
-        localizer.begin((pose.heading_rad,))
-        for reading in seen_from(LAB, pose, 60):
-            localizer.add(reading)
+def test_stops_on_one_map_know_nothing_of_each_other() -> None:
+    the_map, poses = ready(LAB), (Pose2(0.0, 0.0, 0.0), Pose2(6.1, 2.0, 1.0))
+    localizers = [Localizer.at_stop(the_map, "a map", (pose.heading_rad,)) for pose in poses]
+    for localizer, pose in zip(localizers, poses, strict=True):
+        localizer.add(*seen_from(LAB, pose, 60))
+    for localizer, pose in zip(localizers, poses, strict=True):
         best = localizer.estimate(0, final=True).best
         assert best is not None
         assert best.distance_m(pose) < 0.06
+
+
+def test_a_reading_that_measured_nothing_is_refused_and_none_with_it_is_taken() -> None:
+    hit, nothing = RangeReading(0, 0.0, ReadingStatus.OK, 1.0), RangeReading(0, 0.0, ReadingStatus.WEAK, None)
+    for headings_rad in ((0.0,), SETTINGS.headings_all_round()):
+        localizer = Localizer.at_stop(ready(LAB), "a map", headings_rad)
+        with pytest.raises(ValueError, match="weak"):
+            localizer.add(hit, nothing)
+        assert len(localizer.stop.readings) == 0
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,7 @@ class Question:
     """What is asked of a search."""
 
     readings: NDArray[np.float64]
-    """``float64[n, 5]``, as :func:`robotd.grid.readings.numbers_of` returns them; at least one, at most 65535."""
+    """``float64[n, 5]``, as :class:`~robotd.grid.readings.Readings` has them; at least one, at most 65535."""
     headings_rad: NDArray[np.float64]
     resolution_m: float
     slack: int
@@ -74,7 +74,7 @@ class SearchKernel(Protocol):
         """Return what the search keeps of a map; the twin reads the map itself and keeps nothing more."""
 
     def renew_planes(self, planes: Planes, ground: Ground, window: CellWindow) -> Planes:
-        """Return the planes after cells changed, all of them in a window; the old ones are used up."""
+        """Return the planes after cells changed, all of them in a window; the old ones stay as they are."""
 
     def search_poses(self, planes: Planes, question: Question, *, threads: int = 1) -> PoseSet:
         """Return the best poses.

@@ -28,7 +28,8 @@ def renew_planes(planes: Planes, ground: Ground, window: CellWindow) -> Planes:
     """See :class:`.SearchKernel`."""
     if planes.handle is None:  # a twin's
         return make_planes(ground)
-    return _filled(ground, planes.key_of, (planes.cells, planes.pooled, planes.near), window)
+    arrays = planes.cells.copy(), planes.pooled.copy(), planes.near.copy()
+    return _filled(ground, planes.key_of, arrays, window)
 
 
 def _filled(

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.fans import direction_keys, draw_fans, start_keys
+from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
 from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles, conservative_poses
 from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
@@ -60,7 +61,7 @@ def test_readings_that_break_their_bounds_cost_no_more_than_one_each() -> None:
         wrong = [RangeReading(0, reading.bearing_rad, ReadingStatus.OK, 0.1) for reading in case.readings[::4]]
         kept = [reading for number, reading in enumerate(case.readings) if number % 4]
         ranks = ranks_of(case, even_headings(case.slices))
-        ranks.add(*kept, *wrong)
+        ranks.add(Readings.of((*kept, *wrong)))
         poses = ranks.cells_of_rank(ranks.readings - len(wrong))
         assert (poses == (case.slice_number, *case.cell)).all(axis=1).any()
 
@@ -73,11 +74,11 @@ def test_what_is_counted_is_what_is_defined_100_cases(
     obstacles = obstacles_of(cells, ternary=ternary)
     spec = GridSpec(RESOLUTION_M, 0.0, 0.0, cells.shape)
     ranks = ConservativeRankGrid(ConservativeMap.of(obstacles, spec, bounds), [0.0, *headings])
-    ranks.add(*sweep)
+    ranks.add(Readings.of(sweep))
     for rank, heading in zip(ranks.rank, ranks.headings_rad, strict=True):
         planes = (conservative_poses(obstacles, reading, heading, RESOLUTION_M, bounds) for reading in sweep)
         assert np.array_equal(rank, sum(plane.astype(np.uint16) for plane in planes))
-    ranks.remove(*sweep)
+    ranks.remove(Readings.of(sweep))
     assert ranks.best_rank == 0
 
 
@@ -167,4 +168,4 @@ def test_a_reading_that_measured_nothing_is_refused() -> None:
         ConservativeMap.of(obstacles, GridSpec(1.0, 0.0, 0.0, (3, 3)), bounds), even_headings(4)
     )
     with pytest.raises(ValueError, match="weak"):
-        ranks.add(weak)
+        ranks.add(Readings.of((weak,)))

@@ -11,11 +11,13 @@ from robotd.contract.estimate import PoseEstimate, PoseState, Region
 from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.readings import Readings
 from robotd.localization.conservative import unexcluded
-from robotd.localization.conservative.unexcluded import Unexcluded
+from robotd.localization.conservative.unexcluded import UnexcludedStop
 from robotd.localization.count.rank_grid import even_headings
 from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
+from robotd.localization.search.cell_disk import CellDisk
 from robotd.localization.settings import LocalizationSettings
 from tests.conservative.cases import Case, case_of
 
@@ -42,8 +44,8 @@ def map_of(case: Case, settings: LocalizationSettings) -> ReadyMap:
 
 
 def estimate_of(case: Case, *wrong: RangeReading, outlier_share: float = 0.0) -> PoseEstimate:
-    localizer = Localizer(map_of(case, settings_of(case, outlier_share)), "a map")
-    localizer.begin(even_headings(case.slices))
+    the_map = map_of(case, settings_of(case, outlier_share))
+    localizer = Localizer.at_stop(the_map, "a map", even_headings(case.slices))
     localizer.add(*case.readings, *wrong)
     return localizer.estimate(0, final=True)
 
@@ -79,14 +81,16 @@ def test_so_many_readings_may_break_their_bounds_as_was_said() -> None:
     assert lost >= 2
 
 
-def empty(within: Area | None = None, headings: int = 8) -> Unexcluded:
+def empty(within: Area | None = None, headings: int = 8) -> UnexcludedStop:
     settings = LocalizationSettings(conservative=True, heading_step_rad=math.tau / 8)
     grid = OccupancyGrid(GridSpec(0.1, -1.0, -1.0, (20, 24)), vacant((20, 24)))
     sure = ReadyMap.of(grid, settings).sure
     assert sure is not None
-    count = Unexcluded(sure, even_headings(headings), within, outlier_share=0.0, threads=1)
-    count.add(RangeReading(0, 0.3, ReadingStatus.OK, 0.8), RangeReading(0, 2.0, ReadingStatus.MISS, 0.4))
-    return count
+    disk = None if within is None else CellDisk.of(within, grid.spec)
+    stop = UnexcludedStop(sure, even_headings(headings), disk, outlier_share=0.0, threads=1)
+    hit, miss = RangeReading(0, 0.3, ReadingStatus.OK, 0.8), RangeReading(0, 2.0, ReadingStatus.MISS, 0.4)
+    stop.add(Readings.of((hit, miss)))
+    return stop
 
 
 def vacant(shape: tuple[int, int]) -> NDArray[np.uint8]:
@@ -98,10 +102,10 @@ def vacant(shape: tuple[int, int]) -> NDArray[np.uint8]:
 def test_counted_in_batches_when_asked_or_as_readings_come_the_answers_are_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    kept = empty().answers()
+    kept = empty().best_poses()
     monkeypatch.setattr(unexcluded, "FEW_HEADINGS", 0)
     monkeypatch.setattr(unexcluded, "MEMORY_BYTES", 1)
-    asked = empty().answers()
+    asked = empty().best_poses()
     assert len(kept.poses) > 100
     assert kept.best_rank == asked.best_rank == 2
     np.testing.assert_array_equal(kept.poses, asked.poses)
@@ -109,23 +113,15 @@ def test_counted_in_batches_when_asked_or_as_readings_come_the_answers_are_the_s
 
 
 def test_more_answers_than_can_be_told_are_said_to_be_not_all(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unexcluded, "POSES_MAX", 10)
-    found = empty().answers()
+    monkeypatch.setattr(unexcluded, "POSES_TOLD_MAX", 10)
+    found = empty().best_poses()
     assert not found.is_all
     assert len(found.poses) == 0
 
 
 def test_within_an_area_only_cells_that_touch_it_are_answers() -> None:
-    anywhere, inside = empty().answers(), empty(Area(0.1, 0.2, 0.35)).answers()
+    anywhere, inside = empty().best_poses(), empty(Area(0.1, 0.2, 0.35)).best_poses()
     assert 0 < len(inside.poses) < len(anywhere.poses)
     far = np.hypot(inside.poses[:, 2] * 0.1 - 0.95 - 0.1, inside.poses[:, 1] * 0.1 - 0.95 - 0.2)
     assert far.max() <= 0.35 + 0.0708
-    assert len(empty(Area(50.0, 50.0, 1.0)).answers().poses) == 0
-
-
-def test_a_reading_that_measured_nothing_is_refused_either_way() -> None:
-    for headings in (8, 99):
-        count = empty(headings=headings)
-        with pytest.raises(ValueError, match="weak"):
-            count.add(RangeReading(0, 0.0, ReadingStatus.WEAK, None))
-        assert len(count.readings) == 2
+    assert len(empty(Area(50.0, 50.0, 1.0)).best_poses().poses) == 0

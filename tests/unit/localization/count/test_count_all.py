@@ -3,12 +3,12 @@
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.grid.readings import Readings
 from robotd.localization.count.count_all import count_all
 from robotd.localization.count.rank_grid import RankGrid, even_headings
 from robotd.localization.obstacles.beam_obstacles import Obstacles
@@ -26,15 +26,9 @@ def test_whatever_the_memory_the_poses_are_those_of_a_rank_grid(seed: int, slack
         for k, length in enumerate(random.uniform(0.1, 12.0, int(random.integers(0, 9))).tolist())
     ]
     ranks = RankGrid(the_map, even_headings(9))
-    ranks.add(*sweep)
-    found = count_all(the_map, sweep, even_headings(9), slack=slack, memory_bytes=memory_bytes)
+    ranks.add(Readings.of(sweep))
+    found = count_all(the_map, Readings.of(sweep), even_headings(9), slack=slack, memory_bytes=memory_bytes)
     expected = ranks.cells_of_rank(max(1, ranks.best_rank - slack))
     assert found.best_rank == ranks.best_rank
     assert np.array_equal(found.poses, expected)
     assert np.array_equal(found.ranks, ranks.rank_at(expected))
-
-
-def test_a_reading_that_measured_nothing_is_refused() -> None:
-    the_map = PreparedMap.of(Obstacles.of(np.zeros((3, 3), np.bool_), 1.0), GridSpec(0.5, 0.0, 0.0, (3, 3)), 1.0)
-    with pytest.raises(ValueError, match="timeout"):
-        count_all(the_map, [RangeReading(0, 0.0, ReadingStatus.TIMEOUT, None)], [0.0])

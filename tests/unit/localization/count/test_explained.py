@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
 from robotd.localization.count.explained import explained_at
 from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
@@ -63,5 +63,5 @@ def test_it_is_feasibility_at_that_pose(
     ]
     feasible = np.stack([feasible_poses(obstacles, probe) for probe in probes], axis=2)
     for row, col in np.ndindex(SPEC.shape):
-        found = explained_at(the_map, numbers_of(taken), (row, col), heading_rad)
+        found = explained_at(the_map, Readings.of(taken), (row, col), heading_rad)
         assert found.tolist() == feasible[row, col].tolist()

@@ -15,6 +15,7 @@ from robotd.core.errors import TooLarge
 from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
+from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
 from robotd.localization.count.rank_grid import RankGrid, even_headings
 from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
@@ -44,7 +45,7 @@ def test_rank_is_how_many_feasible_pose_sets_hold_a_free_cell(
     ranks = RankGrid(map_of(occupied), headings)
     expected = np.zeros((len(headings), *occupied.shape), np.uint16)
     for reading in sweep:
-        ranks.add(reading)
+        ranks.add(Readings.of((reading,)))
         for number, heading in enumerate(headings):
             probe = probe_of(reading, heading, resolution_m=0.5, error_radius_cells=1.5, reach_cells=24)
             expected[number] += feasible_poses(Obstacles.of(occupied, 1.5), probe) & ~occupied
@@ -84,7 +85,7 @@ def test_rank_is_the_sum_of_feasible_poses_whatever_the_obstacles_mean(
 ) -> None:
     rows, cols = obstacles.free.shape
     ranks = RankGrid(PreparedMap.of(obstacles, GridSpec(0.5, -1.0, 2.0, (rows, cols)), 1.5), headings)
-    ranks.add(*sweep)
+    ranks.add(Readings.of(sweep))
     expected = np.zeros((len(headings), rows, cols), np.intp)
     for reading, (number, heading) in itertools.product(sweep, enumerate(headings)):
         probe = probe_of(reading, heading, resolution_m=0.5, error_radius_cells=1.5, reach_cells=2 * max(rows, cols))
@@ -103,7 +104,7 @@ def test_a_miss_counts_by_its_body_alone_whatever_lies_outside(unknown: UnknownC
     ternary = TernaryMap(GridSpec(0.5, 0.0, 0.0, (5, 9)), ~vacant, vacant)
     obstacles = Obstacles.of_map(ternary, unknown, 1.0, blocked_by=blocked_by)
     ranks = RankGrid(PreparedMap.of(obstacles, ternary.spec, 1.0), [0.0])
-    ranks.add(RangeReading(0, 0.0, ReadingStatus.MISS, 2.0))
+    ranks.add(Readings.of((RangeReading(0, 0.0, ReadingStatus.MISS, 2.0),)))
     seen = 9 if unknown is UnknownCells.FREE else 9 - 3 + blocked_by
     assert ranks.rank[0, 0].tolist() == [1] * min(9, seen) + [0] * (9 - seen)
 
@@ -115,10 +116,10 @@ def test_the_order_of_readings_does_not_matter(
 ) -> None:
     one, other = (RankGrid(map_of(occupied, 1.0), [0.2]) for _ in range(2))
     for reading in sweep:
-        one.add(reading)
+        one.add(Readings.of((reading,)))
     random.shuffle(sweep)
     for reading in sweep:
-        other.add(reading)
+        other.add(Readings.of((reading,)))
     assert np.array_equal(one.rank, other.rank)
 
 
@@ -130,11 +131,11 @@ def test_readings_can_be_added_together_and_taken_back_in_any_order(
     the_map = map_of(np.random.default_rng(seed).random((75, 140)) < 0.05)
     gone = data.draw(st.lists(st.sampled_from(range(len(sweep))), unique=True))
     grid, expected = (RankGrid(the_map, even_headings(8)) for _ in range(2))
-    grid.add(*sweep)
+    grid.add(Readings.of(sweep))
     for number in gone:
-        grid.remove(sweep[number])
+        grid.remove(Readings.of((sweep[number],)))
     for number in set(range(len(sweep))) - set(gone):
-        expected.add(sweep[number])
+        expected.add(Readings.of((sweep[number],)))
     assert grid.readings == len(sweep) - len(gone)
     assert np.array_equal(grid.rank, expected.rank)
 
@@ -150,7 +151,7 @@ def test_all_poses_of_a_map_of_many_tiles_are_the_reference_at_samples(seed: int
         for k, length in enumerate(random.uniform(0.1, 25.0, 40).tolist())
     ]
     ranks = RankGrid(map_of(occupied), even_headings(40), threads=2)
-    ranks.add(*sweep)
+    ranks.add(Readings.of(sweep))
     obstacles = Obstacles.of(occupied, 1.5)
     rank = ranks.rank
     for number in random.integers(0, 40, 2).tolist():
@@ -166,15 +167,15 @@ def test_all_poses_of_a_map_of_many_tiles_are_the_reference_at_samples(seed: int
 def test_counters_grow_with_what_they_count() -> None:
     ranks = RankGrid(map_of(np.zeros((3, 3), np.bool_)), [0.0])
     one = RangeReading(0, 0.0, ReadingStatus.MISS, 0.1)
-    ranks.add(*[one] * 511)
-    ranks.add(one)
+    ranks.add(Readings.of([one] * 511))
+    ranks.add(Readings.of((one,)))
     assert ranks.best_rank == 512
-    ranks.remove(*[one] * 512)
+    ranks.remove(Readings.of([one] * 512))
     assert ranks.best_rank == 0
     with pytest.raises(ValueError, match="taken back"):
-        ranks.remove(one)
+        ranks.remove(Readings.of((one,)))
     with pytest.raises(ValueError, match="65535"):
-        ranks.add(*[one] * 65536)
+        ranks.add(Readings.of([one] * 65536))
 
 
 def test_counts_that_would_not_fit_are_refused_with_how_much_they_need() -> None:
@@ -184,13 +185,13 @@ def test_counts_that_would_not_fit_are_refused_with_how_much_they_need() -> None
     ranks = RankGrid(the_map, even_headings(50))
     reading = RangeReading(0, 0.0, ReadingStatus.OK, 1.0)
     with pytest.raises(TooLarge, match="65535 readings at 50 headings"):
-        ranks.add(*[reading] * 40000)
+        ranks.add(Readings.of([reading] * 40000))
     assert ranks.readings == 0
 
 
 def test_a_map_without_free_cells_has_no_poses() -> None:
     ranks = RankGrid(map_of(np.ones((4, 5), np.bool_)), [0.0])
-    ranks.add(RangeReading(0, 0.0, ReadingStatus.OK, 1.0))
+    ranks.add(Readings.of((RangeReading(0, 0.0, ReadingStatus.OK, 1.0),)))
     assert ranks.best_rank == 0
     assert ranks.best_cells.shape == (0, 3)
     assert ranks.rank.shape == (1, 4, 5)
@@ -203,5 +204,5 @@ def test_theta_slices_go_round_evenly() -> None:
 def test_a_reading_that_measured_nothing_is_refused_and_not_counted() -> None:
     ranks = RankGrid(map_of(np.zeros((4, 5), np.bool_)), [0.0])
     with pytest.raises(ValueError, match="timeout"):
-        ranks.add(RangeReading(0, 0.0, ReadingStatus.TIMEOUT, None))
+        ranks.add(Readings.of((RangeReading(0, 0.0, ReadingStatus.TIMEOUT, None),)))
     assert ranks.readings == 0

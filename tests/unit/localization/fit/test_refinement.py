@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from robotd.contract.estimate import Extent
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
+from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
 from robotd.localization.fit.refinement import (
     PoseBox,
@@ -50,7 +51,9 @@ def sweep_from(
     random = np.random.default_rng(seed)
     readings = np.zeros((beams, 5))
     readings[:, 0] = math.tau * np.arange(beams) / beams
-    exact = expected_ranges(field, readings, np.array([[pose.x_m, pose.y_m, pose.heading_rad]]), 1).ranges_m[0]
+    exact = expected_ranges(field, Readings(readings), np.array([[pose.x_m, pose.y_m, pose.heading_rad]]), 1).ranges_m[
+        0
+    ]
     short = random.random(beams) < outliers
     shortened = np.where(short, exact * random.uniform(0.2, 1.0, beams), exact)
     readings[:, 1] = np.maximum(shortened + sigma_m * random.normal(size=beams), 0.01)
@@ -69,7 +72,9 @@ def moved(pose: Pose2, x_m: float, y_m: float, heading_rad: float) -> Pose2:
 @pytest.mark.parametrize("away", [(0.02, -0.015, 0.008), (-0.1, 0.08, -0.02), (0.15, 0.15, 0.05)])
 def test_readings_without_noise_lead_to_the_true_pose(away: tuple[float, float, float]) -> None:
     field = field_of(room())
-    refined = refine(field, sweep_from(field, MIDDLE), [PoseBox.around(moved(MIDDLE, *away), 0.3, 0.1)], DRAWN)
+    refined = refine(
+        field, Readings(sweep_from(field, MIDDLE)), [PoseBox.around(moved(MIDDLE, *away), 0.3, 0.1)], DRAWN
+    )
     error_m, error_rad = error_of(refined, MIDDLE)
     assert error_m < 0.001
     assert error_rad < 0.0005
@@ -79,9 +84,9 @@ def test_all_boxes_are_refined_in_one_call_as_they_would_be_one_by_one() -> None
     field = field_of(room())
     readings = sweep_from(field, MIDDLE, sigma_m=0.02, outliers=0.1)
     boxes = [PoseBox.around(moved(MIDDLE, 0.03 * k, -0.02 * k, 0.01 * k), 0.1, 0.03) for k in range(5)]
-    together = refine(field, readings, boxes, DRAWN)
+    together = refine(field, Readings(readings), boxes, DRAWN)
     for number, box in enumerate(boxes):
-        alone = refine(field, readings, [box], DRAWN)
+        alone = refine(field, Readings(readings), [box], DRAWN)
         np.testing.assert_array_equal(together.poses[number], alone.poses[0])
         np.testing.assert_array_equal(together.covariances[number], alone.covariances[0])
         np.testing.assert_array_equal(together.beyond_m[number], alone.beyond_m[0])
@@ -92,7 +97,7 @@ def test_a_short_reading_lies_short_of_the_walls_and_a_miss_lies_nowhere() -> No
     readings = sweep_from(field, MIDDLE)
     readings[7, 1] -= 0.1
     readings[9, 4] = 1.0
-    refined = refine(field, readings, [PoseBox.around(MIDDLE, 0.05, 0.02)], DRAWN)
+    refined = refine(field, Readings(readings), [PoseBox.around(MIDDLE, 0.05, 0.02)], DRAWN)
     assert refined.beyond_m[0, 7] < -0.05
     assert math.isnan(refined.beyond_m[0, 9])
     assert abs(refined.beyond_m[0, 8]) < 0.01
@@ -102,7 +107,7 @@ def test_ranges_are_expected_to_the_sides_of_cells() -> None:
     field = field_of(room())
     readings = np.zeros((2, 5))
     readings[:, 0] = (0.0, math.pi)
-    ranges = expected_ranges(field, readings, np.array([[2.0, 4.6, 0.0]]), 1)
+    ranges = expected_ranges(field, Readings(readings), np.array([[2.0, 4.6, 0.0]]), 1)
     np.testing.assert_allclose(
         ranges.ranges_m[0], (SPEC.origin_x_m + 130 * 0.05 - 2.0, 2.0 - (SPEC.origin_x_m + 12 * 0.05))
     )
@@ -124,7 +129,7 @@ def test_a_pose_never_leaves_its_box(seed: int, half: tuple[float, float, float]
     low, high = -np.array(half) * random.random(3), np.array(half) * random.random(3)
     at = np.array([start.x_m, start.y_m, start.heading_rad])
     box = PoseBox(start, Extent(*np.stack((at + low, at + high), axis=1).ravel().tolist()))
-    refined = refine(field, readings, [box], RefinementSettings(walls=walls))
+    refined = refine(field, Readings(readings), [box], RefinementSettings(walls=walls))
     assert (refined.poses[0] >= at + low - 1e-12).all()
     assert (refined.poses[0] <= at + high + 1e-12).all()
     assert (np.linalg.eigvalsh(refined.covariances[0]) > 0.0).all()
@@ -137,7 +142,7 @@ def test_in_any_furnished_room_readings_without_noise_lead_within_a_millimetre(s
     field, truth = furnished(random)
     away = random.uniform(-1.0, 1.0, 3) * (0.1, 0.1, 0.03)
     readings = sweep_from(field, truth)
-    refined = refine(field, readings, [PoseBox.around(moved(truth, *away.tolist()), 0.2, 0.06)], DRAWN)
+    refined = refine(field, Readings(readings), [PoseBox.around(moved(truth, *away.tolist()), 0.2, 0.06)], DRAWN)
     error_m, error_rad = error_of(refined, truth)
     assert error_m < 0.001
     assert error_rad < 0.001
@@ -149,7 +154,7 @@ def test_95_of_100_errors_lie_within_the_ellipse_that_is_meant_to_hold_95() -> N
         random = np.random.default_rng(seed)
         field, truth = furnished(random)
         readings = sweep_from(field, truth, sigma_m=0.02, outliers=0.05, seed=seed)
-        refined = refine(field, readings, [PoseBox.around(truth, 0.1, 0.03)], DRAWN)
+        refined = refine(field, Readings(readings), [PoseBox.around(truth, 0.1, 0.03)], DRAWN)
         error = refined.poses[0] - (truth.x_m, truth.y_m, truth.heading_rad)
         inside.append(error @ np.linalg.solve(refined.covariances[0], error) < CHI_SQUARE_3_OF_95)
     # Between a little too sure and a little too modest.
@@ -161,12 +166,12 @@ def test_95_of_100_errors_lie_within_the_ellipse_that_is_meant_to_hold_95() -> N
 def test_a_mirrored_room_gives_the_mirrored_pose(seed: int) -> None:
     random = np.random.default_rng(seed)
     walls, readings, start = noisy(random)
-    refined = refine(field_of(walls, PLAIN), readings, [PoseBox.around(start, 0.1, 0.03)], DRAWN)
+    refined = refine(field_of(walls, PLAIN), Readings(readings), [PoseBox.around(start, 0.1, 0.03)], DRAWN)
     mirrored = readings[::-1].copy()
     mirrored[:, 0] = -mirrored[:, 0]
     other_start = Pose2(WIDTH_M - start.x_m, start.y_m, math.pi - start.heading_rad)
     field = field_of(np.ascontiguousarray(walls[:, ::-1]), PLAIN)
-    other = refine(field, mirrored, [PoseBox.around(other_start, 0.1, 0.03)], DRAWN)
+    other = refine(field, Readings(mirrored), [PoseBox.around(other_start, 0.1, 0.03)], DRAWN)
     x_m, y_m, heading_rad = refined.poses[0].tolist()
     np.testing.assert_allclose(other.poses[0], (WIDTH_M - x_m, y_m, math.pi - heading_rad), atol=1e-5)
     np.testing.assert_allclose(other.covariances[0], refined.covariances[0] * MIRROR, rtol=0.05, atol=1e-9)
@@ -177,12 +182,12 @@ def test_a_mirrored_room_gives_the_mirrored_pose(seed: int) -> None:
 def test_a_room_turned_by_a_quarter_gives_the_pose_turned_by_a_quarter(seed: int) -> None:
     random = np.random.default_rng(seed)
     walls, readings, start = noisy(random)
-    refined = refine(field_of(walls, PLAIN), readings, [PoseBox.around(start, 0.1, 0.03)], DRAWN)
+    refined = refine(field_of(walls, PLAIN), Readings(readings), [PoseBox.around(start, 0.1, 0.03)], DRAWN)
     # Counter-clockwise: x becomes y, and y the distance from the right side.
     turned = np.ascontiguousarray(walls.T[:, ::-1])
     spec = GridSpec(PLAIN.resolution_m, 0.0, 0.0, (turned.shape[0], turned.shape[1]))
     other_start = Pose2(HEIGHT_M - start.y_m, start.x_m, start.heading_rad + math.pi / 2)
-    other = refine(field_of(turned, spec), readings, [PoseBox.around(other_start, 0.1, 0.03)], DRAWN)
+    other = refine(field_of(turned, spec), Readings(readings), [PoseBox.around(other_start, 0.1, 0.03)], DRAWN)
     x_m, y_m, heading_rad = refined.poses[0].tolist()
     np.testing.assert_allclose(other.poses[0], (HEIGHT_M - y_m, x_m, heading_rad + math.pi / 2), atol=1e-5)
 
@@ -192,7 +197,9 @@ def test_outliers_move_the_pose_by_less_than_a_quarter_of_a_cell(share: float) -
     field = field_of(room())
     for seed in range(20):
         readings = sweep_from(field, MIDDLE, outliers=share, seed=seed)
-        refined = refine(field, readings, [PoseBox.around(moved(MIDDLE, 0.04, -0.03, 0.01), 0.1, 0.03)], DRAWN)
+        refined = refine(
+            field, Readings(readings), [PoseBox.around(moved(MIDDLE, 0.04, -0.03, 0.01), 0.1, 0.03)], DRAWN
+        )
         assert error_of(refined, MIDDLE)[0] < 0.0125
 
 
@@ -203,7 +210,7 @@ def test_along_a_corridor_the_pose_stays_in_its_box_and_says_that_it_does_not_kn
     middle = Pose2(10.0, 1.0, 0.0)
     readings = sweep_from(field, middle, sigma_m=0.02)
     readings = readings[readings[:, 1] < 5.0]
-    refined = refine(field, readings, [PoseBox.around(moved(middle, 0.03, 0.02, 0.01), 0.05, 0.02)], DRAWN)
+    refined = refine(field, Readings(readings), [PoseBox.around(moved(middle, 0.03, 0.02, 0.01), 0.05, 0.02)], DRAWN)
     along_m, across_m = np.sqrt(np.diag(refined.covariances[0]))[:2].tolist()
     assert along_m > 1.0
     assert across_m < 0.01
@@ -213,11 +220,11 @@ def test_along_a_corridor_the_pose_stays_in_its_box_and_says_that_it_does_not_kn
 
 def test_without_readings_the_pose_stays_where_it_was_and_nothing_is_known() -> None:
     box = PoseBox.around(MIDDLE, 0.1, 0.1)
-    refined = refine(field_of(room()), np.zeros((0, 5)), [box], DRAWN)
+    refined = refine(field_of(room()), Readings(np.zeros((0, 5))), [box], DRAWN)
     assert refined.pose(0) == MIDDLE
     assert refined.weight[0] == 0.0
     assert np.sqrt(refined.covariances[0, 0, 0]) > 10.0
-    assert refine(field_of(room()), np.zeros((0, 5)), [], DRAWN).poses.shape == (0, 3)
+    assert refine(field_of(room()), Readings(np.zeros((0, 5))), [], DRAWN).poses.shape == (0, 3)
 
 
 def test_a_wall_made_of_readings_is_met_in_the_middle_of_its_cells() -> None:
@@ -228,7 +235,7 @@ def test_a_wall_made_of_readings_is_met_in_the_middle_of_its_cells() -> None:
     # Heads half a cell behind the faces, as those are that made the map.
     deeper[:, 1] += 0.5 * SPEC.resolution_m / np.abs(cos_of_incidence(MIDDLE, readings))
     made = RefinementSettings(walls=Walls.CENTRES, map_error_m=0.0, map_error_rad=0.0)
-    refined = refine(field, deeper, [PoseBox.around(moved(MIDDLE, 0.02, 0.02, 0.01), 0.1, 0.03)], made)
+    refined = refine(field, Readings(deeper), [PoseBox.around(moved(MIDDLE, 0.02, 0.02, 0.01), 0.1, 0.03)], made)
     assert error_of(refined, MIDDLE)[0] < 0.003
 
 

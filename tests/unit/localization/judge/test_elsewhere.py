@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.grid.readings import Readings
 from robotd.localization.judge.elsewhere import elsewhere
 from robotd.localization.judge.error_model import ErrorModel
 
@@ -19,12 +20,12 @@ def along_a_wall(*off_m: float) -> NDArray[np.float64]:
 
 
 def test_a_straight_wall_is_no_surprise() -> None:
-    likely = elsewhere(along_a_wall(*[0.0] * 8), MODEL)
+    likely = elsewhere(Readings(along_a_wall(*[0.0] * 8)), MODEL)
     assert (likely[2:] > 10 * likely[:2].max()).all()
 
 
 def test_what_stands_before_the_wall_is_one_and_the_wall_after_it_too() -> None:
-    likely = elsewhere(along_a_wall(0, 0, 0, 0, -0.8, 0, 0, 0), MODEL)
+    likely = elsewhere(Readings(along_a_wall(0, 0, 0, 0, -0.8, 0, 0, 0)), MODEL)
     assert likely[4] < 0.1 * likely[3]
     assert likely[5] < 0.2 * likely[3]
     assert likely[7] > 10 * likely[5]
@@ -33,25 +34,25 @@ def test_what_stands_before_the_wall_is_one_and_the_wall_after_it_too() -> None:
 def test_a_miss_is_likely_by_its_range_alone() -> None:
     readings = along_a_wall(*[0.0] * 6)
     readings[4, 4] = 1.0
-    assert elsewhere(readings, MODEL)[4] == math.exp(-MODEL.unknown_per_m * readings[4, 1])
+    assert elsewhere(Readings(readings), MODEL)[4] == math.exp(-MODEL.unknown_per_m * readings[4, 1])
 
 
 def test_after_a_miss_another_is_no_surprise() -> None:
     readings = along_a_wall(*[0.0] * 6)
     readings[3:5, 4] = 1.0
-    likely = elsewhere(readings, MODEL)
+    likely = elsewhere(Readings(readings), MODEL)
     assert likely[3] < likely[4]
     assert 0.6 < likely[4] < 1.0
 
 
 def test_one_spot_seen_twice_and_no_readings_at_all_are_no_trouble() -> None:
     twice = np.tile(along_a_wall(0.0), (5, 1))
-    assert np.isfinite(elsewhere(twice, MODEL)).all()
-    assert len(elsewhere(twice[:0], MODEL)) == 0
+    assert np.isfinite(elsewhere(Readings(twice), MODEL)).all()
+    assert len(elsewhere(Readings(twice[:0]), MODEL)) == 0
 
 
 def test_turning_the_robot_changes_nothing() -> None:
     readings = along_a_wall(0.0, 0.1, -0.3, 0.0, 0.02, 0.0)
     turned = readings.copy()
     turned[:, 0] += 2.0
-    assert np.allclose(elsewhere(readings, MODEL), elsewhere(turned, MODEL))
+    assert np.allclose(elsewhere(Readings(readings), MODEL), elsewhere(Readings(turned), MODEL))

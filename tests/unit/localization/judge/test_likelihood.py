@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robotd.core.grid_spec import GridSpec
+from robotd.grid.readings import Readings
 from robotd.grid.window import CellWindow
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
@@ -50,7 +51,7 @@ def test_a_likelihood_that_was_updated_is_as_if_made_anew(
 
 def logs(likelihood: Likelihood, *ranges_m: float, misses: bool = False, bearing_rad: float = 0.0) -> list[float]:
     readings = np.array([[bearing_rad, range_m, 0.0, 0.0, float(misses)] for range_m in ranges_m])
-    values: list[float] = likelihood.logs(likelihood.sight(readings), HERE)[0].tolist()
+    values: list[float] = likelihood.logs(likelihood.sight(Readings(readings)), HERE)[0].tolist()
     return values
 
 
@@ -85,7 +86,7 @@ def test_a_miss_is_likely_where_nothing_stands_and_not_behind_a_wall() -> None:
 def test_where_nobody_has_looked_readings_are_as_anywhere() -> None:
     unknown = Likelihood.of(SPEC, np.full(SPEC.shape, 128, np.uint8), ErrorModel(unmapped_per_m=1e-4))
     readings = np.array([[0.3 * k, 0.5 * k, 0.0, 0.0, float(k % 4 == 0)] for k in range(1, 12)])
-    sight = unknown.sight(readings)
+    sight = unknown.sight(Readings(readings))
     assert np.allclose(unknown.logs(sight, HERE)[0], unknown.elsewhere_logs(sight), atol=0.03)
 
 
@@ -93,7 +94,7 @@ def test_a_beam_starts_where_the_sensor_sits() -> None:
     likelihood = hallway()
     readings = np.array([[0.0, 3.525, 0.5, 0.2, 0.0], [math.pi / 2, 4.025, 0.0, 0.0, 0.0]])
     turned = np.array([[1.0, 0.0, 0.0], [1.0, 0.0, -math.pi / 2]])
-    ahead, left = likelihood.logs(likelihood.sight(readings), turned).T
+    ahead, left = likelihood.logs(likelihood.sight(Readings(readings)), turned).T
     assert ahead[0] > ahead[1] + 3.0
     assert left[1] == pytest.approx(logs(likelihood, 4.025)[0])
 

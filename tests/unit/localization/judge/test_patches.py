@@ -8,13 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from robotd.localization.judge.patches import heads_of, spots_of, thinned, weights
+from robotd.grid.readings import Readings
+from robotd.localization.judge.patches import spots_of, thinned, weights
 
 
-def fan(ranges_m: NDArray[np.float64], step_rad: float) -> NDArray[np.float64]:
+def fan(ranges_m: NDArray[np.float64], step_rad: float) -> Readings:
     count = len(ranges_m)
     zeros = np.zeros(count)
-    return np.column_stack((step_rad * np.arange(count), ranges_m, zeros, zeros, zeros))
+    return Readings(np.column_stack((step_rad * np.arange(count), ranges_m, zeros, zeros, zeros)))
 
 
 def test_one_beam_counts_once_and_so_do_twenty_on_the_same_spot() -> None:
@@ -38,27 +39,27 @@ def test_thinned_readings_are_apart_in_order_and_not_too_many(seed: int, gap_m: 
     readings = fan(rng.uniform(0.3, 8.0, 150), math.tau / 150)[rng.permutation(150)]
     kept = thinned(readings, gap_m, most)
     assert 1 <= len(kept) <= most
-    assert (np.diff(kept[:, 0]) > 0.0).all()
-    assert {tuple(row) for row in kept.tolist()} <= {tuple(row) for row in readings.tolist()}
-    assert (np.hypot(*np.diff(heads_of(kept), axis=0).T) >= gap_m).all()
+    assert (np.diff(kept.bearing_rad) > 0.0).all()
+    assert {tuple(row) for row in kept.rows.tolist()} <= {tuple(row) for row in readings.rows.tolist()}
+    assert (np.hypot(*np.diff(kept.heads_m, axis=0).T) >= gap_m).all()
 
 
 def test_misses_side_by_side_count_as_the_piece_of_wall_they_may_be() -> None:
     readings = fan(np.full(60, 1.0), 0.02)
     whole = weights(readings, 0.2).sum()
-    readings[20:40, 1], readings[20:40, 4] = 8.0, 1.0
+    readings.rows[20:40, 1], readings.rows[20:40, 4] = 8.0, 1.0
     assert weights(readings, 0.2).sum() == pytest.approx(whole)
-    readings[:, 4] = 1.0
-    assert np.array_equal(spots_of(readings), heads_of(readings))
+    readings.rows[:, 4] = 1.0
+    assert np.array_equal(spots_of(readings), readings.heads_m)
 
 
 def test_a_miss_speaks_of_the_hit_nearest_by_bearing() -> None:
     readings = fan(np.array([1.0, 8.0, 8.0, 3.0, 0.5]), 0.1)
-    readings[[1, 2, 4], 4] = 1.0
+    readings.rows[[1, 2, 4], 4] = 1.0
     assert np.allclose(np.hypot(*spots_of(readings).T), [1.0, 1.0, 3.0, 3.0, 0.5])
 
 
 def test_no_reading_is_left_out_without_need() -> None:
     readings = fan(np.full(12, 4.0), math.tau / 12)
-    assert np.array_equal(thinned(readings, 0.3, 12), readings)
+    assert np.array_equal(thinned(readings, 0.3, 12).rows, readings.rows)
     assert len(thinned(readings[:0], 0.3, 12)) == 0

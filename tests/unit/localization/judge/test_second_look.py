@@ -14,7 +14,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.localization.judge.climbing import Hill
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
@@ -85,7 +85,7 @@ def everywhere(likelihood: Likelihood, truth: Pose2, others: tuple[Pose2, ...] =
 
 def look(world: World, readings: list[RangeReading], starts: NDArray[np.float64]) -> SecondLook:
     ranks = np.full(len(starts), 100)
-    return second_look(mapped(world), numbers_of(readings), starts, ranks, SecondLookSettings())
+    return second_look(mapped(world), Readings.of(readings), starts, ranks, SecondLookSettings())
 
 
 def is_at(found: NDArray[np.float64], pose: Pose2, within_m: float = 0.1) -> bool:
@@ -195,7 +195,7 @@ def test_more_noise_makes_less_sure_never_sure_and_wrong(seed: int) -> None:
 
 
 def test_without_poses_or_readings_the_robot_is_lost() -> None:
-    readings = numbers_of(scan(PLAIN.boxes, HERE, np.random.default_rng(1), 0.015, 0.0))
+    readings = Readings.of(scan(PLAIN.boxes, HERE, np.random.default_rng(1), 0.015, 0.0))
     settings, nothing = SecondLookSettings(), np.zeros((0, 3))
     assert second_look(mapped(PLAIN), readings, nothing, np.zeros(0, int), settings).state is PoseState.LOST
     one = second_look(mapped(PLAIN), readings[:0], np.zeros((1, 3)), np.ones(1, int), settings)

@@ -12,6 +12,7 @@ from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.kernels.shared.packed_map import pack, planes_of, tiles_of
 from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.window import CellWindow
 from robotd.localization.count.rank_grid import RankGrid
@@ -58,7 +59,7 @@ def test_updated_sweep_by_sweep_it_is_what_it_is_made_anew(
     assert np.array_equal(packed.tiles, tiles_of(packed.free))
     one, other = (RankGrid(each, [0.3, 2.0]) for each in (the_map, PreparedMap.of(expected, SPEC, RADIUS)))
     for ranks in (one, other):
-        ranks.add(*sweep_of(seeds[0])[0].readings)
+        ranks.add(Readings.of(sweep_of(seeds[0])[0].readings))
     assert np.array_equal(one.rank, other.rank)
 
 

@@ -15,9 +15,11 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.pose_set import PoseSet
+from robotd.grid.readings import Readings
 from robotd.localization.count.rank_grid import RankGrid, even_headings
-from robotd.localization.describe import JudgedRegion, Situation, described
+from robotd.localization.describe import Situation, described
 from robotd.localization.fit.refinement import RefinementSettings
+from robotd.localization.judged_regions import JudgedRegion
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.places.pieces import connected_components, pieces_of
 from robotd.localization.places.shapes import cover_of
@@ -88,14 +90,14 @@ def regions_of(ranks: RankGrid, least_rank: int, most: int = 99) -> tuple[Region
     poses = ranks.cells_of_rank(least_rank)
     found = PoseSet(poses, ranks.rank_at(poses), ranks.best_rank, least_rank)
     pieces = pieces_of(found, ranks.headings_rad, most)
-    situation = Situation(ready_rooms(), ranks.headings_rad, np.empty((0, 5)), RefinementSettings())
+    situation = Situation(ready_rooms(), ranks.headings_rad, Readings.none(), RefinementSettings())
     return described([JudgedRegion(piece) for piece in pieces.best], situation)
 
 
 def test_every_region_is_told_with_its_place_and_extent() -> None:
     ranks = RankGrid(two_rooms(), [0.0])
-    ranks.add(RangeReading(0, 0.0, ReadingStatus.OK, 1.5))
-    ranks.add(RangeReading(0, math.pi / 2, ReadingStatus.OK, 1.0))
+    ranks.add(Readings.of((RangeReading(0, 0.0, ReadingStatus.OK, 1.5),)))
+    ranks.add(Readings.of((RangeReading(0, math.pi / 2, ReadingStatus.OK, 1.0),)))
     left, right = regions_of(ranks, 2)
     assert (left.centre.x_m, left.centre.y_m, left.centre.heading_rad) == pytest.approx((0.75, 1.75, 0.0))
     assert right.centre.x_m == pytest.approx(3.75)
@@ -107,8 +109,8 @@ def test_every_region_is_told_with_its_place_and_extent() -> None:
 
 def test_a_region_within_a_margin_keeps_the_mean_of_its_best_cells() -> None:
     ranks = RankGrid(two_rooms(), [0.0])
-    ranks.add(RangeReading(0, 0.0, ReadingStatus.OK, 1.5))
-    ranks.add(RangeReading(0, math.pi / 2, ReadingStatus.OK, 1.0))
+    ranks.add(Readings.of((RangeReading(0, 0.0, ReadingStatus.OK, 1.5),)))
+    ranks.add(Readings.of((RangeReading(0, math.pi / 2, ReadingStatus.OK, 1.0),)))
     left, _ = regions_of(ranks, 1)
     assert (left.cells, left.best_rank) == (8, 2)
     assert (left.centre.x_m, left.centre.y_m) == pytest.approx((0.75, 1.75))
@@ -121,7 +123,7 @@ def test_nothing_of_that_rank_is_no_region() -> None:
 def test_headings_are_joined_across_north() -> None:
     ranks = RankGrid(two_rooms(), even_headings(36))
     for bearing, range_m in ((0.0, 2.0), (math.pi / 2, 1.5), (math.pi, 1.0), (-math.pi / 2, 1.0)):
-        ranks.add(RangeReading(0, bearing, ReadingStatus.OK, range_m))
+        ranks.add(Readings.of((RangeReading(0, bearing, ReadingStatus.OK, range_m),)))
     regions = regions_of(ranks, 4)
     east = [region for region in regions if math.cos(region.centre.heading_rad) > 0.9]
     assert len(east) == 2  # one in each room
@@ -136,7 +138,7 @@ def test_headings_are_joined_across_north() -> None:
 
 def test_a_region_that_goes_all_round_reaches_a_whole_turn() -> None:
     ranks = RankGrid(two_rooms(), even_headings(12))
-    ranks.add(RangeReading(0, 0.0, ReadingStatus.MISS, 0.3))
+    ranks.add(Readings.of((RangeReading(0, 0.0, ReadingStatus.MISS, 0.3),)))
     for region in regions_of(ranks, 1):
         extent = region.extent
         assert extent.heading_max_rad - extent.heading_min_rad == pytest.approx(math.tau)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
+from robotd.grid.readings import Readings
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.reference.separated_orientation import (
@@ -119,7 +120,7 @@ def test_with_its_four_headings_localization_finds_the_place_by_translation_alon
     result = separated_orientation(sweep, axis_of(binary.occupied), SETTINGS)
     ranks = RankGrid(PreparedMap.of_binary(binary, 3.0), result.headings_rad)
     for reading in sweep:
-        ranks.add(reading)
+        ranks.add(Readings.of((reading,)))
     number, row, col = ranks.best_cells[0].tolist()
     assert math.dist(binary.spec.centre_of(row, col), place_m) < 0.15
     assert off_rad(result.headings_rad[number], heading, math.tau) < math.radians(2.0)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from robotd.contract.estimate import Extent
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
+from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
 from robotd.localization.fit.refinement import PoseBox, RefinementSettings, Walls, expected_ranges
 from robotd.localization.reference.tracking import NotHere, Tracked, TrackingSettings, track
@@ -39,7 +40,9 @@ def sweep_from(field: WallField, pose: Pose2, seed: int) -> NDArray[np.float64]:
     random = np.random.default_rng(seed)
     readings = np.zeros((300, 5))
     readings[:, 0] = math.tau * np.arange(300) / 300
-    exact = expected_ranges(field, readings, np.array([[pose.x_m, pose.y_m, pose.heading_rad]]), 1).ranges_m[0]
+    exact = expected_ranges(field, Readings(readings), np.array([[pose.x_m, pose.y_m, pose.heading_rad]]), 1).ranges_m[
+        0
+    ]
     short = np.where(random.random(300) < 0.05, random.uniform(0.2, 1.0, 300), 1.0)
     readings[:, 1] = np.maximum(exact * short + 0.02 * random.normal(size=300), 0.05)
     readings[:, 4] = readings[:, 1] > 6.0
@@ -57,7 +60,7 @@ def somewhere_near(pose: Pose2, seed: int) -> Pose2:
 def test_within_0_3_m_and_10_degrees_the_robot_is_found_to_the_centimetre(room: int, seed: int) -> None:
     field, truth = furnished(room)
     prior = PoseBox.around(somewhere_near(truth, seed), HALF_M, HALF_RAD)
-    found = track(field, sweep_from(field, truth, seed), prior, USUAL, DRAWN)
+    found = track(field, Readings(sweep_from(field, truth, seed)), prior, USUAL, DRAWN)
     assert isinstance(found, Tracked)
     assert found.pose.distance_m(truth) < 0.012
     assert abs(math.remainder(found.pose.heading_rad - truth.heading_rad, math.tau)) < 0.005
@@ -71,7 +74,7 @@ def test_the_mean_error_is_below_5_mm() -> None:
     for seed in range(60):
         field, truth = furnished(seed)
         prior = PoseBox.around(somewhere_near(truth, seed), HALF_M, HALF_RAD)
-        found = track(field, sweep_from(field, truth, seed), prior, USUAL, DRAWN)
+        found = track(field, Readings(sweep_from(field, truth, seed)), prior, USUAL, DRAWN)
         assert isinstance(found, Tracked)
         errors_m.append(found.pose.distance_m(truth))
     assert np.mean(errors_m) < 0.005
@@ -86,7 +89,7 @@ def test_the_pose_never_leaves_the_prior_box(room: int, seed: int) -> None:
     prior = PoseBox(
         start, Extent(start.x_m - 0.11, start.x_m + 0.3, start.y_m, start.y_m + 0.07, start.heading_rad, 9.0)
     )
-    found = track(field, sweep_from(field, truth, seed), prior, replace(USUAL, here_share=0.001), DRAWN)
+    found = track(field, Readings(sweep_from(field, truth, seed)), prior, replace(USUAL, here_share=0.001), DRAWN)
     if isinstance(found, Tracked):
         assert found.pose.x_m - start.x_m + 1e-9 >= -0.11
         assert found.pose.x_m - start.x_m <= 0.3 + 1e-9
@@ -98,7 +101,9 @@ def test_a_robot_that_is_2_m_aside_is_not_here() -> None:
         field, truth = furnished(seed)
         away_rad = 2.4 * seed
         aside = Pose2(truth.x_m + 2.0 * math.cos(away_rad), truth.y_m + 2.0 * math.sin(away_rad), truth.heading_rad)
-        found = track(field, sweep_from(field, truth, seed), PoseBox.around(aside, HALF_M, HALF_RAD), USUAL, DRAWN)
+        found = track(
+            field, Readings(sweep_from(field, truth, seed)), PoseBox.around(aside, HALF_M, HALF_RAD), USUAL, DRAWN
+        )
         assert isinstance(found, NotHere)
         assert found.explained_share < 0.6
 
@@ -120,9 +125,9 @@ def test_where_the_back_of_a_wall_fits_as_well_the_pose_that_does_not_see_throug
         field, truth = by_a_partition(seed)
         readings = sweep_from(field, truth, seed)
         prior = PoseBox.around(somewhere_near(truth, seed), HALF_M, HALF_RAD)
-        alone = track(field, readings, prior, replace(USUAL, rivals=0), DRAWN)
+        alone = track(field, Readings(readings), prior, replace(USUAL, rivals=0), DRAWN)
         fooled += isinstance(alone, Tracked) and abs(alone.pose.y_m - truth.y_m) > 0.1
-        found = track(field, readings, prior, USUAL, DRAWN)
+        found = track(field, Readings(readings), prior, USUAL, DRAWN)
         assert isinstance(found, Tracked)
         assert abs(found.pose.y_m - truth.y_m) < 0.02
     assert fooled > 0
@@ -131,7 +136,11 @@ def test_where_the_back_of_a_wall_fits_as_well_the_pose_that_does_not_see_throug
 def test_a_box_of_one_pose_has_no_rivals() -> None:
     field, truth = furnished(3)
     found = track(
-        field, sweep_from(field, truth, 3), PoseBox.around(truth, 0.0, 0.0), replace(USUAL, settled_share=1.0), DRAWN
+        field,
+        Readings(sweep_from(field, truth, 3)),
+        PoseBox.around(truth, 0.0, 0.0),
+        replace(USUAL, settled_share=1.0),
+        DRAWN,
     )
     assert isinstance(found, Tracked)
     assert found.pose.distance_m(truth) < 1e-9
@@ -140,7 +149,9 @@ def test_a_box_of_one_pose_has_no_rivals() -> None:
 @pytest.mark.parametrize("beams", [0, 11])
 def test_too_few_readings_find_nobody(beams: int) -> None:
     field, truth = furnished(1)
-    found = track(field, sweep_from(field, truth, 1)[:beams], PoseBox.around(truth, HALF_M, HALF_RAD), USUAL, DRAWN)
+    found = track(
+        field, Readings(sweep_from(field, truth, 1)[:beams]), PoseBox.around(truth, HALF_M, HALF_RAD), USUAL, DRAWN
+    )
     assert found == NotHere(0.0, math.inf)
 
 
@@ -148,7 +159,9 @@ def test_misses_alone_find_nobody() -> None:
     field, truth = furnished(1)
     readings = sweep_from(field, truth, 1)
     readings[:, 4] = 1.0
-    assert track(field, readings, PoseBox.around(truth, HALF_M, HALF_RAD), USUAL, DRAWN) == NotHere(0.0, math.inf)
+    assert track(field, Readings(readings), PoseBox.around(truth, HALF_M, HALF_RAD), USUAL, DRAWN) == NotHere(
+        0.0, math.inf
+    )
 
 
 @pytest.mark.parametrize(

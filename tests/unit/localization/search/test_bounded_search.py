@@ -13,7 +13,7 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.footprints import dilate, disk_footprint
 from robotd.grid.kernels import Kernels
 from robotd.grid.pose_set import PoseSet
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.grid.window import CellWindow
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.reference.feasible_poses import feasible_poses
@@ -129,7 +129,7 @@ def test_the_answer_is_that_of_counting_everything(
         patch.setattr(search, "_FEW_CELLS", 0 if in_blocks else 1 << 30)
         ready = SearchMap.of(obstacles, spec, radius)
         found = best_poses(
-            ready, numbers_of(sweep), np.array(headings_rad), slack=slack, least_rank=least_rank, prior=prior
+            ready, Readings.of(sweep), np.array(headings_rad), slack=slack, least_rank=least_rank, prior=prior
         )
     ranks = counted(obstacles, radius, sweep, headings_rad)
     ranks[:, ~asked_for(prior, spec.shape)] = -1

@@ -19,7 +19,7 @@ from robotd.grid.kernels import Kernels
 from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS, NO_HEAD, Beams, BeamSettings, turned
 from robotd.grid.kernels.shared.packed_map import TILE_ROWS, WORD_CELLS, PackedMap, Words, pack
 from robotd.grid.kernels.twins import TWINS
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from robotd.localization.count.rank_grid import even_headings
 from robotd.localization.reference.probe import probe_of
 from tests.unit.grid.kernels.tables import NATIVE, both, needs_native, using
@@ -126,14 +126,14 @@ def test_beams_are_the_probes_one_by_one(
 ) -> None:
     readings, headings = drawn
     assert listed(
-        kernels.draw.draw_beams(numbers_of(readings), turned(headings), HOW), len(headings)
+        kernels.draw.draw_beams(Readings.of(readings).rows, turned(headings), HOW), len(headings)
     ) == expected_beams(readings, headings)
 
 
 @both
 def test_even_headings_and_bearings_share_one_chain_for_each_direction(kernels: Kernels) -> None:
     readings = [RangeReading(0, math.tau * k / 60, ReadingStatus.OK, 3.0 + k) for k in range(60)]
-    beams = kernels.draw.draw_beams(numbers_of(readings), turned(np.array(even_headings(60))), HOW)
+    beams = kernels.draw.draw_beams(Readings.of(readings).rows, turned(np.array(even_headings(60))), HOW)
     assert len(beams.groups) - 1 == 60
 
 
@@ -143,7 +143,7 @@ def test_directions_that_differ_by_a_hair_share_a_chain_only_as_far_as_it_is_the
     ties = [RangeReading(0, math.atan2(1, 2) + hair, ReadingStatus.OK, 9.0) for hair in (0.0, 1e-12, -1e-12)]
     plain = [RangeReading(0, 0.3 + hair, ReadingStatus.OK, 9.0) for hair in (0.0, 1e-12, -1e-12)]
     for readings, least, most in ((ties, 2, 3), (plain, 1, 1)):
-        beams = kernels.draw.draw_beams(numbers_of(readings), turned(np.zeros(1)), HOW)
+        beams = kernels.draw.draw_beams(Readings.of(readings).rows, turned(np.zeros(1)), HOW)
         assert listed(beams, 1) == expected_beams(readings, np.zeros(1))
         used = len(np.unique(beams.groups)) - 1  # a group that was split up is left without cells
         assert least <= used <= most
@@ -153,7 +153,7 @@ def test_directions_that_differ_by_a_hair_share_a_chain_only_as_far_as_it_is_the
 def test_a_sweep_too_large_for_one_batch_is_taken_in_several(kernels: Kernels) -> None:
     readings = [RangeReading(0, 0.01 * k, ReadingStatus.OK, 0.3 + 0.01 * k) for k in range(1200)]
     headings = np.array([0.0, 0.5, 1.1, 2.2])
-    beams = kernels.draw.draw_beams(numbers_of(readings), turned(headings), HOW)
+    beams = kernels.draw.draw_beams(Readings.of(readings).rows, turned(headings), HOW)
     assert len(beams.batches) > 2
     assert listed(beams, 4) == expected_beams(readings, headings)
 
@@ -223,7 +223,7 @@ def counted(
     counters: Words,
     **how: Any,
 ) -> Words:
-    beams = kernels.draw.draw_beams(numbers_of(readings), turned(headings), HOW)
+    beams = kernels.draw.draw_beams(Readings.of(readings).rows, turned(headings), HOW)
     counters = counters.copy()
     kernels.count.count_feasible(counters, the_map, beams, **how)
     return counters

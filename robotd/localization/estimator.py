@@ -1,0 +1,28 @@
+"""The seam for another estimator: what the mission asks of whatever says where the robot is."""
+
+from typing import Protocol
+
+from robotd.contract.estimate import PoseEstimate
+from robotd.core.reading import RangeReading
+
+
+class Estimator(Protocol):
+    """Says where the robot is, from the readings of one stop; may be asked after any of them.
+
+    It works on one thread at a time. What it says depends on the readings alone, or recordings would not replay.
+    """
+
+    def add(self, *readings: RangeReading) -> None:
+        """Take measured readings, hits or misses.
+
+        Raises:
+            ValueError: a reading measured nothing; then none is taken.
+        """
+
+    def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
+        """Return what the readings so far say.
+
+        Args:
+            time_ns: when the robot was there.
+            final: whether the sweep is whole.
+        """
