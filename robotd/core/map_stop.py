@@ -75,7 +75,7 @@ class MapStop:
         return Sweep(self.number, self.in_odom, tuple(map(_reading, self.readings.tolist())))
 
     def beams(self, *, misses: bool) -> NDArray[np.float64]:
-        """Return the hits, and the misses if they are asked for, as :func:`robotd.grid.readings.numbers_of` does.
+        """Return the hits, and the misses if they are asked for, as :class:`robotd.grid.readings.Readings` has them.
 
         ``float64[n, 5]``: bearing [rad], range [m], x and y of the beam's start [m], and 1 for a miss, 0 for a hit.
         """

@@ -17,6 +17,7 @@ ON_THE_SHELF = {
     "flooded_poses",
     "floods",
     "probe",
+    "rank",
     "separated_orientation",
     "sharpest_direction",
     "smallest_error",

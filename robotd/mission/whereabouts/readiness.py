@@ -18,6 +18,9 @@ class Readiness:
 
     ready: ReadyMap | None = None
     changed: CellWindow = _NOTHING
+    """Since a job was handed over."""
+    handed_over: CellWindow = _NOTHING
+    """What that job takes in; it is not in ``ready`` yet, and never will be if the job's mission is stopped."""
 
     def note(self, changed: CellWindow) -> None:
         """Take note that cells changed."""
@@ -28,16 +31,15 @@ class Readiness:
     ) -> Callable[[], ReadyMap]:
         """Return the job that makes the map ready; hand its result to :meth:`keep`.
 
-        A job uses up the ready map that it begins with. It is therefore handed over with the job, and if nobody comes
-        back with a result, because the mission was stopped, the next job begins with nothing.
+        If nobody comes back with a result, because the mission was stopped, the next job begins where this one did.
         """
-        ready, changed = self.ready, self.changed
-        self.ready, self.changed = None, _NOTHING
+        ready, changed = self.ready, self.handed_over.joined(self.changed)
+        self.handed_over, self.changed = changed, _NOTHING
         return lambda: _made(grid, settings, errors) if ready is None else ready.updated(grid, changed)
 
     def keep(self, ready: ReadyMap) -> None:
         """Take over what a job has made."""
-        self.ready = ready
+        self.ready, self.handed_over = ready, _NOTHING
 
 
 def _made(grid: OccupancyGrid, settings: LocalizationSettings, errors: ErrorModel) -> ReadyMap:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from robotd.core.map_stop import MapStop
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.readings import numbers_of
+from robotd.grid.readings import Readings
 from tests.unit.maps.made_maps import made_readings
 
 sweeps = st.builds(
@@ -31,8 +31,8 @@ def test_a_sweep_comes_back(sweep: Sweep) -> None:
 def test_its_beams_are_those_of_the_sweep(sweep: Sweep) -> None:
     stop = MapStop.of(sweep, IDENTITY)
     hits = [reading for reading in sweep.readings if reading.status is ReadingStatus.OK]
-    assert stop.beams(misses=True).tobytes() == numbers_of(sweep.measured).tobytes()
-    assert stop.beams(misses=False).tobytes() == numbers_of(hits).tobytes()
+    assert stop.beams(misses=True).tobytes() == Readings.of(sweep.measured).rows.tobytes()
+    assert stop.beams(misses=False).tobytes() == Readings.of(hits).rows.tobytes()
     assert stop.beams(misses=True).flags.c_contiguous
 
 

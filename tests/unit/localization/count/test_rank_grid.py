@@ -1,6 +1,5 @@
 """The rank grid: a sum of feasible poses, whatever the order, over free cells only."""
 
-import itertools
 import math
 from random import Random
 
@@ -22,6 +21,7 @@ from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.reference.feasible_poses import feasible_poses
 from robotd.localization.reference.probe import probe_of
+from robotd.localization.reference.rank import rank_of
 
 maps = hnp.arrays(np.bool_, (9, 12), elements=st.sampled_from([False] * 3 + [True]))
 readings = st.builds(
@@ -43,12 +43,10 @@ def test_rank_is_how_many_feasible_pose_sets_hold_a_free_cell(
     occupied: NDArray[np.bool_], sweep: list[RangeReading], headings: list[float]
 ) -> None:
     ranks = RankGrid(map_of(occupied), headings)
-    expected = np.zeros((len(headings), *occupied.shape), np.uint16)
     for reading in sweep:
         ranks.add(Readings.of((reading,)))
-        for number, heading in enumerate(headings):
-            probe = probe_of(reading, heading, resolution_m=0.5, error_radius_cells=1.5, reach_cells=24)
-            expected[number] += feasible_poses(Obstacles.of(occupied, 1.5), probe) & ~occupied
+    obstacles = Obstacles.of(occupied, 1.5)
+    expected = rank_of(obstacles, sweep, headings, resolution_m=0.5, error_radius_cells=1.5)
     assert ranks.readings == len(sweep)
     assert ranks.rank.dtype == np.uint16
     assert np.array_equal(ranks.rank, expected)
@@ -86,10 +84,7 @@ def test_rank_is_the_sum_of_feasible_poses_whatever_the_obstacles_mean(
     rows, cols = obstacles.free.shape
     ranks = RankGrid(PreparedMap.of(obstacles, GridSpec(0.5, -1.0, 2.0, (rows, cols)), 1.5), headings)
     ranks.add(Readings.of(sweep))
-    expected = np.zeros((len(headings), rows, cols), np.intp)
-    for reading, (number, heading) in itertools.product(sweep, enumerate(headings)):
-        probe = probe_of(reading, heading, resolution_m=0.5, error_radius_cells=1.5, reach_cells=2 * max(rows, cols))
-        expected[number] += feasible_poses(obstacles, probe)
+    expected = rank_of(obstacles, sweep, headings, resolution_m=0.5, error_radius_cells=1.5)
     assert np.array_equal(ranks.rank, expected)
     free = np.broadcast_to(obstacles.free, expected.shape)
     for least in (0, 1, max(1, int(expected.max()))):

@@ -16,8 +16,7 @@ from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
 from robotd.grid.window import CellWindow
 from robotd.localization.obstacles.beam_obstacles import Obstacles
-from robotd.localization.reference.feasible_poses import feasible_poses
-from robotd.localization.reference.probe import probe_of
+from robotd.localization.reference.rank import rank_of
 from robotd.localization.search import bounded_search as search
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk
@@ -75,15 +74,8 @@ def counted(
     obstacles: Obstacles, radius: float, sweep: list[RangeReading], headings_rad: list[float]
 ) -> NDArray[np.int64]:
     """Every rank, -1 where nobody stands, ``int64[headings, rows, cols]``."""
-    ranks = np.zeros((len(headings_rad), *obstacles.free.shape), np.int64)
-    for number, heading_rad in enumerate(headings_rad):
-        for reading in sweep:
-            probe = probe_of(
-                reading, heading_rad, resolution_m=RESOLUTION_M, error_radius_cells=radius, reach_cells=400
-            )
-            ranks[number] += feasible_poses(obstacles, probe)
-        ranks[number][~obstacles.free] = -1
-    return ranks
+    rank = rank_of(obstacles, sweep, headings_rad, resolution_m=RESOLUTION_M, error_radius_cells=radius)
+    return np.where(obstacles.free, rank.astype(np.int64), -1)
 
 
 def asked_for(prior: CellDisk | CellWindow | None, shape: tuple[int, int]) -> NDArray[np.bool_]:

@@ -84,10 +84,14 @@ def test_a_map_that_did_not_change_stays_ready(from_nothing: list[int]) -> None:
     assert here.readiness.hand_over(here.grid, SETTINGS, ERRORS)() is ready
 
 
-def test_a_job_whose_result_nobody_took_is_forgotten_with_what_it_used_up(from_nothing: list[int]) -> None:
+def test_where_nobody_took_the_result_of_a_job_the_next_takes_in_what_that_one_did(from_nothing: list[int]) -> None:
     here = place()
+    insert(here, -0.5)
     here.readiness.keep(here.readiness.hand_over(here.grid, SETTINGS, ERRORS)())
     insert(here, 0.4)
-    here.readiness.hand_over(here.grid, SETTINGS, ERRORS)  # the mission was stopped while it ran
-    here.readiness.hand_over(here.grid, SETTINGS, ERRORS)()
-    assert len(from_nothing) == 2
+    here.readiness.hand_over(here.grid, SETTINGS, ERRORS)()  # the mission was stopped while it ran
+    insert(here, 0.9)
+    updated = here.readiness.hand_over(here.grid, SETTINGS, ERRORS)()
+    assert len(from_nothing) == 1
+    for one, other in zip(arrays(updated), arrays(ReadyMap.of(here.grid, SETTINGS, ERRORS)), strict=True):
+        np.testing.assert_array_equal(one, other)
