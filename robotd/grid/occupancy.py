@@ -15,8 +15,11 @@ from robotd.core.map_stop import MapStop
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid import kernels
+from robotd.grid.between import between
 from robotd.grid.readings import Readings
 from robotd.grid.tables import NO_INFORMATION, lower_table, raise_table
+
+_AS_IT_IS = np.arange(256, dtype=np.uint8)
 
 
 class UpdatePolicy(enum.StrEnum):
@@ -35,6 +38,15 @@ class OverRange(enum.StrEnum):
     """The cells up to the cut-off are vacant."""
     DISCARD = "discard"
     """Nothing, as in the paper's own runs."""
+
+
+class BetweenBeams(enum.StrEnum):
+    """What two beams of a stop that lie side by side say of the ground between them."""
+
+    SEEN = "seen"
+    """It is vacant up to where the nearer one ends, where nothing else is known of it (:mod:`robotd.grid.between`)."""
+    UNSEEN = "unseen"
+    """Nothing, as in the paper."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +68,8 @@ class GridSettings:
     cells that the very sweep had hit, by neighbouring beams that graze them; both localized equally well."""
     over_range: OverRange = OverRange.CLEAR
     """What becomes of readings beyond the cut-off."""
+    between_beams: BetweenBeams = BetweenBeams.SEEN
+    """What two beams side by side say of the ground between them."""
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
@@ -97,6 +111,9 @@ class OccupancyGrid:
         )
         self._raise = raise_table(self.settings.raise_alpha)
         self._lower = lower_table(self.settings.lower_alpha)
+        self._presume = np.arange(256, dtype=np.uint8)
+        """What becomes of a cell between two beams: something where nothing was known, else nothing."""
+        self._presume[NO_INFORMATION] = self._lower[NO_INFORMATION]
 
     def insert(self, sweep: Sweep, map_from_robot: Pose2) -> NDArray[np.intp]:
         """Update the cells by the readings of a stop; what lies outside the grid is ignored.
@@ -117,9 +134,13 @@ class OccupancyGrid:
 
     def _insert(self, readings: Readings, map_from_robot: Pose2) -> NDArray[np.intp]:
         tables, at_once = (self._lower, self._raise), self.settings.policy is UpdatePolicy.PER_SWEEP
-        return kernels.in_use().insert.insert_sweep(
-            self.cells, readings.rows, map_from_robot, self.spec, tables, at_once=at_once
-        )
+        insert_sweep = kernels.in_use().insert.insert_sweep
+        changed = insert_sweep(self.cells, readings.rows, map_from_robot, self.spec, tables, at_once=at_once)
+        if self.settings.between_beams is BetweenBeams.UNSEEN:
+            return changed
+        tables, filled = (self._presume, _AS_IT_IS), between(readings, self.spec.resolution_m)
+        presumed = insert_sweep(self.cells, filled.rows, map_from_robot, self.spec, tables, at_once=True)
+        return np.union1d(changed, presumed)
 
     def digest(self) -> str:
         """Return the SHA-256 of placement and cells, in hexadecimal: equal exactly if the maps are."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
-from robotd.grid.occupancy import GridSettings, OccupancyGrid, OverRange, UpdatePolicy
+from robotd.grid.occupancy import BetweenBeams, GridSettings, OccupancyGrid, OverRange, UpdatePolicy
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
 from robotd.localization.count.rank_grid import RankGrid
@@ -38,7 +38,9 @@ class Manner:
 
 
 PAPERS = Manner(
-    "the paper's own runs", GridSettings(policy=UpdatePolicy.PER_READING, over_range=OverRange.DISCARD), False
+    "the paper's own runs",
+    GridSettings(policy=UpdatePolicy.PER_READING, over_range=OverRange.DISCARD, between_beams=BetweenBeams.UNSEEN),
+    False,
 )
 CLEARED = Manner("over-range readings clear the map", GridSettings(), False)
 OURS = Manner("our defaults: they clear the map, and count", GridSettings(), True)

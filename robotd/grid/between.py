@@ -1,0 +1,48 @@
+"""What two beams side by side saw together: the ground between them, up to where the nearer one ended.
+
+Beams of one stop part from each other: at 12 m, two of 300 leave 25 cm between them, five cells. No beam crossed those,
+so a map that counts only what was crossed is full of holes, and every other beam through a hole is taken for blocked:
+a hall was lost in its middle, and a room mapped from two stops lost to its likeness mapped from four. What would stand
+in such a hole and be met by neither beam is narrower than they are apart. So cells that were never seen and lie between
+two beams are taken as seen through. Only those: a table leg that an earlier stop has hit stays.
+"""
+
+import math
+
+import numpy as np
+
+from robotd.grid.readings import Readings
+
+APART_MAX_RAD = math.radians(2.5)
+"""Beams farther apart than this say nothing of what lies between them: a chair fits in at 10 m."""
+MARGIN_CELLS = 2.0
+"""How far before the nearer end the ground is taken as seen: a wall that is hit in spots must not get gaps."""
+_BEAMS_PER_CELL = 2.0
+"""As close together as this, no cell between two beams is missed, however they lie to the axes."""
+
+
+def between(readings: Readings, resolution_m: float) -> Readings:
+    """Return beams that fill the gaps between the beams of one stop, as misses.
+
+    Args:
+        readings: in any order.
+        resolution_m: side of a cell; beams are filled in until two lie in each cell where they end.
+    """
+    one = readings[np.argsort(readings.bearing_rad, kind="stable")].rows
+    other = np.roll(one, -1, axis=0)
+    apart_rad = np.mod(other[:, 0] - one[:, 0], 2 * math.pi)
+    reach_m = np.minimum(one[:, 1], other[:, 1]) - MARGIN_CELLS * resolution_m
+    together = (apart_rad > 0.0) & (apart_rad <= APART_MAX_RAD) & (reach_m > 0.0)
+    one, other, apart_rad, reach_m = one[together], other[together], apart_rad[together], reach_m[together]
+    parts = np.ceil(_BEAMS_PER_CELL * apart_rad * reach_m / resolution_m).astype(int)
+    pair = np.repeat(np.arange(len(one)), np.maximum(parts - 1, 0))
+    if not len(pair):
+        return Readings.none()
+    first = np.concatenate(([0], np.cumsum(np.maximum(parts - 1, 0))[:-1]))
+    share = (np.arange(len(pair)) - first[pair] + 1) / parts[pair]
+    filled = np.empty((len(pair), 5))
+    filled[:, 0] = one[pair, 0] + share * apart_rad[pair]
+    filled[:, 1] = reach_m[pair]
+    filled[:, 2:4] = one[pair, 2:4] + share[:, None] * (other[pair, 2:4] - one[pair, 2:4])
+    filled[:, 4] = 1.0
+    return Readings(filled)
