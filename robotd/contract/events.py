@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from robotd.contract.device_status import DeviceStatus
 from robotd.contract.estimate import PoseEstimate
-from robotd.contract.modes import Mode
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry
 from robotd.core.reading import Sweep
@@ -19,7 +18,8 @@ class Status:
     """The whole robot in one look; published on every change and once a second."""
 
     time_ns: int
-    mode: Mode
+    mode: str
+    """What the robot is allowed to do: one of ``MODE_WORDS``; of a mission, what it does."""
     reason: str
     """Why it is in this mode, for people."""
     devices: tuple[DeviceStatus, ...]

@@ -7,12 +7,12 @@ nothing.
 import asyncio
 import logging
 
+from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import MapError, MissionError
 from robotd.maps.entry import UNSAVED, MapEntry
 from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute
-from robotd.mission.modes import UNDER_WAY
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.map_in_use import MapInUse
 
@@ -38,7 +38,11 @@ class Keeping:
         with self._supervisor.news.events.subscribe() as events:
             async for _ in events:  # whichever: those missed while the disk was busy are no loss
                 place = self._supervisor.whereabouts.map_in_use
-                if place is not None and self._supervisor.mode not in UNDER_WAY and self._tried != _state_of(place):
+                if (
+                    place is not None
+                    and self._supervisor.mode is not Mode.UNDER_WAY
+                    and self._tried != _state_of(place)
+                ):
                     await self.keep()
 
     async def keep(self) -> str | None:
@@ -61,7 +65,7 @@ class Keeping:
         Raises:
             MissionError: it cannot be kept, and nobody gave it up; says what to do.
         """
-        if self._supervisor.mode in UNDER_WAY:
+        if self._supervisor.mode is Mode.UNDER_WAY:
             return  # then no other comes in its place
         why = await self.keep()
         place = self._supervisor.whereabouts.map_in_use

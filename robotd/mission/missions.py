@@ -1,6 +1,6 @@
-"""The kinds of mission, each a row: its name, what it does to the mode, its stops; and how each is carried out."""
+"""The kinds of mission, each a row: its request, what it needs, its stops, and what carries it out."""
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -15,7 +15,6 @@ from robotd.mission.driving import run_driving
 from robotd.mission.localizing import pose_text, run_localizing
 from robotd.mission.looking_again import looking_again
 from robotd.mission.mapping import run_mapping
-from robotd.mission.modes import Occasion
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
@@ -32,42 +31,47 @@ class Host(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class MissionRow:
     """One kind of mission."""
 
-    name: str
-    occasion: Occasion
-    stops: Callable[[Any], int]
-    needs_base: bool = True
-
-
-KINDS: dict[type[Mission], Kind] = {
-    MapStart: Kind("map", Occasion.START_MAPPING, lambda mission: 1 + len(mission.stops_m)),
-    Localize: Kind("localize", Occasion.START_LOCALIZING, lambda _: 1, needs_base=False),
-    DriveTo: Kind("drive", Occasion.START_DRIVING, lambda _: 1),
-}
-
-
-async def carry_out(host: Host, context: MissionContext, mission: Mission, report: Reporter) -> str:
-    """Carry out a mission and return what to tell the client.
+    request: type[Mission]
+    carry_out: Callable[[Host, MissionContext, Any, Reporter], Awaitable[str]]
+    """Carries it out and returns what to tell the client.
 
     Raises:
         MissionError: it cannot be done; the robot stands.
         DeviceError, LinkTimeout, TransportError: a device failed; the robot must be stopped.
     """
-    match mission:
-        case MapStart():
-            place, tie = await _begin_map(context, mission, report)
-            host.adopt(place, tie)
-            return str(await run_mapping(context, place, mission, report))
-        case Localize():
-            place = _place(context)
-            estimate = await looking_again(
-                context, report, lambda: run_localizing(context, place, mission, report, next(context.sweep_numbers))
-            )
-            return describe(estimate)
-        case DriveTo():
-            return await run_driving(context, _place(context), mission, report)
+    stops: Callable[[Any], int] = lambda _: 1
+    needs_base: bool = True
+    pauses_prediction: bool = False
+    """Whether odometry is not asked where the robot is: while it looks for itself, what it finds is the better word."""
+
+
+async def _make_map(host: Host, context: MissionContext, mission: MapStart, report: Reporter) -> str:
+    place, tie = await _begin_map(context, mission, report)
+    host.adopt(place, tie)
+    return str(await run_mapping(context, place, mission, report))
+
+
+async def _localize(_: Host, context: MissionContext, mission: Localize, report: Reporter) -> str:
+    place = _place(context)
+    estimate = await looking_again(
+        context, report, lambda: run_localizing(context, place, mission, report, next(context.sweep_numbers))
+    )
+    return describe(estimate)
+
+
+async def _drive(_: Host, context: MissionContext, mission: DriveTo, report: Reporter) -> str:
+    return await run_driving(context, _place(context), mission, report)
+
+
+_ROWS = (
+    MissionRow(MapStart, _make_map, stops=lambda mission: 1 + len(mission.stops_m)),
+    MissionRow(Localize, _localize, needs_base=False, pauses_prediction=True),
+    MissionRow(DriveTo, _drive),
+)
+MISSION_ROWS = {row.request: row for row in _ROWS}
 
 
 def _place(context: MissionContext) -> MapInUse:

@@ -20,9 +20,7 @@ class Occasion(enum.StrEnum):
     """What can change the mode."""
 
     ARM = "arm"
-    START_MAPPING = "start_mapping"
-    START_LOCALIZING = "start_localizing"
-    START_DRIVING = "start_driving"
+    START = "start"
     FINISH = "finish"
     STOP = "stop"
     DEVICE_LOST = "device_lost"
@@ -30,16 +28,11 @@ class Occasion(enum.StrEnum):
     CLEAR = "clear"
 
 
-UNDER_WAY = (Mode.MAPPING, Mode.LOCALIZING, Mode.DRIVING)
-"""A mission moves the robot."""
-
 TRANSITIONS: dict[tuple[Mode, Occasion], Mode] = {
     (Mode.DISARMED, Occasion.ARM): Mode.IDLE,
     (Mode.IDLE, Occasion.ARM): Mode.IDLE,
-    (Mode.IDLE, Occasion.START_MAPPING): Mode.MAPPING,
-    (Mode.IDLE, Occasion.START_LOCALIZING): Mode.LOCALIZING,
-    (Mode.IDLE, Occasion.START_DRIVING): Mode.DRIVING,
-    **{(mode, Occasion.FINISH): Mode.IDLE for mode in UNDER_WAY},
+    (Mode.IDLE, Occasion.START): Mode.UNDER_WAY,
+    (Mode.UNDER_WAY, Occasion.FINISH): Mode.IDLE,
     **{(mode, Occasion.STOP): Mode.DISARMED for mode in Mode if mode is not Mode.FAULT},
     (Mode.FAULT, Occasion.STOP): Mode.FAULT,
     **{(mode, Occasion.DEVICE_LOST): Mode.DISARMED for mode in Mode if mode is not Mode.FAULT},

@@ -23,8 +23,8 @@ from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import Device
 from robotd.mission.advice import with_advice
 from robotd.mission.context import MissionContext, Reporter
-from robotd.mission.missions import KINDS, carry_out
-from robotd.mission.modes import UNDER_WAY, Occasion, next_mode
+from robotd.mission.missions import MISSION_ROWS, MissionRow
+from robotd.mission.modes import Occasion, next_mode
 from robotd.mission.news import News
 from robotd.mission.results import map_result
 from robotd.mission.safety.battery import low_battery
@@ -76,6 +76,8 @@ class Supervisor:
         self._reason = "started"
         self._mission: asyncio.Task[None] | None = None
         self._mission_id = 0
+        self._row: MissionRow | None = None
+        """Of the mission that is under way, or was last."""
         self._lease: Lease | None = None
         self.halts = 0
         """How often the robot was stopped."""
@@ -97,12 +99,12 @@ class Supervisor:
         readout = self.robot.drive.readouts.latest if self.robot.has_base else None  # what was is not what is
         return Status(
             time_ns=now_ns(),
-            mode=self._mode,
+            mode=self._mode_word,
             reason=self._reason,
             devices=tuple(device.status for device in self.robot.devices),
             battery_v=readout.battery_v if readout else None,
             bumpers_rad=readout.bumpers_rad if readout else (),
-            mission_id=self._mission_id if self._mode in UNDER_WAY else None,
+            mission_id=self._mission_id if self._mode is Mode.UNDER_WAY else None,
             map_id=place.map_id if place else None,
             map_name=place.name if place else None,
             recording=self._recording(),
@@ -216,17 +218,18 @@ class Supervisor:
         Raises:
             MissionError: not armed, or another mission is under way.
         """
-        kind = KINDS[type(mission)]
+        row = MISSION_ROWS[type(mission)]
         if self._mode is Mode.DISARMED:
-            raise MissionError(f"cannot {kind.name}: the robot is disarmed; arm it first")
-        self._require(kind.occasion)
-        if kind.needs_base and self.robot.drive not in self._armed:
-            raise MissionError(f"cannot {kind.name}: the drive is not armed; it can only localize where it stands")
+            raise MissionError(f"cannot {mission.kind}: the robot is disarmed; arm it first")
+        self._require(Occasion.START, f"start {mission.doing}")
+        if row.needs_base and self.robot.drive not in self._armed:
+            raise MissionError(f"cannot {mission.kind}: the drive is not armed; it can only localize where it stands")
         self._mission_id += 1
         mission_id = self._mission_id
-        report = Reporter(mission_id, kind.name, kind.stops(mission), self.news.publish, self._advised)
+        report = Reporter(mission_id, mission.kind, row.stops(mission), self.news.publish, self._advised)
         lease = self._lease = self._make_lease(lease_s, lambda: self.lease_expired(mission_id))
-        self._apply(kind.occasion, f"mission {mission_id}")
+        self._row = row
+        self._apply(Occasion.START, f"mission {mission_id}")
         self._mission = asyncio.create_task(self._run_mission(mission, report), name=f"mission {mission_id}")
         self._mission.add_done_callback(lambda task: self._mission_ended(task, lease, report))
         return mission_id
@@ -273,10 +276,15 @@ class Supervisor:
             self._mission.cancel()
         self._apply(occasion, reason)
 
-    def _require(self, occasion: Occasion) -> None:
+    @property
+    def _mode_word(self) -> str:
+        """The mode as a status says it: of a mission under way, what it does."""
+        return self._row.request.doing if self._row is not None and self._mode is Mode.UNDER_WAY else self._mode
+
+    def _require(self, occasion: Occasion, what: str = "") -> None:
         if next_mode(self._mode, occasion) is None:
             why = f": {self._reason}" if self._mode in {Mode.DISARMED, Mode.FAULT} else ""
-            raise MissionError(f"cannot {occasion.replace('_', ' ')} while {self._mode}{why}")
+            raise MissionError(f"cannot {what or occasion} while {self._mode_word}{why}")
 
     def _apply(self, occasion: Occasion, reason: str) -> None:
         mode = next_mode(self._mode, occasion)
@@ -285,10 +293,10 @@ class Supervisor:
         reason = printable(reason, _LONGEST_REASON)
         if mode is self._mode is Mode.FAULT:
             reason = self._reason  # what comes after a fault does not explain it
-        is_news = (mode, reason) != (self._mode, self._reason)
-        if is_news and (line := self._changes.line(f"{self._mode} -> {mode}: {reason}")):
-            log.info("%s", line)
+        before, was = self._mode_word, (self._mode, self._reason)
         self._mode, self._reason = mode, reason
+        if (mode, reason) != was and (line := self._changes.line(f"{before} -> {self._mode_word}: {reason}")):
+            log.info("%s", line)
         self.publish_status()
 
     def _fail(self, reason: str, occasion: Occasion = Occasion.STOP) -> str:
@@ -306,7 +314,7 @@ class Supervisor:
     async def _run_mission(self, mission: Mission, report: Reporter) -> None:
         try:
             report.at(MissionPhase.STARTED)
-            message = await carry_out(self, self._context, mission, report)
+            message = await MISSION_ROWS[type(mission)].carry_out(self, self._context, mission, report)
         except MissionError as error:
             self._apply(Occasion.FINISH, str(error))
             report.at(MissionPhase.FAILED, message=str(error))
@@ -376,8 +384,8 @@ class Supervisor:
 
     def _moved(self, odometry: Odometry) -> None:
         self.news.publish(odometry)
-        if self._mode is Mode.LOCALIZING:
-            return  # while it looks for itself, what it finds is the better word
+        if self._mode is Mode.UNDER_WAY and self._row is not None and self._row.pauses_prediction:
+            return
         if (estimate := self.whereabouts.moved(odometry)) is not None:
             self.news.publish(estimate)
 

@@ -92,7 +92,7 @@ def twist(it: Living) -> tuple[float, float]:
 
 
 MOMENTS: dict[str, Callable[[Living], bool]] = {
-    "sweeping": lambda it: it.daemon.supervisor.status.mode is Mode.MAPPING and twist(it) == (0.0, 0.0),
+    "sweeping": lambda it: it.daemon.supervisor.status.mode == "mapping" and twist(it) == (0.0, 0.0),
     "turning": lambda it: twist(it)[1] > 0.3,
     "driving": lambda it: twist(it)[0] > 0.2,
 }
@@ -109,7 +109,7 @@ async def test_a_mission_goes_on_after_a_stall(live: Live, tmp_path: Path, momen
             status = it.daemon.control.status
             assert is_held == (moment != "sweeping")
             assert (status.held is not None) == is_held
-            assert status.mode is Mode.MAPPING
+            assert status.mode == "mapping"
             if is_held:
                 assert "the loop stood still 0.4 s; log: robotd.log" in str(status.held)
             await asyncio.sleep(0.7)
@@ -208,7 +208,7 @@ async def test_a_deadman_is_a_hold_if_we_stood_still_and_a_fault_if_not(
         if not stood_still:
             assert (status.mode, status.held) == (Mode.FAULT, None)
             return
-        assert status.mode is Mode.MAPPING
+        assert status.mode == "mapping"
         assert status.held is not None
         assert (await ended(it, mission_id)).phase is MissionPhase.DONE
 

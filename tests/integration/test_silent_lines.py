@@ -126,7 +126,7 @@ async def test_a_moment_without_a_word_ends_nothing(tmp_path: Path, moment: str,
         fall_silent(it)
         await asyncio.sleep(lasts_s)
         assert is_held(it) == (moment != "sweeping" and lasts_s > STOPPED_S)
-        assert it.mode is Mode.MAPPING
+        assert it.mode is Mode.UNDER_WAY
         assert not is_held(it) or not it.daemon.robot.drive.is_driven
         mend(it)
         end = await ended(it)

@@ -11,7 +11,6 @@ from firmware_proto.common import Pong
 from firmware_proto.framing import Deframer, RawFrame, encode_frame
 from robotd.app.replaying import replay_recording
 from robotd.contract.events import Status
-from robotd.contract.modes import Mode
 from robotd.core.clock import NS_PER_S, now_ns, run_virtual
 from robotd.hardware.link.tap import Direction
 from robotd.sim.emulators.catalogue import Dialects
@@ -67,6 +66,6 @@ async def test_a_blocked_base_is_noticed_in_time_though_a_pong_lies_by_an_hour(t
         it.robot._body.cut()
         began_ns = now_ns()
         it.events._items.clear()
-        await it.until(lambda event: isinstance(event, Status) and event.mode is not Mode.DRIVING)
+        await it.until(lambda event: isinstance(event, Status) and event.mode != "driving")
         assert (now_ns() - began_ns) / NS_PER_S < 3.5
         assert "stalled" in it.daemon.control.status.reason

@@ -17,7 +17,6 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.hardware.devices.vendor_device import VendorDevice
-from robotd.mission.modes import UNDER_WAY
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
@@ -159,7 +158,7 @@ class _Watch:
         self._began_ns = now_ns()
         self._advanced_ns = self._began_ns
         self._stopped_ns: int | None = None
-        if it.mode not in {Mode.IDLE, *UNDER_WAY}:
+        if it.mode not in {Mode.IDLE, Mode.UNDER_WAY}:
             self._stopped_ns = it.moved_ns
         self._where = it.robot.truth
         self._patience_s = FROZEN_S
@@ -192,13 +191,13 @@ class _Watch:
         status = it.daemon.control.status
         if "internal error" in status.reason:
             return "internal", status.reason
-        if it.mode in UNDER_WAY or it.mode is Mode.IDLE:
+        if it.mode is Mode.UNDER_WAY or it.mode is Mode.IDLE:
             self._stopped_ns = None
         elif self._stopped_ns is None:
             self._stopped_ns = now_ns()
         if self._stopped_ns is not None and it.moved_ns > self._stopped_ns + REST_S * NS_PER_S:
             return "moved", f"{(it.moved_ns - self._stopped_ns) / NS_PER_S:.2f} s after the stop: {status.reason}"
-        if it.mode in UNDER_WAY and now_ns() - self._advanced_ns > self._patience_s * NS_PER_S:
+        if it.mode is Mode.UNDER_WAY and now_ns() - self._advanced_ns > self._patience_s * NS_PER_S:
             return "froze", f"{it.mode}, nothing came of it for {self._patience_s:g} s"
         return None
 
@@ -220,10 +219,10 @@ class _Watch:
         since_s = self._liar.since_s
         waited_s = (now_ns() - self._began_ns) / NS_PER_S
         if since_s is None:
-            return waited_s > TOLD_WITHIN_S or (self._it.mode not in UNDER_WAY and waited_s > AFTERWARDS_S)
+            return waited_s > TOLD_WITHIN_S or (self._it.mode is not Mode.UNDER_WAY and waited_s > AFTERWARDS_S)
         if self._stopped_ns is not None:
             return (now_ns() - max(self._stopped_ns, self._began_ns)) / NS_PER_S > REST_S + 0.5
-        if self._it.mode in UNDER_WAY:
+        if self._it.mode is Mode.UNDER_WAY:
             return since_s > AFTERWARDS_S and self._advanced_ns > (self._liar.told_ns or 0) + NS_PER_S
         return since_s > AFTERWARDS_S
 

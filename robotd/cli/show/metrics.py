@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.events import Status
-from robotd.contract.modes import Mode
+from robotd.contract.modes import MODE_WORDS
 
 _Sample = tuple[dict[str, str], float]
 
@@ -41,7 +41,7 @@ def _labels(labels: dict[str, str]) -> str:
 
 
 def _modes(status: Status) -> Iterator[_Sample]:
-    return (({"mode": mode.value}, float(mode is status.mode)) for mode in Mode)
+    return (({"mode": word}, float(word == status.mode)) for word in MODE_WORDS)
 
 
 def _each(devices: tuple[DeviceStatus, ...], value: Callable[[DeviceStatus], float]) -> Iterator[_Sample]:

@@ -16,7 +16,7 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import LinkTimeout, RobotdError
 from robotd.core.silence import within
 from robotd.hardware.devices.device import Device
-from robotd.mission.modes import UNDER_WAY, Occasion
+from robotd.mission.modes import Occasion
 from robotd.mission.robot import Robot
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, FellSilent, Hold, Stall
 
@@ -71,7 +71,7 @@ class Holding:
         self.hold.unwell_ns = stall.time_ns
         if not stall.was_stopped:
             return
-        if self._host.mode in UNDER_WAY:
+        if self._host.mode is Mode.UNDER_WAY:
             self._hold_for(stall)
         else:
             self._host.halt(Occasion.STOP, f"{stall}; {_NEXT_STEP}")
@@ -85,7 +85,7 @@ class Holding:
         stall = self._recent()
         if (
             status.link is not LinkState.READY
-            or self._host.mode not in UNDER_WAY
+            or self._host.mode is not Mode.UNDER_WAY
             or status.faults not in {(), _DEADMAN}
         ):
             return False
@@ -150,7 +150,7 @@ class Holding:
             LinkTimeout: it is not waited for: it is not there, was never heard, or fell silent too often.
         """
         robot = self._host.robot
-        if self._host.mode not in UNDER_WAY or not robot.has_base or robot.drive.odometry.latest is None:
+        if self._host.mode is not Mode.UNDER_WAY or not robot.has_base or robot.drive.odometry.latest is None:
             raise error
         if not self._begin(str(error), now_ns()):
             raise LinkTimeout(f"{error}, {_TOO_OFTEN}; {_NEXT_STEP}") from error

@@ -15,7 +15,6 @@ from robotd.cli.show.half_blocks import plain
 from robotd.cli.show.progress import MissionBars
 from robotd.cli.show.terminal import command_line, complain, plain_console, print_pairs, print_table
 from robotd.contract.events import MissionPhase, MissionProgress, Status
-from robotd.contract.modes import Mode
 
 EVIL = "x\x1b[2J\x1b]0;title\x9b31m\u202e\u200b[red]y"
 SHOWN = "x\\x1b[2J\\x1b]0;title\\x9b31m\\u202e\\u200b[red]y"
@@ -53,7 +52,7 @@ def test_progress_shows_foreign_words_as_letters(capsys: pytest.CaptureFixture[s
 def test_progress_shows_that_the_mission_is_held_and_why(capsys: pytest.CaptureFixture[str]) -> None:
     with MissionBars() as bars:
         for held in ("the loop stood still", None):
-            bars.show(Status(1, Mode.MAPPING, "", (), None, (), 1, None, None, None, held))
+            bars.show(Status(1, "mapping", "", (), None, (), 1, None, None, None, held))
     told = capsys.readouterr().err
     assert "held: the loop stood still" in told
     assert "the mission goes on" in told

@@ -13,7 +13,6 @@ from robotd.contract.answers import Done, MissionStarted, RecordingFile, Renewed
 from robotd.contract.envelope import NumberedRequest, decode_request, encode_error, encode_result
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, GetStatus, Hello, RecordStop
 from robotd.contract.topics import LogEntry, Topic, encode_frame, to_wire
 from robotd.core.errors import MissionError, RemoteProtocolError, RequestTimeout, ServerError
@@ -218,7 +217,7 @@ def test_a_status_is_told_when_the_mission_is_held_and_when_it_goes_on() -> None
 
 
 def status(mission_id: int, held: str | None) -> Status:
-    return Status(1, Mode.MAPPING, "", (), None, (), mission_id, None, None, None, held)
+    return Status(1, "mapping", "", (), None, (), mission_id, None, None, None, held)
 
 
 def test_an_end_known_from_a_renewal_waits_for_messages_under_way_then_counts() -> None:

@@ -28,7 +28,7 @@ from robotd.contract.envelope import (
 from robotd.contract.estimate import PoseState
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import Legs, PriorHeading
-from robotd.contract.modes import Mode
+from robotd.contract.modes import MODE_WORDS
 from robotd.contract.plain import from_plain
 from robotd.contract.requests import REQUESTS
 from robotd.contract.topics import EVENTS, Topic, decode_frame, encode_frame, to_wire
@@ -39,7 +39,6 @@ GOLDEN = Path(__file__).parent / "golden"
 WORDS: list[type[StrEnum]] = [
     PoseState,
     MissionPhase,
-    Mode,
     Legs,
     PriorHeading,
     LinkState,
@@ -157,3 +156,7 @@ def _open_places(value: Any, at: str = "") -> Any:
 @pytest.mark.parametrize("kind", WORDS, ids=lambda kind: kind.__name__)
 def test_words_stay(kind: type[StrEnum]) -> None:
     assert [str(word) for word in kind] == json.loads((GOLDEN / "words.json").read_text())[kind.__name__]
+
+
+def test_the_words_of_a_mode_stay() -> None:
+    assert list(MODE_WORDS) == json.loads((GOLDEN / "words.json").read_text())["Mode"]

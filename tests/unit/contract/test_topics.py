@@ -13,7 +13,7 @@ from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.contract.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
 from robotd.contract.map_wire import MapPayload, pack_map, unpack_map
-from robotd.contract.modes import Mode
+from robotd.contract.modes import MODE_WORDS
 from robotd.contract.topics import (
     EVENTS,
     LogEntry,
@@ -82,7 +82,7 @@ events: st.SearchStrategy[Published] = st.one_of(
     st.builds(
         Status,
         time_ns=times,
-        mode=st.sampled_from(Mode),
+        mode=st.sampled_from(MODE_WORDS),
         reason=st.text(max_size=9),
         devices=st.lists(devices, max_size=3).map(tuple),
         battery_v=st.none() | numbers,

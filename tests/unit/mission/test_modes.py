@@ -5,8 +5,6 @@ import itertools
 from robotd.contract.modes import Mode
 from robotd.mission.modes import TRANSITIONS, Occasion, next_mode
 
-MOVING = {Mode.MAPPING, Mode.LOCALIZING, Mode.DRIVING}
-
 
 def test_stop_and_device_loss_are_never_refused_and_always_disarm() -> None:
     for mode, occasion in itertools.product(Mode, (Occasion.STOP, Occasion.DEVICE_LOST)):
@@ -21,9 +19,8 @@ def test_a_fault_is_latched_from_everywhere() -> None:
 
 
 def test_motion_is_only_entered_from_idle() -> None:
-    entries = {(mode, to) for (mode, _), to in TRANSITIONS.items() if to in MOVING and mode is not to}
-    assert {mode for mode, _ in entries} == {Mode.IDLE}
-    assert {to for _, to in entries} == MOVING
+    ways = {(mode, occasion) for (mode, occasion), to in TRANSITIONS.items() if to is Mode.UNDER_WAY}
+    assert ways == {(Mode.IDLE, Occasion.START)}
 
 
 def test_idle_is_only_entered_by_arming_or_by_finishing() -> None:

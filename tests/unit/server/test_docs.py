@@ -23,7 +23,7 @@ from robotd.contract.estimate import Circle, Cover, Extent, PoseState, Region
 from robotd.contract.events import MapChanged, MissionPhase
 from robotd.contract.map_wire import MapPayload
 from robotd.contract.missions import Legs
-from robotd.contract.modes import Mode
+from robotd.contract.modes import MODE_WORDS
 from robotd.contract.request import Request
 from robotd.contract.requests import REQUESTS
 from robotd.contract.topics import EVENTS, Topic
@@ -98,9 +98,13 @@ def test_every_field_of_a_part_stands_there(kind: type[Any]) -> None:
     assert {name for name in names_of(kind) if f"`{name}`" not in TEXT.replace('"', "`")} == set()
 
 
-@pytest.mark.parametrize("kind", [PoseState, MissionPhase, Mode, Legs, LinkState, ReadingStatus])
+@pytest.mark.parametrize("kind", [PoseState, MissionPhase, Legs, LinkState, ReadingStatus])
 def test_every_value_of_an_enumeration_stands_there(kind: type[StrEnum]) -> None:
     assert [value for value in kind if f"`{value}`" not in TEXT] == []
+
+
+def test_every_word_of_a_mode_stands_there() -> None:
+    assert [word for word in MODE_WORDS if f"`{word}`" not in TEXT] == []
 
 
 @pytest.mark.parametrize("client", [Client, AsyncClient])
