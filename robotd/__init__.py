@@ -1,3 +1,3 @@
 """robotd: an onboard daemon that maps a building and says where the robot is, or that it does not know."""
 
-__version__ = "0.1.0"
+__version__ = "0.2.0.dev0"

@@ -5,11 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from robotd import __version__
 from robotd.app.compose import Daemon, compose
 from robotd.config import Config, loads
 from robotd.core.attention import attention
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RecordingError, RobotdError
+from robotd.core.text import printable
 from robotd.hardware.devices.catalogue import request_words
 from robotd.mission.causes import check_cause
 from robotd.mission.noted import check_noted
@@ -31,6 +33,7 @@ from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import Recording, read
 
 _NO_LIMIT = 2**62
+_VERSION_MAX = 40
 DEVICES = ("drive", "pantilt", "rangefinder")
 
 
@@ -48,6 +51,9 @@ class ReplayReport:
     """Whether the recording was ended properly, rather than cut off."""
     duration_s: float
     """How long the recorded robot lived."""
+    recorded_by: str
+    """Version of the daemon that made the recording, as it says itself."""
+    replayed_by: str = __version__
 
 
 def replay_recording(path: Path) -> ReplayReport:
@@ -69,6 +75,7 @@ def replay_recording(path: Path) -> ReplayReport:
         differences=compare(recording, replayed, request_words(config.devices)),
         complete=recording.complete,
         duration_s=(recording.end_ns - recording.header.started_ns) / NS_PER_S,
+        recorded_by=printable(recording.header.robotd_version, _VERSION_MAX),
     )
 
 

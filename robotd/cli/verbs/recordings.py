@@ -91,6 +91,8 @@ def _replay(arguments: argparse.Namespace) -> int:
             out().print(str(difference))
         out().print(_verdict(report))
         out().print(f"digest {report.digest}")
+        if report.differences and report.recorded_by != report.replayed_by:
+            out().print(_of_versions(report), markup=False)
     return FAILED if report.differences else OK
 
 
@@ -99,6 +101,15 @@ def _verdict(report: "ReplayReport") -> str:
     verdict = "the same" if not count else f"{count} difference{'s' * (count > 1)}"
     extent = "" if report.complete else ", up to where the recording is damaged"
     return f"{report.results} results in {report.duration_s:.1f} s of recording: {verdict}{extent}"
+
+
+def _of_versions(report: "ReplayReport") -> str:
+    """Say why a recording of another version may differ although nothing is wrong."""
+    return (
+        f"recorded by robotd {report.recorded_by}, replayed by robotd {report.replayed_by}: between versions"
+        " planned ways, and other algorithms, may change, and then a replay leaves the recording there; the CHANGELOG"
+        f" names such changes. robotd {report.recorded_by} replays it bit for bit"
+    )
 
 
 def _file(parser: argparse.ArgumentParser) -> None:

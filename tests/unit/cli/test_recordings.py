@@ -60,6 +60,8 @@ class Report:
     differences: tuple[Difference, ...] = ()
     complete: bool = True
     duration_s: float = 12.5
+    recorded_by: str = "0.2.0"
+    replayed_by: str = "0.2.0"
 
 
 def test_a_replay_that_gave_the_same_is_exit_code_0(
@@ -76,6 +78,8 @@ def test_a_replay_that_gave_the_same_is_exit_code_0(
         "differences": [],
         "complete": True,
         "duration_s": 12.5,
+        "recorded_by": "0.2.0",
+        "replayed_by": "0.2.0",
         "file": "a.mcap",
         "same": True,
     }
@@ -96,6 +100,18 @@ def test_a_replay_that_differs_shows_where_and_is_exit_code_1(
     assert document["differences"] == [
         {"time_ns": 1_250_000_000, "device": "drive", "expected": "Arm()", "actual": "nothing"}
     ]
+
+
+def test_a_replay_of_another_version_that_differs_names_both(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    difference = Difference(1_250_000_000, "drive", "Arm()", "nothing")
+    for differences, is_told in (((), False), ((difference,), True)):
+        report = Report(differences=differences, recorded_by="0.1.0")
+        monkeypatch.setattr("robotd.app.replay_recording", lambda path, report=report: report)
+        assert main(["replay", "a.mcap"]) == int(is_told)
+        said = " ".join(capsys.readouterr().out.split())
+        assert ("recorded by robotd 0.1.0, replayed by robotd 0.2.0: between versions planned ways" in said) == is_told
 
 
 def test_a_replay_that_cannot_go_on_is_one_line(
