@@ -20,7 +20,7 @@ from robotd.maps.entry import UNSAVED, MapEntry, StoredMap
 from robotd.maps.lock import sole_writer
 from robotd.maps.manifest import check_name
 from robotd.maps.places import check_new_name, directories, leftovers, next_version, temporary_place, versions
-from robotd.maps.version_files import MANIFEST, NewVersion, read_manifest, read_version
+from robotd.maps.version_files import MANIFEST, NewVersion, check_readable, read_manifest, read_version
 
 UNSAVED_KEPT = 3
 """How many such versions of each map are kept; they take no place from the others."""
@@ -56,11 +56,14 @@ class MapStore:
         metadata: dict[str, Any],
         created_unix_ns: int,
         stops: MapStops | None = None,
+        *,
+        in_place_of: tuple[str, int] | None = None,
     ) -> MapEntry:
         """Store a map as a new version, synced to the disk, and drop versions too many.
 
         What is there already as a version marked :data:`UNSAVED` is not written again: it takes on this metadata.
-        ``stops`` is what the grid was made of; see :meth:`NewVersion.of`.
+        ``stops`` is what the grid was made of; see :meth:`NewVersion.of`. Once the map is there, ``in_place_of``, a
+        version marked so that holds no more than this one, goes.
 
         Raises:
             MapError: the name is no name, another writer would not end, or the disk refused; what was there before
@@ -72,7 +75,10 @@ class MapStore:
         with _disk_errors(f"cannot save map {name}"):
             make_directory(self._root)
             with sole_writer(self._root):
-                return self._save(new)
+                entry = self._save(new)
+                if in_place_of is not None and in_place_of != (entry.name, entry.version):
+                    self._drop_unsaved(*in_place_of)
+                return entry
 
     def load(self, name: str, version: int | None = None) -> StoredMap:
         """Return a map, checked byte by byte; the newest version that somebody saved, or else kept, if none is given.
@@ -172,7 +178,9 @@ class MapStore:
             metadata=new.metadata,
             created_unix_ns=new.created_unix_ns,
         )
-        replace_file(self._leftover(kept.name, kept.version), kept.path / MANIFEST, manifest.encode())
+        described = manifest.encode()
+        check_readable(kept.name, described)
+        replace_file(self._leftover(kept.name, kept.version), kept.path / MANIFEST, described)
         self._prune(kept.name)
         return MapEntry.of(manifest, kept.path)
 
@@ -208,10 +216,17 @@ class MapStore:
         unsaved = [entry.version for entry in entries if entry.is_unsaved]
         for version in (*saved[: -self._keep], *unsaved[:-UNSAVED_KEPT]):
             if (name, version) != self._loaded:
-                try:
-                    withdraw_directory(self._root / name / str(version), self._leftover(name, version))
-                except OSError as error:
-                    _log.warning("cannot remove map %s version %d: %s", name, version, error)
+                self._drop(name, version)
+
+    def _drop_unsaved(self, name: str, version: int) -> None:
+        if version in self._versions(name) and self._listed(name, version).is_unsaved:
+            self._drop(name, version)
+
+    def _drop(self, name: str, version: int) -> None:
+        try:
+            withdraw_directory(self._root / name / str(version), self._leftover(name, version))
+        except OSError as error:
+            _log.warning("cannot remove map %s version %d: %s", name, version, error)
 
 
 @contextlib.contextmanager

@@ -83,7 +83,7 @@ class NewVersion:
             *(self.name, version, self.created_unix_ns, self.digest, self.grid.spec, sums, self.metadata, self.stops)
         )
         described = manifest.encode()
-        _check_readable(self.name, described)
+        check_readable(self.name, described)
         return {**files, MANIFEST: described}, manifest
 
 
@@ -153,7 +153,7 @@ def _grid_of(manifest: Manifest, data: bytes, settings: GridSettings | None) -> 
     return grid
 
 
-def _check_readable(name: str, described: bytes) -> None:
+def check_readable(name: str, described: bytes) -> None:
     """Refuse a manifest that no load could read: what was reported saved must be found."""
     if len(described) > _MANIFEST_MAX_BYTES:
         raise MapError(f"cannot save map {name}: its metadata take more than {_MANIFEST_MAX_BYTES} bytes")

@@ -125,10 +125,11 @@ class Control:
         return mission_id
 
     def renew(self, mission_id: int) -> None:
-        """Keep a mission's lease alive; see :meth:`Supervisor.renew`."""
-        renewed_ns = now_ns()
+        """Keep a mission's lease alive; see :meth:`Supervisor.renew`.
+
+        It is not noted: that a lease ran out is, and a client that renews a thousand times a second costs no memory.
+        """
         self._supervisor.renew(mission_id)
-        self._note(Renew(mission_id), renewed_ns)
 
     async def _status(self, _: GetStatus) -> Status:
         return self.status

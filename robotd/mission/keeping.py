@@ -6,6 +6,7 @@ nothing.
 
 import asyncio
 import logging
+from functools import partial
 
 from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns, wall_offset_ns
@@ -16,6 +17,9 @@ from robotd.mission.compute import Compute
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.map_in_use import MapInUse
 
+EVERY_STOPS = 5
+"""A map that grows is kept each time so many sweeps are in it that are in memory alone: more than that, not even a kill
+costs."""
 _LAST_S = 20.0
 """How long the end of the daemon waits for the disk; the service manager must wait longer (``TimeoutStopSec``)."""
 
@@ -23,32 +27,32 @@ log = logging.getLogger(__name__)
 
 
 class Keeping:
-    """Watches the map in use and keeps it whenever no mission is changing it."""
+    """Watches the map in use and keeps it when a mission has changed it, and every few stops while one does."""
 
     def __init__(self, supervisor: Supervisor, store: MapStore, compute: Compute) -> None:
         self._supervisor = supervisor
         self._store = store
         self._compute = compute
-        self._turn = asyncio.Lock()
+        self.turn = asyncio.Lock()
+        """Held while a map goes to the store: what is kept and what is saved must know of each other."""
         self._tried: tuple[str, int] | None = None
         """What was tried last: a disk that refused it is not asked again with every event."""
 
     async def run(self) -> None:
-        """Keep the map at the end of every mission that changed it, until cancelled."""
+        """Keep the map at the end of every mission that changed it, and every few stops, until cancelled."""
         with self._supervisor.news.events.subscribe() as events:
             async for _ in events:  # whichever: those missed while the disk was busy are no loss
                 place = self._supervisor.whereabouts.map_in_use
-                if (
-                    place is not None
-                    and self._supervisor.mode is not Mode.UNDER_WAY
-                    and self._tried != _state_of(place)
-                ):
+                if place is not None and self._is_due(place) and self._tried != _state_of(place):
                     await self.keep()
+
+    def _is_due(self, place: MapInUse) -> bool:
+        return place.at_risk >= (EVERY_STOPS if self._supervisor.mode is Mode.UNDER_WAY else 1)
 
     async def keep(self) -> str | None:
         """Bring what nobody saved of the map in use to the store; return why that cannot be done, None if it was."""
-        async with self._turn:
-            while (place := self._supervisor.whereabouts.map_in_use) is not None and place.is_at_risk:
+        async with self.turn:
+            while (place := self._supervisor.whereabouts.map_in_use) is not None and self._is_due(place):
                 self._tried = _state_of(place)
                 try:
                     entry = await self._kept(place)
@@ -87,7 +91,7 @@ class Keeping:
         generation = place.generation
         metadata = {"generation": generation, "map_id": place.map_id, UNSAVED: True}
         created_ns = now_ns() + wall_offset_ns()
-        save = self._store.save
+        save = partial(self._store.save, in_place_of=place.kept_beside)
         entry = await self._compute.run("keep map", save, place.name, place.grid, metadata, created_ns, place.stops)
         place.kept(generation, entry.version)
         return entry

@@ -6,6 +6,7 @@ None but taking a map into use has an effect on the robot, and that is noted wit
 import logging
 from collections.abc import Awaitable, Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import msgspec
@@ -18,7 +19,7 @@ from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import MapError, MissionError
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.maps.entry import StoredMap
+from robotd.maps.entry import MapEntry, StoredMap
 from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute
 from robotd.mission.keeping import Keeping
@@ -72,18 +73,23 @@ class MapRequests:
             MissionError: it cannot be written; what was there before is untouched.
         """
         place = self._place()
-        generation = place.generation
-        metadata: dict[str, Any] = {"generation": generation, "map_id": place.map_id}
-        created_ns = now_ns() + wall_offset_ns()
-        wanted, save = request.name or place.name, self._store.save
         try:
-            entry = await self._compute.run("save map", save, wanted, place.grid, metadata, created_ns, place.stops)
+            async with self._keeping.turn:
+                entry = await self._saved(place, request.name or place.name)
         except MapError as error:
             raise MissionError(str(error)) from error  # there is a map, but no room for it
-        place.saved(generation)
         log.info("map %s was saved as version %d of %s (%s)", place.name, entry.version, entry.name, entry.digest)
         self._supervisor.publish_status()
         return entry_info(entry)
+
+    async def _saved(self, place: MapInUse, name: str) -> MapEntry:
+        generation = place.generation
+        metadata: dict[str, Any] = {"generation": generation, "map_id": place.map_id}
+        created_ns = now_ns() + wall_offset_ns()
+        save = partial(self._store.save, in_place_of=place.kept_beside)
+        entry = await self._compute.run("save map", save, name, place.grid, metadata, created_ns, place.stops)
+        place.saved(generation)
+        return entry
 
     async def _discard(self, _: MapDiscard) -> Done:
         """Give up what nobody saved of the map in use, which stays in use.

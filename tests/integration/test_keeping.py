@@ -12,12 +12,13 @@ import pytest
 from robotd.app.replaying import replay_recording
 from robotd.config import Config
 from robotd.contract.events import MissionPhase, MissionProgress, Status
-from robotd.contract.missions import Localize, MapStart, with_lease
+from robotd.contract.missions import Legs, Localize, MapStart, with_lease
 from robotd.contract.requests import Arm, ListMaps, MapDiscard, MapLoad, MapSave, RecordStart, RecordStop, Stop
 from robotd.core.clock import run_virtual
-from robotd.core.errors import MissionError
+from robotd.core.errors import MapError, MissionError
 from robotd.maps import atomic
 from robotd.maps.store import MapStore
+from robotd.mission.keeping import EVERY_STOPS
 from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.mission.whereabouts.laying import lay
 from robotd.sim.robot import SimulatedRobot
@@ -126,6 +127,38 @@ async def test_a_map_that_is_loaded_takes_its_stops_along(live: Live) -> None:
         stored = MapStore(control._store.root).load("hall")
         assert stored.entry.stops == 3
         assert (stored.stops, stored.grid.digest()) == (laid.stops, digest_in_use(it))
+
+
+async def test_a_kill_at_any_step_of_mapping_costs_no_more_than_a_few_stops(live: Live) -> None:
+    robot = office()
+    stops_m = tuple((robot.start.x_m + 0.02 * number, robot.start.y_m) for number in range(1, 2 * EVERY_STOPS + 2))
+    async with live(robot, QUICK) as it, keeping(it):
+        root = it.daemon.control._store.root
+        it.daemon.control.start(MapStart.of("office", stops_m, robot.start, Legs.STRAIGHT), LEASE_S)
+        seen = set[int]()
+        async for event in it.events:
+            place = it.daemon.supervisor.whereabouts.map_in_use
+            if place is not None:
+                seen.add(on_disk := _generation_on_disk(root))
+                assert place.generation - on_disk <= EVERY_STOPS
+            if isinstance(event, MissionProgress) and event.is_last:
+                break
+        await asyncio.sleep(1.0)
+        assert seen >= {0, EVERY_STOPS, 2 * EVERY_STOPS}
+        assert [(one.unsaved, one.digest) for one in (await it.daemon.control.perform(ListMaps())).maps] == [
+            (True, digest_in_use(it))
+        ]
+        saved = await it.daemon.control.perform(MapSave("hall"))
+        assert (await it.daemon.control.perform(ListMaps())).maps == (saved,)
+
+
+def _generation_on_disk(root: Path) -> int:
+    """Return how many sweeps are in the map that a daemon would find there that begins now."""
+    try:
+        entry = MapStore(root).load("office").entry
+    except MapError:
+        return 0
+    return int(entry.metadata["generation"])
 
 
 async def test_a_map_of_which_nothing_was_seen_is_not_kept(live: Live) -> None:

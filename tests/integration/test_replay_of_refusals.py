@@ -46,6 +46,27 @@ async def test_ten_thousand_refusals_leave_nothing_in_the_journal(live: Live) ->
         assert [entry for entry in it.journal.remembered if isinstance(entry, CommandEntry)] == before
 
 
+async def test_a_client_that_renews_without_end_leaves_nothing_in_the_journal_and_replays(
+    live: Live, tmp_path: Path
+) -> None:
+    robot = SimulatedRobot(load_world("office"), seed=4)
+    file = tmp_path / "recordings" / "renewed.mcap"
+    async with live(robot) as it:
+        control = it.daemon.control
+        await control.perform(RecordStart(str(file)))
+        mission_id = control.start(MapStart.of("office", (), robot.start), 0.5)
+        for _ in range(20):
+            for _ in range(500):
+                control.renew(mission_id)
+            await asyncio.sleep(0.1)
+        await asyncio.sleep(3.0)  # and then it falls silent
+        assert control.status.mode is Mode.DISARMED
+        assert "its client fell silent" in control.status.reason
+        await control.perform(RecordStop())
+    check(replayed(file))
+    assert [entry.name for entry in read(file).entries if isinstance(entry, CommandEntry)] == ["arm", "start"]
+
+
 async def test_a_session_full_of_refusals_replays(live: Live, tmp_path: Path) -> None:
     robot = SimulatedRobot(load_world("office"), seed=4)
     async with live(robot, armed=False) as it:

@@ -58,18 +58,24 @@ class MapInUse:
         return self.generation > self.settled_generation
 
     @property
-    def is_at_risk(self) -> bool:
-        """Whether it has changes that are in memory alone."""
-        return self.generation > max(self.settled_generation, self.kept_generation)
+    def at_risk(self) -> int:
+        """How many of its changes are in memory alone."""
+        return max(0, self.generation - max(self.settled_generation, self.kept_generation))
+
+    @property
+    def kept_beside(self) -> tuple[str, int] | None:
+        """Name and version as which it is in the store, though unsaved: as it is, or as it was some stops ago."""
+        return None if self.kept_version is None else (self.name, self.kept_version)
 
     @property
     def kept_as(self) -> int | None:
         """The version as which all that nobody saved is kept; None if some is not, or everything was saved."""
-        return self.kept_version if self.is_unsaved and not self.is_at_risk else None
+        return self.kept_version if self.is_unsaved and not self.at_risk else None
 
     def saved(self, generation: int) -> None:
         """Take note that somebody saved it as it was after that change."""
         self.settled_generation = max(self.settled_generation, generation)
+        self.kept_version = None  # what is saved took its place
 
     def given_up(self) -> None:
         """Take note that nobody wants what is not saved of it."""

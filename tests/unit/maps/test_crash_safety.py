@@ -309,3 +309,34 @@ def test_a_fault_while_a_kept_map_is_saved_leaves_it_kept_or_saved(
         if faulty.calls < at:
             break
     assert at > 5, "the faults reached every call"
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_while_a_growing_map_is_kept_again_leaves_the_earlier_or_the_later(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: Any
+) -> None:
+    MapStore(tmp_path / "template").save("lab", grid_of(1), {"unsaved": True}, 1)
+    at = 0
+    while True:
+        at += 1
+        root = tmp_path / f"case-{at}"
+        shutil.copytree(tmp_path / "template", root)
+        faulty = FaultyOs(at, fault, for_ever=False)
+        with monkeypatch.context() as patch:
+            patch.setattr(atomic, "os", faulty)
+            was_kept = _keep_again(root)
+        grid = MapStore(root).load("lab").grid
+        is_later = bool((grid.cells == grid_of(2).cells).all())
+        assert is_later or bool((grid.cells == grid_of(1).cells).all())
+        assert is_later or not was_kept
+        if faulty.calls < at:
+            break
+    assert at > 10, "the faults reached every call"
+
+
+def _keep_again(root: Path) -> bool:
+    try:
+        MapStore(root).save("lab", grid_of(2), {"unsaved": True}, 2, in_place_of=("lab", 1))
+    except (MapError, Killed):
+        return False
+    return True

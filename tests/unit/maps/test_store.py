@@ -3,6 +3,7 @@
 import hashlib
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -245,6 +246,43 @@ def test_saving_what_is_kept_takes_the_mark_away_and_keeping_it_again_writes_not
     grid, entry = stored.grid, stored.entry
     assert (entry, grid.digest()) == (saved, grid_of(1).digest())
     assert sorted(path.name for path in tmp_path.iterdir()) == [".lock", "lab"]
+
+
+def test_saving_under_another_name_takes_the_place_of_what_was_kept(tmp_path: Path) -> None:
+    store = MapStore(tmp_path)
+    before = kept(store, 1)
+    saved = store.save("hall", grid_of(1), {}, 2, in_place_of=(before.name, before.version))
+    assert store.list() == (saved,)
+    assert store.load("hall").grid.digest() == grid_of(1).digest()
+
+
+def test_what_is_kept_of_a_map_that_grows_takes_the_place_of_what_was_kept_before(tmp_path: Path) -> None:
+    store = MapStore(tmp_path)
+    before = kept(store, 1)
+    later = store.save("lab", grid_of(2), {"unsaved": True}, 2, in_place_of=("lab", before.version))
+    assert store.list() == (later,)
+    again = store.save("lab", grid_of(2), {"unsaved": True}, 3, in_place_of=("lab", later.version))
+    assert store.list() == (later,)
+    assert again == later
+
+
+def test_a_version_that_somebody_saved_gives_its_place_to_nothing(tmp_path: Path) -> None:
+    store = store_with(tmp_path, 2)
+    store.save("lab", grid_of(9), {"unsaved": True}, 9, in_place_of=("lab", 1))
+    store.save("hall", grid_of(9), {}, 9, in_place_of=("lab", 77))
+    assert [(entry.name, entry.version) for entry in store.list()] == [("hall", 1), ("lab", 1), ("lab", 2), ("lab", 3)]
+
+
+@pytest.mark.parametrize("metadata", [{"note": "x" * (1 << 20)}, {"counts": {2: "a", 10: "b"}}])
+def test_metadata_that_could_not_be_read_again_leave_what_is_kept_alone(
+    tmp_path: Path, metadata: dict[str, Any]
+) -> None:
+    store = MapStore(tmp_path)
+    before = kept(store, 1)
+    with pytest.raises(MapError, match="cannot save map lab"):
+        store.save("lab", grid_of(1), metadata, 2)
+    assert store.list() == (before,)
+    assert store.load("lab").entry == before
 
 
 def test_what_is_kept_but_damaged_is_saved_anew(tmp_path: Path) -> None:

@@ -60,18 +60,18 @@ def test_a_map_whose_stops_are_not_known_does_not_get_to_know_them() -> None:
 
 def test_what_is_saved_kept_and_given_up_is_known_by_the_change_up_to_which_it_is() -> None:
     here = place()
-    assert (here.is_unsaved, here.is_at_risk, here.kept_as) == (False, False, None)
+    assert (here.is_unsaved, here.at_risk, here.kept_as) == (False, 0, None)
     here.generation = 3
     here.kept(2, 7)
-    assert (here.is_unsaved, here.is_at_risk, here.kept_as) == (True, True, None)
+    assert (here.is_unsaved, here.at_risk, here.kept_as) == (True, 1, None)
     here.kept(3, 8)
-    assert (here.is_unsaved, here.is_at_risk, here.kept_as) == (True, False, 8)
+    assert (here.is_unsaved, here.at_risk, here.kept_as) == (True, 0, 8)
     here.saved(3)
-    assert (here.is_unsaved, here.is_at_risk, here.kept_as) == (False, False, None)
+    assert (here.is_unsaved, here.at_risk, here.kept_as) == (False, 0, None)
     here.saved(1)  # a save that began earlier and ended later makes nothing unsaved
     assert not here.is_unsaved
     here.generation = 4
-    assert here.is_at_risk
+    assert here.at_risk == 1
     here.given_up()
     assert not here.is_unsaved
 
@@ -79,6 +79,6 @@ def test_what_is_saved_kept_and_given_up_is_known_by_the_change_up_to_which_it_i
 def test_a_map_that_nobody_had_saved_is_unsaved_from_the_start_and_not_at_risk() -> None:
     here = place()
     here.found_unsaved(5)
-    assert (here.is_unsaved, here.is_at_risk, here.kept_as) == (True, False, 5)
+    assert (here.is_unsaved, here.at_risk, here.kept_as) == (True, 0, 5)
     here.generation = 1
-    assert (here.is_at_risk, here.kept_as) == (True, None)
+    assert (here.at_risk, here.kept_as) == (True, None)
