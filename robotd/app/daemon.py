@@ -11,11 +11,13 @@ from functools import partial
 from pathlib import Path
 
 from robotd import __version__
+from robotd.app.callbacks import stopping_on_errors
 from robotd.app.compose import Daemon, compose, serial_connectors
 from robotd.app.ending import Ending
 from robotd.app.stall_guard import guarded
 from robotd.app.stalls import Stalls, keep_going
 from robotd.config import Config, default_path, effective_text, load
+from robotd.contract.modes import Mode
 from robotd.contract.requests import RecordStart, RecordStop, Stop
 from robotd.core.clock import now_ns, run_counting, wall_offset_ns
 from robotd.core.errors import ConfigError, RobotdError
@@ -91,8 +93,9 @@ async def run(config: Config) -> int:
         ending = Ending(daemon.robot.stop_now)
         try:
             stalls = Stalls(daemon)
-            async with guarded(stalls.stop_past_loop, stalls.stalled):
-                await _serve(config, daemon, ending)
+            with stopping_on_errors(partial(_halt, daemon)):
+                async with guarded(stalls.stop_past_loop, stalls.stalled):
+                    await _serve(config, daemon, ending)
         except asyncio.CancelledError:
             if not ending.is_hastened:
                 raise
@@ -102,6 +105,12 @@ async def run(config: Config) -> int:
             finally:
                 await daemon.control.perform(RecordStop())
     return ending.exit_code
+
+
+def _halt(daemon: Daemon, reason: str) -> None:
+    daemon.robot.stop_now()
+    if daemon.supervisor.mode not in {Mode.DISARMED, Mode.FAULT}:  # a timer that fails may fail again and again
+        daemon.control.halt(reason)
 
 
 async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:

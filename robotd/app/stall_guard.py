@@ -15,6 +15,7 @@ from collections.abc import AsyncIterator, Callable
 from itertools import count
 from typing import NoReturn
 
+from robotd.app.callbacks import fail
 from robotd.core.attention import attention
 from robotd.hardware.devices.device import PAST_LOOP_S
 
@@ -92,8 +93,11 @@ class _Guard:
             return
         self._has_stopped.clear()
         self._due_s = now_s + _BEAT_EVERY_S
-        self._stalled(max(late_s, 0.0), has_stopped, self._stuck_in or "an unknown place: it was too short to look")
-        self._stuck_in = ""
+        where, self._stuck_in = self._stuck_in or "an unknown place: it was too short to look", ""
+        try:
+            self._stalled(max(late_s, 0.0), has_stopped, where)
+        except Exception as error:  # a mistake of ours must not end the beat, nor the reader who asked
+            fail(error, "a stall could not be told")
 
     def watch(self) -> None:
         """Wait for one beat after the other; stop the robot when one is late."""

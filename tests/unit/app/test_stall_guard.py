@@ -6,6 +6,7 @@ import time
 
 import pytest
 
+from robotd.app.callbacks import stopping_on_errors
 from robotd.app.stall_guard import STALL_S, guarded
 from robotd.core.attention import attention
 from robotd.hardware.transport.line_format import LineFormat
@@ -116,3 +117,25 @@ async def test_a_closed_line_takes_no_stop_from_a_thread() -> None:
     line.close()
     line.write_past_loop(b"stop")
     board.close()
+
+
+@pytest.mark.real_clock
+async def test_a_mistake_in_what_is_told_stops_the_robot_and_ends_neither_the_beat_nor_the_reader() -> None:
+    stalls: list[float] = []
+    halts: list[str] = []
+
+    def stalled(stood_still_s: float, was_stopped: bool, where: str) -> None:
+        stalls.append(stood_still_s)
+        raise ZeroDivisionError("a mistake")
+
+    with stopping_on_errors(halts.append):
+        async with guarded(lambda _: False, stalled):
+            await asyncio.sleep(0)
+            time.sleep(STALL_S)  # noqa: ASYNC251  # a loop that is stuck
+            attention().look()
+            assert len(stalls) == 1
+            time.sleep(2 * STALL_S)  # noqa: ASYNC251  # as above
+            await asyncio.sleep(STALL_S)
+            assert len(stalls) >= 2
+    assert halts[0] == "internal error: ZeroDivisionError('a mistake')"
+    assert len(halts) == len(stalls)
