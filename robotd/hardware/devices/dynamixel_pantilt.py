@@ -49,6 +49,7 @@ class DynamixelPanTilt(VendorDevice[Message]):
         self._watchdog = min(max(1, settings.ttl_max_ms // dynamixel.BUS_WATCHDOG_MS), _WATCHDOG_MAX)
         self.STOP = dynamixel.sync_write(dynamixel.TORQUE_ENABLE, 1, {self._pan: 0, self._tilt: 0})
         self._is_rebooting = False
+        self._is_enabling = False
         self._one_aim = asyncio.Lock()
 
     async def limits(self) -> PanTiltLimits:
@@ -129,10 +130,14 @@ class DynamixelPanTilt(VendorDevice[Message]):
             raise DeviceError(self.name, _HARDWARE, f"servo {servo}, rebooted: {dynamixel.hardware_error(error)}")
 
     async def _enable(self, dialogue: Dialogue[Message]) -> None:
-        for servo in (self._pan, self._tilt):
-            await self._write(dialogue, servo, dynamixel.BUS_WATCHDOG, 0, 1)
-            await self._write(dialogue, servo, dynamixel.BUS_WATCHDOG, self._watchdog, 1)
-            await self._write(dialogue, servo, dynamixel.TORQUE_ENABLE, 1, 1)
+        self._is_enabling = True
+        try:
+            for servo in (self._pan, self._tilt):
+                await self._write(dialogue, servo, dynamixel.BUS_WATCHDOG, 0, 1)
+                await self._write(dialogue, servo, dynamixel.BUS_WATCHDOG, self._watchdog, 1)
+                await self._write(dialogue, servo, dynamixel.TORQUE_ENABLE, 1, 1)
+        finally:
+            self._is_enabling = False
 
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
         """Feed the bus watchdog, and see that the servos are there."""
@@ -140,7 +145,15 @@ class DynamixelPanTilt(VendorDevice[Message]):
             for servo in (self._pan, self._tilt):
                 if not self._is_rebooting:
                     await self._read(dialogue, servo, dynamixel.PRESENT_POSITION, 4)
+                if not self._may_move and not self._is_rebooting:
+                    await self._see_let_go(dialogue, servo)
             await dialogue.until_idle(_IDLE_POLL_S)
+
+    async def _see_let_go(self, dialogue: Dialogue[Message], servo: int) -> None:
+        """Say the stop again to a servo that holds though nobody armed it: nothing acknowledges a stop."""
+        holds, _ = await self._read(dialogue, servo, dynamixel.TORQUE_ENABLE, 1)
+        if holds and not self._may_move and not self._is_enabling:
+            dialogue.post(self.STOP)
 
     async def _come_to_rest(self, dialogue: Dialogue[Message]) -> None:
         """Nothing acknowledges what is told to both servos at once: say it until both let go and rest."""

@@ -20,6 +20,7 @@ from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.vendor_device import VendorDevice, is_a
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
+from robotd.hardware.link.together import together
 from robotd.hardware.wire.ptu import STOP_BYTES, Banner, Done, LimitHit, Message, PtuWire, Refused, command
 
 RESET_S = 40.0
@@ -56,6 +57,7 @@ class PtuPanTilt(VendorDevice[Message]):
         self._is_resetting = False
         self._lost_steps = ""
         """Which axis met its stop, in a sentence, and has not been reset since."""
+        self._was_stopped = asyncio.Event()
         self._one_aim = asyncio.Lock()
 
     async def limits(self) -> PanTiltLimits:
@@ -133,6 +135,9 @@ class PtuPanTilt(VendorDevice[Message]):
         self._axes = axes
 
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
+        await together(self._poll(dialogue), self._halt_again(dialogue))
+
+    async def _poll(self, dialogue: Dialogue[Message]) -> NoReturn:
         """It speaks only when asked, so that it is still there must be asked."""
         while True:
             await dialogue.until_idle(_IDLE_POLL_S)
@@ -140,6 +145,21 @@ class PtuPanTilt(VendorDevice[Message]):
                 await dialogue.ask(
                     command("PP"), is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
                 )
+
+    async def _halt_again(self, dialogue: Dialogue[Message]) -> NoReturn:
+        """Say each stop once more, until it is answered: one may be lost on the wire."""
+        while True:
+            await self._was_stopped.wait()
+            self._was_stopped.clear()
+            if not self._is_resetting and not self._may_move:
+                await dialogue.ask(
+                    STOP_BYTES, is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
+                )
+
+    def stop_now(self) -> None:
+        """Put the halt on the wire; see :meth:`BoughtDevice.stop_now`."""
+        super().stop_now()
+        self._was_stopped.set()
 
     async def _come_to_rest(self, dialogue: Dialogue[Message]) -> None:
         """Halt it until it says so and is twice where it was; while it resets it does not listen."""

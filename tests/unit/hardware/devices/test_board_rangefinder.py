@@ -4,11 +4,14 @@ import asyncio
 
 import pytest
 
-from firmware_proto.common import Kill
+from firmware_proto import rangefinder as proto
+from firmware_proto.common import BoardKind, Kill
 from firmware_proto.rangefinder import ShotStatus
 from robotd.core.clock import now_ns
 from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
+from robotd.hardware.wire.board import BoardWire
+from robotd.sim.faults.of_frames import frames_of
 from robotd.sim.laser import LaserSettings
 from robotd.sim.noise import NOISELESS
 from robotd.sim.plant import ShotAnswer
@@ -58,7 +61,9 @@ async def test_each_status_of_the_instrument_has_its_meaning(code: int, status: 
 async def test_an_unanswered_shot_is_a_timeout_and_a_lost_line_is_an_error() -> None:
     async with rig(sim=SimSettings(noise=NOISELESS, laser=LaserSettings(takes_us=50_000))) as r:
         await r.rangefinder.switch_laser(on=True)
-        r.board("rangefinder").take_output = bytes  # type: ignore[method-assign]  # says nothing any more
+        board = r.board("rangefinder")
+        said = board.take_output
+        board.take_output = lambda: _without_shots(said())  # type: ignore[method-assign]  # answers all but that
         shot = await r.rangefinder.shoot(timeout_s=0.2)
         assert (shot.status, shot.range_m, shot.strength) == (ReadingStatus.TIMEOUT, None, None)
         shooting = asyncio.create_task(r.rangefinder.shoot(timeout_s=0.2))
@@ -66,6 +71,23 @@ async def test_an_unanswered_shot_is_a_timeout_and_a_lost_line_is_an_error() -> 
         r.lines["rangefinder"].close()
         with pytest.raises(TransportError):
             await shooting
+
+
+def _without_shots(said: bytes) -> bytes:
+    wire = BoardWire(BoardKind.RANGEFINDER)
+    return b"".join(
+        frame
+        for frame in frames_of(said)
+        if not any(isinstance(one.message, proto.Shot) for one in wire.feed(b"\0" + frame))
+    )
+
+
+async def test_a_shot_on_a_line_that_says_nothing_is_the_lines_fault() -> None:
+    async with rig() as r:
+        await r.rangefinder.switch_laser(on=True)
+        r.board("rangefinder").take_output = bytes  # type: ignore[method-assign]  # says nothing any more
+        with pytest.raises(TransportError, match="silent for 1 s"):
+            await r.rangefinder.shoot(timeout_s=0.2)
 
 
 async def test_a_refused_shot_is_a_result() -> None:

@@ -14,6 +14,7 @@ from robotd.hardware.devices.dynamixel_pantilt import DynamixelPanTilt
 from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
+from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.dynamixel import Instruction
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.emulators.dynamixel import DynamixelEmulator
@@ -31,6 +32,7 @@ OVERLOADED, OVERHEATED = 0x20, 0x04
 class Servos:
     device: DynamixelPanTilt
     emulator: DynamixelEmulator
+    lines: list[Transport]
 
 
 @contextlib.asynccontextmanager
@@ -44,13 +46,19 @@ async def servos(*, hardware_error: int = 0) -> AsyncIterator[Servos]:
     assert isinstance(emulator, DynamixelEmulator)
     if hardware_error:
         emulator.shut_down(TILT, hardware_error)
+    lines: list[Transport] = []
     async with connectors(robot) as connects:
-        device = DynamixelPanTilt(PanTiltSettings(), Wiring(connects["pantilt"], NoTap(), random.Random(0)))
+
+        async def connect() -> Transport:
+            lines.append(await connects["pantilt"]())
+            return lines[-1]
+
+        device = DynamixelPanTilt(PanTiltSettings(), Wiring(connect, NoTap(), random.Random(0)))
         running = asyncio.create_task(device.run())
         with device.status_changes.subscribe() as changes:
             while device.status.link is not LinkState.READY:
                 await changes.get()
-        yield Servos(device, emulator)
+        yield Servos(device, emulator, lines)
         running.cancel()
         await asyncio.wait({running})
 
@@ -103,3 +111,20 @@ async def test_without_a_shutdown_nothing_is_rebooted() -> None:
         s.device._latch("somebody")
         await s.device.clear_faults()
         assert s.emulator._boots_until_us == {PAN: 0, TILT: 0}
+
+
+async def test_a_stop_that_is_lost_on_the_wire_is_said_again() -> None:
+    async with servos() as s:
+        await s.device.arm()
+        with pytest.MonkeyPatch.context() as lost:
+            lost.setattr(s.lines[-1], "write_urgent", lambda _: None)
+            s.device.stop_now()
+        assert s.emulator._torque == {PAN: 1, TILT: 1}
+        await asyncio.sleep(0.7)
+        assert s.emulator._torque == {PAN: 0, TILT: 0}
+        assert not s.device.status.armed
+        for _ in range(20):  # arming again is no such case, whenever the servos are looked at
+            await s.device.arm()
+            await asyncio.sleep(0.37)
+            assert s.emulator._torque == {PAN: 1, TILT: 1}
+            s.device.stop_now()

@@ -115,6 +115,24 @@ async def test_a_stop_halts_it_and_gives_the_aim_up() -> None:
         assert (await u.device.aim(0.0, 0.0, timeout_s=5.0)).pan_rad == 0.0
 
 
+async def test_a_stop_that_is_lost_on_the_wire_is_said_again() -> None:
+    async with unit() as u:
+        with pytest.MonkeyPatch.context() as lost:
+            lost.setattr(u.lines[-1], "write_urgent", lambda _: None)
+            aiming = asyncio.create_task(u.device.aim(2.5, 0.0, timeout_s=5.0))
+            await asyncio.sleep(0.1)
+            u.device.stop_now()
+        with pytest.raises(DeviceError, match=r"stopped|arm first"):
+            await aiming
+        await asyncio.sleep(0.2)
+        halted = u.emulator._at("P")
+        assert 0 < halted < round(2.5 / STEP_RAD)
+        await asyncio.sleep(3.0)
+        assert u.emulator._at("P") == halted
+        await u.device.arm()
+        assert (await u.device.aim(0.0, 0.0, timeout_s=5.0)).pan_rad == 0.0
+
+
 async def test_a_head_that_met_its_stop_refuses_to_aim_until_it_is_reset() -> None:
     async with unit() as u:
         u.emulator.hit_limit("P")
