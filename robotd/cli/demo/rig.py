@@ -11,6 +11,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from robotd.cli.outputs import DEMO_MARK, write
 from robotd.client import Client
 from robotd.config import Config, effective_text
 from robotd.contract.device_status import LinkState
@@ -19,7 +20,9 @@ from robotd.mission.safety.hold import TOO_BUSY
 from robotd.sim.pace import PATIENCE_S, SLOWED
 
 UNFINISHED = "unfinished"
-"""Name of the map of a demonstration that failed; the next one keeps it."""
+"""Name of the map of a demonstration that failed."""
+FINISHED = b"finished\n"
+"""What its mark says of a demonstration that came to its end; what others left is kept by the next."""
 DEVICES = ("drive", "pantilt", "rangefinder")
 _SILENT = re.compile(r"\b(silent for|no odometry for|no answer to|deadman)\b")
 _START_S = 180.0
@@ -79,6 +82,7 @@ def rig(directory: Path, config: Config, emulator: list[str]) -> Iterator[Rig]:
         except RobotdError as error:
             why = explained(str(error), simulation.poll(), log.read_text(encoding="utf-8", errors="replace"))
             raise RobotdError(f"{why}; {_kept(client, directory)}; log: {log}; {_next_step(why)}") from error
+        write(directory / DEMO_MARK, FINISHED)
 
 
 def explained(reason: str, simulation_ended: int | None, log: str) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from rich.console import Console
 
 from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials, stage
-from robotd.cli.demo.rig import UNFINISHED, Rig, rig, wired
+from robotd.cli.demo.rig import FINISHED, Rig, rig, wired
 from robotd.cli.demo.truth import true_pose
 from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
 from robotd.cli.pictures.plots_extra import require_plots
@@ -85,11 +85,13 @@ def fresh(directory: Path) -> Path:
 
 
 def _keep_unfinished(directory: Path) -> None:
-    if not (directory / "maps" / UNFINISHED).exists():
+    """Keep what one left that did not come to its end, however that was: failed, interrupted, killed."""
+    mark = directory / DEMO_MARK
+    if not any((directory / "maps").glob("*/*/")) or (mark.exists() and mark.read_bytes() == FINISHED):
         return
     kept = next(kept for number in count(1) if not (kept := directory / f"failed-{number}").exists())
     kept.mkdir()
-    for name in ("maps", "robotd.log"):
+    for name in ("maps", "recordings", "robotd.log"):
         with suppress(FileNotFoundError):
             (directory / name).rename(kept / name)
 

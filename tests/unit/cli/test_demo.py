@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from robotd.cli.demo.rig import UNFINISHED, explained
+from robotd.cli.demo.rig import FINISHED, UNFINISHED, explained
 from robotd.cli.demo.room import fresh
+from robotd.cli.outputs import DEMO_MARK
 from robotd.mission.safety.hold import TOO_BUSY
 from robotd.sim.pace import SLOWED
 
@@ -16,23 +17,37 @@ def _left_behind(directory: Path, name: str, text: str) -> None:
     (directory / "robotd.log").write_text(text)
 
 
-def test_the_map_of_each_that_failed_is_kept_with_its_log(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", [UNFINISHED, "laboratory"], ids=["failed", "killed"])
+def test_the_map_of_each_that_did_not_come_to_its_end_is_kept_with_its_log(tmp_path: Path, name: str) -> None:
     directory = fresh(tmp_path)
     for text in ("first", "second"):
-        _left_behind(directory, UNFINISHED, text)
+        _left_behind(directory, name, text)
         assert fresh(directory) == directory
         assert not (directory / "maps").exists()
     for number, text in enumerate(("first", "second"), 1):
         kept = directory / f"failed-{number}"
-        assert (kept / "maps" / UNFINISHED / "1" / "map.pgm").read_text() == text
+        assert (kept / "maps" / name / "1" / "map.pgm").read_text() == text
         assert (kept / "robotd.log").read_text() == text
 
 
 def test_what_a_finished_one_left_goes(tmp_path: Path) -> None:
     directory = fresh(tmp_path)
     _left_behind(directory, "laboratory", "done")
+    (directory / DEMO_MARK).write_bytes(FINISHED)
     fresh(directory)
     assert not (directory / "maps").exists()
+    assert not list(directory.glob("failed-*"))
+    _left_behind(directory, "laboratory", "killed")
+    fresh(directory)
+    assert (directory / "failed-1").exists(), "that one before it had finished says nothing"
+
+
+def test_one_that_made_no_map_leaves_nothing_to_keep(tmp_path: Path) -> None:
+    directory = fresh(tmp_path)
+    (directory / "maps").mkdir()
+    (directory / "maps" / ".lock").touch()
+    (directory / "robotd.log").write_text("it did not begin")
+    fresh(directory)
     assert not list(directory.glob("failed-*"))
 
 
