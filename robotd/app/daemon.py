@@ -110,7 +110,7 @@ async def run(config: Config) -> int:
 def _halt(daemon: Daemon, reason: str) -> None:
     daemon.robot.stop_now()
     if daemon.supervisor.mode not in {Mode.DISARMED, Mode.FAULT}:  # a timer that fails may fail again and again
-        daemon.control.halt(reason)
+        daemon.control.halt(Stop(reason))
 
 
 async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:

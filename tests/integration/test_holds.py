@@ -22,7 +22,7 @@ from robotd.mission.safety.hold import HOLDS_A_MINUTE, Stall
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world
 from tests.integration.conftest import Live
-from tests.integration.living import LEASE_S, Living
+from tests.integration.living import LEASE_S, AtOnce, Living
 
 pytestmark = pytest.mark.slow
 
@@ -236,3 +236,64 @@ async def test_a_drive_goes_on_from_where_the_robot_is(live: Live, tmp_path: Pat
         end = await ended(it, mission_id)
         assert end.phase is MissionPhase.DONE, end
         assert it.robot.truth.distance_m(start) < 0.2
+
+
+async def phase(it: Living, wanted: MissionPhase, stop: int) -> None:
+    async for event in it.events:
+        if isinstance(event, MissionProgress) and (event.phase, event.stop) == (wanted, stop):
+            return
+
+
+async def test_a_stall_while_the_base_settles_ends_nothing(live: Live, tmp_path: Path) -> None:
+    async with going(live, tmp_path) as it:
+        mission_id = begin(it)
+        await phase(it, MissionPhase.SWEEPING, 1)
+        await asyncio.sleep(0.1)  # of the two tenths for which it must stand
+        assert not stall(it)
+        assert it.daemon.control.status.held is None
+        assert (await ended(it, mission_id)).phase is MissionPhase.DONE
+
+
+async def test_a_stall_while_something_is_computed_ends_nothing(
+    live: Live, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    computing = list[str]()
+
+    async def takes_long(self: AtOnce, name: str, function: Callable[..., object], *args: object) -> object:
+        computing.append(name)
+        await asyncio.sleep(0.5)
+        computing.pop()
+        return function(*args)
+
+    monkeypatch.setattr(AtOnce, "run", takes_long)
+    async with going(live, tmp_path) as it:
+        mission_id = begin(it)
+        await phase(it, MissionPhase.COMPUTING, 0)
+        await asyncio.sleep(0.1)
+        assert computing == ["insert"]
+        assert not stall(it)
+        assert it.daemon.control.status.held is None
+        assert (await ended(it, mission_id)).phase is MissionPhase.DONE
+
+
+async def test_a_stall_while_the_robot_is_armed_ends_nothing(live: Live, tmp_path: Path) -> None:
+    async with going(live, tmp_path) as it:
+        await it.daemon.control.perform(Stop("to arm again"))
+        await asyncio.sleep(0.5)
+        arming = asyncio.create_task(it.daemon.control.perform(Arm()))
+        await asyncio.sleep(0)
+        assert not arming.done()
+        assert not stall(it)
+        await arming
+        await asyncio.sleep(0.5)
+        assert it.daemon.supervisor.mode is Mode.IDLE
+
+
+async def test_a_stall_while_devices_are_armed_again_is_borne(live: Live, tmp_path: Path) -> None:
+    async with going(live, tmp_path) as it:
+        mission_id = await held(it)
+        it.daemon.causes.go_on()
+        await asyncio.sleep(0)
+        assert it.daemon.supervisor.holding.hold.is_ending
+        assert not stall(it)
+        assert (await ended(it, mission_id)).phase is MissionPhase.DONE

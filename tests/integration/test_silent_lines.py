@@ -16,9 +16,10 @@ from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import Legs, MapStart
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, RecordStop, Stop
+from robotd.core.clock import now_ns
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.wire.board import BoardWire
-from robotd.mission.safety.hold import HOLDS_A_MINUTE
+from robotd.mission.safety.hold import HOLDS_A_MINUTE, Stall
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.fault import Fault
 from robotd.sim.faults.of_flow import Silence
@@ -190,6 +191,22 @@ async def test_a_device_lost_while_held_ends_the_mission(tmp_path: Path) -> None
         await asyncio.sleep(0.1)
         assert (it.mode, is_held(it)) == (Mode.DISARMED, False)
         assert (await ended(it)).phase is MissionPhase.STOPPED
+
+
+@pytest.mark.parametrize("device", DEVICES)
+async def test_a_device_lost_while_held_for_a_stall_ends_the_mission(tmp_path: Path, device: str) -> None:
+    async with mapping(tmp_path) as it:
+        await until(it, MOMENTS["driving"])
+        it.daemon.causes.stalled(Stall(now_ns(), 0.4, True, "robotd.log"))
+        assert is_held(it)
+        await asyncio.sleep(0.3)
+        it.cables[device].unplug()
+        await asyncio.sleep(0.1)
+        assert (it.mode, is_held(it)) == (Mode.DISARMED, False)
+        await asyncio.sleep(1.0)
+        it.cables[device].plug()
+        await rests_unarmed(it)
+        assert f"{device} is gone" in (await ended(it)).message
 
 
 async def test_a_stop_while_the_base_is_silent_is_the_end(tmp_path: Path) -> None:
