@@ -37,22 +37,20 @@ def test_the_daemon_is_small_before_it_remembers_anything() -> None:
     assert int(pages) * 4096 / 2**20 < LARGEST_MIB
 
 
-def test_a_client_loads_nothing_of_the_engine() -> None:
-    """No grid, maps, hardware, localization, kernels; and it says what importing a client costs (``pytest -s``)."""
+@pytest.mark.parametrize(
+    ("module", "rooms"),
+    [("robotd.client", ROOMS_OF_CLIENTS), ("robotd.server.server", ROOMS_OF_CLIENTS | {"server"})],
+)
+def test_clients_and_the_server_load_nothing_of_the_engine(module: str, rooms: set[str]) -> None:
+    """No grid, maps, hardware, localization, kernels; and it says what the import costs (``pytest -s``)."""
     loaded = tell(
         "import time; begun = time.perf_counter()\n"
-        "import robotd.client, sys; took = time.perf_counter() - begun\n"
+        f"import {module}, sys; took = time.perf_counter() - begun\n"
         "print(took, open('/proc/self/statm').read().split()[1], *sys.modules)"
     )
     took_s, mib, modules = float(loaded[0]), int(loaded[1]) * 4096 / 2**20, set(loaded[2:])
     ours = {name for name in modules if name.startswith("robotd.")}
-    print(f"import robotd.client: {len(ours)} modules of robotd, {1000 * took_s:.0f} ms, {mib:.0f} MiB")
-    assert {name.split(".")[1] for name in ours} == ROOMS_OF_CLIENTS
-    assert {name.split(".")[0] for name in modules} & {
-        "_cffi_backend",
-        "cffi",
-        "serial",
-        "mcap",
-        "firmware_proto",
-    } == set()
+    print(f"import {module}: {len(ours)} modules of robotd, {1000 * took_s:.0f} ms, {mib:.0f} MiB")
+    assert {name.split(".")[1] for name in ours} == rooms
+    assert {name.split(".")[0] for name in modules} & LIBRARIES_OF_THE_ENGINE == set()
     assert mib < LARGEST_CLIENT_MIB
