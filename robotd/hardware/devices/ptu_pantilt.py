@@ -157,7 +157,7 @@ class PtuPanTilt(VendorDevice[Message]):
                 )
 
     def stop_now(self) -> None:
-        """Put the halt on the wire; see :meth:`BoughtDevice.stop_now`."""
+        """Put the halt on the wire; see :meth:`VendorDevice.stop_now`."""
         super().stop_now()
         self._was_stopped.set()
 

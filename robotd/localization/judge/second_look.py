@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from robotd.contract.estimate import PoseState
 from robotd.core.bounds import Within, refuse_outside
 from robotd.grid.readings import Readings
+from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.judge.climbing import Hill, climb
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
@@ -77,6 +78,13 @@ class SecondLookSettings:
     contrast_min: Annotated[float, Within(0.0, 100.0)] = 1.28
     """And so many standard errors must what the readings say for the best place, rather than any other, be above 0: by
     chance the wrong one of two places that are alike in truth reaches that once in ten times."""
+    on_walls_min: Annotated[float, Within(0.0, 1.0, "of 1")] = 0.9
+    """Where fewer of the hits end on walls, the robot may look at ground that nobody has mapped, which resembles some
+    wall of any building; then ``contrast_off_walls_min`` counts."""
+    contrast_off_walls_min: Annotated[float, Within(0.0, 100.0)] = 3.0
+    """The least contrast where many hits end on no wall: by chance it is reached once in 700 times."""
+    on_wall_m: Annotated[float, Within(0.001, 1.0, "m")] = 0.075
+    """A hit is on a wall that is no farther than this, or than a cell and a half."""
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
@@ -135,7 +143,9 @@ def second_look(
     to_beat = float((likelihood.elsewhere_logs(hill.sight) * hill.weights).sum())
     to_beat += math.log(_places(likelihood, settings) * settings.off_map_share / (1.0 - settings.off_map_share))
     contrast = _contrast(hill, found)
-    return _weigh(found, scores - to_beat, float(aside.max()) - to_beat, contrast, settings)
+    on_walls = share_on_walls(likelihood, readings, found[0], settings.on_wall_m)
+    least = settings.contrast_min if on_walls >= settings.on_walls_min else settings.contrast_off_walls_min
+    return _weigh(found, scores - to_beat, float(aside.max()) - to_beat, (contrast, least), settings)
 
 
 def _glance(
@@ -199,17 +209,44 @@ def _contrast(hill: Hill, poses: NDArray[np.float64]) -> float:
     return float(contrasts.min(initial=math.inf))
 
 
+def share_on_walls(likelihood: Likelihood, readings: Readings, pose: NDArray[np.float64], on_wall_m: float) -> float:
+    """Return the share of the hits that end on a wall at a pose ``float64[3]``; 1 without hits. O(readings).
+
+    Of 160 true places in the second halves of four recorded buildings' logs, on maps of the first halves, nine of ten
+    have 0.85 and more; of ten that were believed and wrong, two.
+    """
+    hits = readings[readings.is_hit]
+    if len(hits) == 0:
+        return 1.0
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    heads_m = hits.heads_m @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
+    spec, cells = likelihood.spec, likelihood.chances.cells
+    positions = np.floor(spec.positions_at(heads_m)).astype(np.intp)
+    reach = max(1.5, on_wall_m / spec.resolution_m)
+    sides = np.arange(-math.floor(reach), math.floor(reach) + 1)
+    around = np.array([(row, col) for row in sides for col in sides if math.hypot(row, col) <= reach])
+    beside = positions[:, None, :] + around
+    inside = ((beside >= 0) & (beside < np.array(spec.shape))).all(axis=2)
+    rows, cols = np.where(inside, beside[:, :, 0], 0), np.where(inside, beside[:, :, 1], 0)
+    is_on_wall = (inside & (cells[rows, cols] > NO_INFORMATION)).any(axis=1)
+    return float(is_on_wall.mean())
+
+
 def _weigh(
     poses: NDArray[np.float64],
     evidence: NDArray[np.float64],
     aside: float,
-    contrast: float,
+    contrasts: tuple[float, float],
     settings: SecondLookSettings,
 ) -> SecondLook:
-    """Share the belief among the places, what lies aside of the best, and nowhere, whose evidence is 0."""
+    """Share the belief among the places, what lies aside of the best, and nowhere, whose evidence is 0.
+
+    ``contrasts`` are what the best place has, and the least that it must have.
+    """
+    contrast, least = contrasts
     powers = np.exp(np.append(evidence, (aside, 0.0)) - max(float(evidence[0]), 0.0))
     shares = powers / powers.sum()
-    is_sure = float(shares[0]) >= 1.0 - settings.doubt_max and contrast >= settings.contrast_min
+    is_sure = float(shares[0]) >= 1.0 - settings.doubt_max and contrast >= least
     nowhere = float(shares[-1])
     on_map = PoseState.LOCALIZED if is_sure else PoseState.AMBIGUOUS
     state = PoseState.LOST if nowhere > 0.5 else on_map

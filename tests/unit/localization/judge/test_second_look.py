@@ -1,7 +1,7 @@
 """The second look decides between rivals where something tells them apart, and says so where nothing does."""
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from typing import Any, cast
 
@@ -15,10 +15,11 @@ from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.grid.readings import Readings
+from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.judge.climbing import Hill
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
-from robotd.localization.judge.second_look import SecondLook, SecondLookSettings, _contrast, second_look
+from robotd.localization.judge.second_look import SecondLook, SecondLookSettings, _contrast, second_look, share_on_walls
 from robotd.localization.judge.shortlist import near
 from robotd.sim.walls import Walls, ray_cast
 
@@ -273,3 +274,48 @@ def test_ranges_of_kilometres_are_weighed_like_others() -> None:
     far = [RangeReading(0, 0.1 * k, ReadingStatus.OK, 10_000.0) for k in range(30)]
     result = look(PLAIN, far, everywhere(mapped(PLAIN), HERE))
     assert result.state is PoseState.LOST
+
+
+def brute_share_on_walls(the_map: Likelihood, readings: Readings, pose: Pose2, on_wall_m: float) -> float:
+    """Ask every wall cell, for every hit."""
+    walls = np.argwhere(the_map.chances.cells > NO_INFORMATION)
+    spec, found = the_map.spec, []
+    for bearing_rad, range_m, is_hit in zip(readings.bearing_rad, readings.range_m, readings.is_hit, strict=True):
+        if is_hit:
+            angle_rad = pose.heading_rad + bearing_rad
+            head = spec.cell_at(pose.x_m + range_m * math.cos(angle_rad), pose.y_m + range_m * math.sin(angle_rad))
+            distance = np.hypot(*(walls - np.array(head)).T)
+            found.append(bool((distance <= max(1.5, on_wall_m / spec.resolution_m)).any()))
+    return float(np.mean(found)) if found else 1.0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_share_of_hits_on_walls_is_what_every_wall_cell_says(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    the_map = mapped(FURNISHED)
+    readings = Readings.of(scan(FURNISHED.boxes, HERE, rng, 0.05, 0.2))
+    for pose in (HERE, moved(HERE, 0.4), turned_about(HERE), Pose2(-30.0, 0.0, 1.0)):
+        array = np.array([pose.x_m, pose.y_m, pose.heading_rad])
+        for on_wall_m in (0.01, 0.075, 0.2):
+            expected = brute_share_on_walls(the_map, readings, pose, on_wall_m)
+            assert share_on_walls(the_map, readings, array, on_wall_m) == pytest.approx(expected)
+
+
+def test_where_hits_end_on_no_wall_a_rival_must_be_beaten_by_more() -> None:
+    """A third of the room was changed since it was mapped: the answer stays, and sure it is by what is set."""
+    readings = scan(FURNISHED.boxes, HERE, np.random.default_rng(3), 0.015, 0.0)
+    changed = [
+        replace(one, range_m=0.7 * (one.range_m or 1.0)) if k % 3 == 0 else one for k, one in enumerate(readings)
+    ]
+    starts = everywhere(mapped(FURNISHED), HERE, (turned_about(HERE),))
+    states = {
+        least: second_look(
+            mapped(FURNISHED),
+            Readings.of(changed),
+            starts,
+            np.ones(len(starts), np.int64),
+            SecondLookSettings(contrast_off_walls_min=least),
+        ).state
+        for least in (0.0, 100.0)
+    }
+    assert states == {0.0: PoseState.LOCALIZED, 100.0: PoseState.AMBIGUOUS}
