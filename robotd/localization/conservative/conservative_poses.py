@@ -45,8 +45,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.grid.drawn import Drawn
 from robotd.grid.fans import SLACK_CELLS, direction_keys, draw_fans, start_keys
 from robotd.grid.footprints import dilate
+from robotd.grid.kernels.draw.draw_kernel import turned
+from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.translation import translated
 
@@ -110,30 +113,24 @@ def conservative_poses(
     Raises:
         ValueError: the reading measured nothing.
     """
-    if reading.range_m is None:
-        raise ValueError(f"a {reading.status} reading has no range")
-    sin, cos = math.sin(heading_rad), math.cos(heading_rad)
-    x, y = reading.origin_x_m / resolution_m, reading.origin_y_m / resolution_m
-    start = np.array([sin * x + cos * y, cos * x - sin * y])
-    bearing = heading_rad + reading.bearing_rad
-    range_cells, error_cells = reading.range_m / resolution_m, bounds.range_error_m / resolution_m
-    possible = obstacles.standing & _passable(obstacles, bearing, start, range_cells - error_cells, bounds)
+    drawn = Drawn.of(Readings.of((reading,)), turned(np.array([heading_rad])), resolution_m)
+    error_cells = bounds.range_error_m / resolution_m
+    possible = obstacles.standing & _passable(obstacles, drawn, error_cells, bounds)
     if reading.status is ReadingStatus.MISS:
         return possible
-    head = start + range_cells * np.array([math.sin(bearing), math.cos(bearing)])
+    head = drawn.starts[0] + drawn.range_cells[0] * drawn.ahead[0]
     steps = head_radius_steps(np.hypot(*head), error_cells, bounds.heading_error_rad)
-    row, col = np.floor(head + 0.5).astype(int).tolist()
+    row, col = drawn.head_cells[0].tolist()
     return possible & translated(grown_ending(obstacles, int(steps)), row, col, outside=True)
 
 
-def _passable(
-    obstacles: SureObstacles, bearing_rad: float, start: NDArray[np.float64], length_cells: float, bounds: ErrorBounds
-) -> NDArray[np.bool_]:
+def _passable(obstacles: SureObstacles, drawn: Drawn, error_cells: float, bounds: ErrorBounds) -> NDArray[np.bool_]:
     """Return from where a path of cells that may be free leads through the windows of the fan."""
     reach = sum(obstacles.blocking.shape)
-    fans = draw_fans(direction_keys(np.array([bearing_rad])), start_keys(start[None]), bounds.heading_error_rad, reach)
+    directions, starts = direction_keys(drawn.bearings_rad), start_keys(drawn.starts)
+    fans = draw_fans(directions, starts, bounds.heading_error_rad, reach)
     axis, forward, first, least, greatest, _, at_home = fans.lines[0].tolist()
-    count = int(fans.lines_crossed(np.zeros(1, np.intp), np.array([length_cells]))[0])
+    count = int(fans.lines_crossed(np.zeros(1, np.intp), drawn.range_cells - error_cells)[0])
 
     def open_at(along: int, aside: int) -> NDArray[np.bool_]:
         row, col = (along, aside) if axis == 0 else (aside, along)

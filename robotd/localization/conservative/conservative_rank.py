@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
 from robotd.grid import kernels
+from robotd.grid.drawn import Drawn
 from robotd.grid.fans import STARTS_MAX, FanBeams, direction_keys, draw_fans, start_keys
-from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS
 from robotd.grid.kernels.shared.packed_map import Words, pack
 from robotd.grid.readings import Readings
 from robotd.localization.conservative.conservative_poses import (
@@ -79,21 +79,19 @@ class ConservativeRankGrid(RankGrid):
         self._sure = the_map
 
     def _count_with_room(self, readings: Readings, *, subtract: bool) -> None:
-        drawn = _DrawnReadings.of(readings, self._headings, self._sure)
-        for beams in drawn.fan_beams():
+        fanned = _FannedReadings.of(readings, self._headings, self._sure)
+        for beams in fanned.fan_beams():
             threads = self._threads_for(len(beams.beams))
             kernels.in_use().fans.count_fans(
-                self._counters, self._map, drawn.grown, beams, subtract=subtract, threads=threads
+                self._counters, self._map, fanned.grown, beams, subtract=subtract, threads=threads
             )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _DrawnReadings:
+class _FannedReadings:
     """All readings at all headings, reading after reading."""
 
-    bearings_rad: NDArray[np.float64]
-    starts: NDArray[np.float64]
-    """``float64[n, 2]``, ``(row, col)``."""
+    drawn: Drawn
     lengths: NDArray[np.float64]
     """Way that was surely free, in cells."""
     beams: NDArray[np.int32]
@@ -103,26 +101,22 @@ class _DrawnReadings:
     line_count: int
 
     @classmethod
-    def of(cls, readings: Readings, headings: NDArray[np.float64], the_map: ConservativeMap) -> "_DrawnReadings":
+    def of(cls, readings: Readings, headings: NDArray[np.float64], the_map: ConservativeMap) -> "_FannedReadings":
         resolution_m, bounds = the_map.spec.resolution_m, the_map.bounds
         bearing, range_cells, x, y, is_miss = (readings.rows / [1.0, *[resolution_m] * 3, 1.0]).T[:, :, None]
         error_cells = bounds.range_error_m / resolution_m
         away = np.hypot(x + range_cells * np.cos(bearing), y + range_cells * np.sin(bearing))
         steps = np.where(is_miss > 0.0, 0, head_radius_steps(away, error_cells, bounds.heading_error_rad))
         radii, radius = np.unique(steps, return_inverse=True)
-        (headings_rad, sin, cos), one = headings, np.ones(headings.shape[1])
-        bearings_rad = (bearing + headings_rad).ravel()
-        starts = np.stack(((sin * x + cos * y).ravel(), (cos * x - sin * y).ravel()), axis=1)
-        ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)
-        ranges = (range_cells * one).ravel()
-        heads = np.floor(np.clip(starts + ranges[:, None] * ahead, -FAR_CELLS, FAR_CELLS) + 0.5)
-        which = np.where(is_miss > 0.0, -1, radius.reshape(-1, 1)) * one
-        heading = np.arange(len(headings_rad)) * np.ones_like(bearing)
+        drawn, count = Drawn.of(readings, headings, resolution_m), headings.shape[1]
+        heads = drawn.head_cells
+        which = np.where(is_miss > 0.0, -1, radius.reshape(-1, 1)) * np.ones(count)
+        heading = np.arange(count) * np.ones_like(bearing)
         beams = np.column_stack((np.zeros(len(heads)), heading.ravel(), which.ravel(), heads)).astype(np.int32)
-        lengths = ranges - error_cells
+        lengths = drawn.range_cells - error_cells
         line_count = int(min(sum(the_map.spec.shape), max(1.0, np.ceil(lengths.max()) + 1.0)))
         grown = [the_map.grown(int(number)) for number in radii]
-        return cls(bearings_rad, starts, lengths, beams, grown, bounds.heading_error_rad, line_count)
+        return cls(drawn, lengths, beams, grown, bounds.heading_error_rad, line_count)
 
     def fan_beams(self) -> Iterator[FanBeams]:
         """Yield them by fans, block by block."""
@@ -138,7 +132,7 @@ class _DrawnReadings:
 
     def _shared(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.intp]]:
         """Return the directions and starts of the fans, and which fan each beam belongs to."""
-        directions, starts = direction_keys(self.bearings_rad), start_keys(self.starts)
+        directions, starts = direction_keys(self.drawn.bearings_rad), start_keys(self.drawn.starts)
         _, direction = np.unique(directions, return_inverse=True)
         codes, start = np.unique(starts[:, 0] * (4 * STARTS_MAX) + starts[:, 1], return_inverse=True)
         _, one, fan = np.unique(direction * len(codes) + start, return_index=True, return_inverse=True)

@@ -1,19 +1,19 @@
 """Readings drawn at one heading with no error, and what error would shorten their bodies to every cell of them.
 
-The cells are those of :mod:`robotd.localization.reference.probe`, for all readings at a time.
+The cells are those of :mod:`robotd.grid.drawn`.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
-from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS, NO_HEAD
+from robotd.grid.drawn import Drawn
+from robotd.grid.kernels.draw.draw_kernel import NO_HEAD, turned
 from robotd.grid.kernels.error_radius.error_radius_kernel import Bodies
 from robotd.grid.ray import ray_steps
 from robotd.grid.readings import Readings
 from robotd.localization.reference.error_map import NEVER
 
-_CENTRE = 0.5
 RANGE_CELLS_MAX = 32_000
 """Errors of longer readings do not fit into sixteen bits with room to spare."""
 
@@ -29,21 +29,15 @@ def draw_bodies(readings: Readings, heading_rad: float, spec: GridSpec) -> Bodie
     Raises:
         ValueError: a reading is longer than 32 000 cells.
     """
-    x_m, y_m = readings.start_x_m, readings.start_y_m
-    sin, cos = np.sin(heading_rad), np.cos(heading_rad)
-    starts = np.stack((sin * x_m + cos * y_m, cos * x_m - sin * y_m), axis=1) / spec.resolution_m
-    bearings_rad, range_cells = heading_rad + readings.bearing_rad, readings.range_m / spec.resolution_m
-    if range_cells.max(initial=0.0) > RANGE_CELLS_MAX:
-        raise ValueError(f"a reading is {range_cells.max():.0f} cells long; at most {RANGE_CELLS_MAX}")
-    errors, counts = errors_by_samples(bearings_rad, range_cells, reach_cells(spec))
-    ends = np.cumsum(counts)
-    k = np.arange(len(errors)) - np.repeat(ends - counts, counts)
-    offsets = np.floor(_CENTRE + k[:, None] * np.repeat(ray_steps(bearings_rad), counts, axis=0))
-    ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)
-    heads = _nearest(starts + range_cells[:, None] * ahead)
-    heads[readings.is_miss] = NO_HEAD
+    drawn = Drawn.of(readings, turned(np.array([heading_rad])), spec.resolution_m)
+    if drawn.range_cells.max(initial=0.0) > RANGE_CELLS_MAX:
+        raise ValueError(f"a reading is {drawn.range_cells.max():.0f} cells long; at most {RANGE_CELLS_MAX}")
+    errors, counts = errors_by_samples(drawn.bearings_rad, drawn.range_cells, reach_cells(spec))
+    cells, _ = drawn.bodies(counts)
+    ends, heads = np.cumsum(counts), drawn.head_cells
+    heads[drawn.is_miss] = NO_HEAD
     return Bodies(
-        chains=(offsets + np.repeat(_nearest(starts), counts, axis=0)).astype(np.int32),
+        chains=cells.astype(np.int32),
         lengths=np.minimum(errors, NEVER).astype(np.uint16),
         readings=np.column_stack((ends - counts, ends, heads)).astype(np.int32),
     )
@@ -81,8 +75,3 @@ def errors_by_samples(
 def reach_cells(spec: GridSpec) -> int:
     """Return where bodies end at the latest: beyond the grid."""
     return 2 * max(spec.shape)
-
-
-def _nearest(cells: NDArray[np.float64]) -> NDArray[np.float64]:
-    nearest: NDArray[np.float64] = np.floor(np.clip(cells, -FAR_CELLS, FAR_CELLS) + _CENTRE)
-    return nearest

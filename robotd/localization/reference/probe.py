@@ -1,18 +1,19 @@
 """A range reading drawn on the grid: the paper's range vector z, pixelized for one heading.
 
-The definition, for one reading at one heading; the kernels draw the same cells, all readings at all headings at once
-(:mod:`robotd.grid.kernels.draw.draw_kernel`), and the tests hold them against this.
+One reading at one heading, by the rules of :mod:`robotd.grid.drawn`; the kernels draw the same cells, all readings at
+all headings at once (:mod:`robotd.grid.kernels.draw.draw_kernel`), and the tests hold them against this.
 [BrownDonald2000]_ sec. 2.3.3, fig. 17.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.grid.ray import ray_offsets
+from robotd.grid.drawn import Drawn
+from robotd.grid.kernels.draw.draw_kernel import turned
+from robotd.grid.readings import Readings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,8 +32,7 @@ def probe_of(
 ) -> Probe:
     """Draw a measured reading, for a robot whose axis is at the centre of a cell.
 
-    Where the beam does not start at the robot's axis, its start is rounded to a cell: then all beams of one direction
-    share one chain of cells, whatever the heading. The head is rounded once, from the whole vector.
+    By the rules of :mod:`robotd.grid.drawn`.
 
     Args:
         reading: a hit or a miss.
@@ -44,26 +44,9 @@ def probe_of(
     Raises:
         ValueError: the reading measured nothing.
     """
-    if reading.range_m is None:
-        raise ValueError(f"a {reading.status} reading has no range")
-    bearing = heading_rad + reading.bearing_rad
-    cos, sin = float(np.cos(heading_rad)), float(np.sin(heading_rad))
-    start_row = (sin * reading.origin_x_m + cos * reading.origin_y_m) / resolution_m
-    start_col = (cos * reading.origin_x_m - sin * reading.origin_y_m) / resolution_m
-    range_cells = reading.range_m / resolution_m
-    start = np.array([_nearest(start_row), _nearest(start_col)])
-    body = start + ray_offsets(bearing, min(range_cells - error_radius_cells, reach_cells))
-    if start.any():
-        body = np.concatenate((np.zeros((1, 2), np.intp), body))
-    if reading.status is ReadingStatus.MISS:
-        return Probe(body, None)
-    head = (
-        _nearest(start_row + range_cells * float(np.sin(bearing))),
-        _nearest(start_col + range_cells * float(np.cos(bearing))),
-    )
-    return Probe(body, head)
-
-
-def _nearest(offset_cells: float) -> int:
-    """Return which cell a point lies in that is this far from the centre of cell 0."""
-    return math.floor(offset_cells + 0.5)
+    drawn = Drawn.of(Readings.of((reading,)), turned(np.array([heading_rad])), resolution_m)
+    body, _ = drawn.bodies(drawn.body_lengths(error_radius_cells, reach_cells))
+    if drawn.start_cells.any():
+        body = np.concatenate((np.zeros((1, 2), np.int64), body))
+    head_row, head_col = drawn.head_cells[0].tolist()
+    return Probe(body.astype(np.intp), None if reading.status is ReadingStatus.MISS else (head_row, head_col))

@@ -6,8 +6,6 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-FAR_CELLS = 1 << 28
-"""Heads that are farther away count as being so far."""
 NO_HEAD = -(1 << 30)
 """In place of a head's row and column: the reading is a miss, and only its body counts."""
 SLOTS = 4096
@@ -106,7 +104,7 @@ class DrawKernel(Protocol):
     def draw_beams(self, readings: NDArray[np.float64], headings: NDArray[np.float64], how: BeamSettings) -> Beams:
         """Draw every reading at every heading.
 
-        Each beam has the cells that ``localization/reference/probe.py`` gives it.
+        Each beam has the cells that :mod:`robotd.grid.drawn` gives it.
 
         Args:
             readings: ``float64[n, 5]``: bearing [rad], range [m], x and y of the beam's start [m], all in the robot

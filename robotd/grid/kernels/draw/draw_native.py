@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS, NO_HEAD, SLOTS, Beams, BeamSettings
+from robotd.grid.drawn import FAR_CELLS
+from robotd.grid.kernels.draw.draw_kernel import NO_HEAD, SLOTS, Beams, BeamSettings
 from robotd.grid.kernels.shared.library import agree, ffi, floats, ints, lib, words
 
 agree(FAR_CELLS=FAR_CELLS, NO_HEAD=NO_HEAD)

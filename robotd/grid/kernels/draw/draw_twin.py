@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS, NO_HEAD, SLOTS, BeamCounts, Beams, BeamSettings
-from robotd.grid.ray import ray_steps
+from robotd.grid.drawn import Drawn
+from robotd.grid.kernels.draw.draw_kernel import NO_HEAD, SLOTS, BeamCounts, Beams, BeamSettings
+from robotd.grid.readings import Readings
 
 _DIRECTIONS = 1 << 30
 """Directions nearer than this share of a turn are tried as one."""
@@ -22,7 +23,7 @@ Ints = NDArray[np.int64]
 
 def draw_beams(readings: NDArray[np.float64], headings: NDArray[np.float64], how: BeamSettings) -> Beams:
     """See :class:`.DrawKernel`."""
-    drawn = _Drawn.of(readings, headings, how)
+    drawn = _Beams.of(Drawn.of(Readings(readings), headings, how.resolution_m), how)
     keys = np.rint(drawn.bearings_rad * (_DIRECTIONS / (2 * np.pi))).astype(np.int64) % _DIRECTIONS
     chains = _Chains.of(drawn, keys)
     if chains.differ.any():
@@ -34,38 +35,24 @@ def draw_beams(readings: NDArray[np.float64], headings: NDArray[np.float64], how
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Drawn:
+class _Beams:
     """Beams one by one, reading after reading, for each all headings."""
 
     bearings_rad: NDArray[np.float64]
     steps: NDArray[np.float64]
     lengths: Ints
-    """Cells of the body."""
+    """Cells of the body, with the robot's own where it starts elsewhere."""
     starts: Ints
     """``int64[n, 2]``."""
     heads: NDArray[np.int32]
     """``int32[n, 2]``."""
 
     @classmethod
-    def of(cls, readings: NDArray[np.float64], headings: NDArray[np.float64], how: BeamSettings) -> "_Drawn":
-        bearing_rad, range_m, x_m, y_m, is_miss = readings[:, :, None].transpose(1, 0, 2)
-        (headings_rad, sin, cos), one = headings, np.ones(headings.shape[1])
-        rows, cols = (sin * x_m + cos * y_m) / how.resolution_m, (cos * x_m - sin * y_m) / how.resolution_m
-        bearings_rad = (bearing_rad + headings_rad).ravel()
-        ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)
-        positions = np.stack((rows.ravel(), cols.ravel()), axis=1)
-        range_cells = (range_m / how.resolution_m * one).reshape(-1, 1)
-        free_cells = np.clip(range_cells[:, 0] - how.error_radius_cells, 0.0, how.reach_cells)
-        starts = _nearest(positions)
-        lengths = np.maximum(np.ceil(free_cells * np.abs(ahead).max(axis=1)), 1.0).astype(np.int64)
-        heads = _nearest(positions + range_cells * ahead)
-        heads[(is_miss * one).ravel() > 0.0] = NO_HEAD
-        lengths += starts.any(axis=1)
-        return cls(bearings_rad, ray_steps(bearings_rad), lengths, starts, heads.astype(np.int32))
-
-
-def _nearest(cells: NDArray[np.float64]) -> Ints:
-    return np.floor(np.clip(cells, -FAR_CELLS, FAR_CELLS) + 0.5).astype(np.int64)
+    def of(cls, drawn: Drawn, how: BeamSettings) -> "_Beams":
+        starts, heads = drawn.start_cells, drawn.head_cells
+        heads[drawn.is_miss] = NO_HEAD
+        lengths = drawn.body_lengths(how.error_radius_cells, how.reach_cells) + starts.any(axis=1)
+        return cls(drawn.bearings_rad, drawn.steps, lengths, starts, heads.astype(np.int32))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +69,7 @@ class _Chains:
     """``bool[groups]``: the beams of this group have no chain in common."""
 
     @classmethod
-    def of(cls, drawn: _Drawn, keys: Ints) -> "_Chains":
+    def of(cls, drawn: _Beams, keys: Ints) -> "_Chains":
         """Put beams of equal keys and starts together."""
         named = np.column_stack((keys, drawn.starts))
         _, first, group_of = np.unique(named, axis=0, return_index=True, return_inverse=True)
@@ -107,7 +94,7 @@ def _cells(starts: Ints, steps: NDArray[np.float64], sizes: Ints) -> NDArray[np.
     return np.ascontiguousarray(cells, np.int32)
 
 
-def _listed(drawn: _Drawn, chains: _Chains, headings: int) -> Beams:
+def _listed(drawn: _Beams, chains: _Chains, headings: int) -> Beams:
     """Give every end of a body a slot, put chains into batches, and list the beams by batch and heading."""
     end_of = chains.ends[chains.group_of] + drawn.lengths - 1
     is_end = np.zeros(len(chains.cells), np.bool_)

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.grid.drawn import Drawn
+from robotd.grid.kernels.draw.draw_kernel import turned
 from robotd.grid.kernels.search.endings import endings
 from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question
 from robotd.grid.pose_set import PoseSet
-from robotd.grid.ray import ray_steps
+from robotd.grid.readings import Readings
 from robotd.grid.window import CellWindow
-
-_FAR_CELLS = float(1 << 28)
 
 
 def make_planes(ground: Ground) -> Planes:
@@ -72,32 +72,16 @@ Beam = tuple[NDArray[np.int64], NDArray[np.int64] | None]
 
 
 def _beams(ground: Ground, question: Question, heading: int) -> list[Beam]:
-    """Draw all readings at one heading, by the rules of ``localization/reference/probe.py``."""
-    heading_rad = question.headings_rad[heading]
-    bearing_rad, range_m, x_m, y_m, is_miss = question.readings.T
-    sin, cos = np.sin(heading_rad), np.cos(heading_rad)
-    positions = np.stack((sin * x_m + cos * y_m, cos * x_m - sin * y_m), axis=1) / question.resolution_m
-    bearings_rad = bearing_rad + heading_rad
-    ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)
-    range_cells = range_m / question.resolution_m
-    free_cells = np.clip(range_cells - ground.error_radius_cells, 0.0, question.reach_cells)
-    counts = np.maximum(np.ceil(free_cells * np.abs(ahead).max(axis=1)), 1.0).astype(np.int64)
-    starts, heads, steps = (
-        _nearest(positions),
-        _nearest(positions + range_cells[:, None] * ahead),
-        ray_steps(bearings_rad),
-    )
+    """Draw all readings at one heading."""
+    at = turned(question.headings_rad[heading : heading + 1])
+    drawn = Drawn.of(Readings(question.readings), at, question.resolution_m)
+    lengths = drawn.body_lengths(ground.error_radius_cells, question.reach_cells)
+    cells, _ = drawn.bodies(lengths)
+    bodies = np.split(cells, np.cumsum(lengths)[:-1])
     return [
-        (
-            start + np.floor(0.5 + np.arange(count)[:, None] * step).astype(np.int64),
-            None if missed > 0.0 else head,
-        )
-        for start, count, step, head, missed in zip(starts, counts, steps, heads, is_miss, strict=True)
+        (body, None if is_miss else head)
+        for body, head, is_miss in zip(bodies, drawn.head_cells, drawn.is_miss, strict=True)
     ]
-
-
-def _nearest(cells: NDArray[np.float64]) -> NDArray[np.int64]:
-    return np.floor(np.clip(cells, -_FAR_CELLS, _FAR_CELLS) + 0.5).astype(np.int64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

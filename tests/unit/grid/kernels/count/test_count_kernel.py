@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid import kernels as kernels_in_use
+from robotd.grid.drawn import FAR_CELLS
 from robotd.grid.footprints import dilate, disk_footprint
 from robotd.grid.kernels import Kernels
-from robotd.grid.kernels.draw.draw_kernel import FAR_CELLS, NO_HEAD, Beams, BeamSettings, turned
+from robotd.grid.kernels.draw.draw_kernel import NO_HEAD, Beams, BeamSettings, turned
 from robotd.grid.kernels.shared.packed_map import TILE_ROWS, WORD_CELLS, PackedMap, Words, pack
 from robotd.grid.kernels.twins import TWINS
 from robotd.grid.readings import Readings
