@@ -1,7 +1,7 @@
 """Readings as columns, for everything that computes on many at once."""
 
 import struct
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,20 +18,20 @@ class Readings:
     """``float64[n, 5]``, contiguous, as the kernels take them: the columns that are named below, 1 for a miss."""
 
     @classmethod
-    def of(cls, readings: Iterable[RangeReading]) -> "Readings":
+    def of(cls, readings: Sequence[RangeReading]) -> "Readings":
         """Take measured readings.
 
         Raises:
             ValueError: a reading measured nothing.
         """
-        miss, pack, several = ReadingStatus.MISS, _FIVE.pack, tuple(readings)
+        miss, pack = ReadingStatus.MISS, _FIVE.pack
         try:
             packed = [  # a third faster than numpy.fromiter
                 pack(r.bearing_rad, r.range_m, r.origin_x_m, r.origin_y_m, 1.0 if r.status is miss else 0.0)
-                for r in several
+                for r in readings
             ]
         except struct.error as error:
-            unmeasured = next(reading.status for reading in several if reading.range_m is None)
+            unmeasured = next(reading.status for reading in readings if reading.range_m is None)
             raise ValueError(f"a {unmeasured} reading has no range") from error
         return cls(np.frombuffer(bytearray().join(packed), np.float64).reshape(-1, 5))
 
