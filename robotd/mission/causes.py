@@ -71,7 +71,7 @@ class Causes:
         elif name == GIVE_UP:
             self.give_up()
         elif name == LEASE:
-            self._supervisor.lease_expired(arguments["mission_id"])
+            self._supervisor.mission.lease_expired(arguments["mission_id"])
         elif name == SILENCE:
             attention().let_fall(arguments["of"])
 

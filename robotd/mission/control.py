@@ -115,21 +115,23 @@ class Control:
 
     async def stopped(self) -> None:
         """Wait until the mission that was stopped has ended."""
-        await self._supervisor.stopped()
+        await self._supervisor.mission.ended()
 
     def start(self, mission: Mission, lease_s: float) -> int:
-        """Start a mission under a lease, at once, whatever becomes of the map in use; see :meth:`Supervisor.start`."""
+        """Start a mission under a lease, whatever becomes of the map in use; see :meth:`MissionUnderWay.start`."""
         begun_ns = now_ns()
-        mission_id = self._supervisor.start(mission, lease_s)  # which takes its first step later: nothing is noted yet
+        mission_id = self._supervisor.mission.start(
+            mission, lease_s
+        )  # which takes its first step later: nothing is noted yet
         self._note(with_lease(mission, lease_s), begun_ns)
         return mission_id
 
     def renew(self, mission_id: int) -> None:
-        """Keep a mission's lease alive; see :meth:`Supervisor.renew`.
+        """Keep a mission's lease alive; see :meth:`MissionUnderWay.renew`.
 
         It is not noted: that a lease ran out is, and a client that renews a thousand times a second costs no memory.
         """
-        self._supervisor.renew(mission_id)
+        self._supervisor.mission.renew(mission_id)
 
     async def _status(self, _: GetStatus) -> Status:
         return self.status
@@ -138,9 +140,9 @@ class Control:
         return ConfigText(self._config_text)
 
     async def _arm(self, request: Arm) -> Done:
-        self._supervisor.require_armable()
+        self._supervisor.arming.require_armable()
         self._note(request, now_ns())
-        await self._supervisor.arm()
+        await self._supervisor.arming.arm()
         return Done()
 
     async def _stop(self, request: Stop | Disarm) -> Done:
@@ -149,9 +151,9 @@ class Control:
         return Done()
 
     async def _clear(self, request: Clear) -> Done:
-        self._supervisor.require_clearable()
+        self._supervisor.arming.require_clearable()
         self._note(request, now_ns())
-        await self._supervisor.clear()
+        await self._supervisor.arming.clear()
         return Done()
 
     async def _start(self, mission: Mission) -> MissionStarted:

@@ -167,7 +167,7 @@ async def test_a_stop_while_devices_are_armed_again_is_the_end(live: Live, tmp_p
 async def test_a_lease_that_ends_while_held_is_the_end(live: Live, tmp_path: Path) -> None:
     async with going(live, tmp_path) as it:
         mission_id = await held(it)
-        it.daemon.supervisor.lease_expired(mission_id)
+        it.daemon.supervisor.mission.lease_expired(mission_id)
         await asyncio.sleep(5.0)
         assert (it.daemon.supervisor.mode, twist(it)) == (Mode.DISARMED, (0.0, 0.0))
         message = (await ended(it, mission_id)).message

@@ -50,7 +50,9 @@ def _stop(rig: Rig, daemon: Daemon) -> None:
 
 
 def _lease_ends(_: Rig, daemon: Daemon) -> None:
-    daemon.supervisor.lease_expired(daemon.supervisor._mission_id)
+    mission = daemon.supervisor.mission
+    if mission.mission_id is not None:
+        mission.lease_expired(mission.mission_id)
 
 
 def _head_lost(rig: Rig, _: Daemon) -> None:

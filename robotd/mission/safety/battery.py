@@ -1,7 +1,8 @@
-"""When the battery is too low to go on."""
+"""When the battery is too low to go on, which is a fault like those that devices latch themselves."""
 
 from robotd.contract.device_status import LinkState
 from robotd.hardware.devices.drive import Drive
+from robotd.mission.robot import Robot
 
 
 def low_battery(drive: Drive, least_v: float) -> str | None:
@@ -13,3 +14,9 @@ def low_battery(drive: Drive, least_v: float) -> str | None:
     if readout is None or drive.status.link is not LinkState.READY or not 0.0 < readout.battery_v < least_v:
         return None
     return f"{drive.name}: the battery is at {readout.battery_v:.1f} V, below {least_v:g} V"
+
+
+def faults_of(robot: Robot, battery_min_v: float) -> tuple[str, ...]:
+    """Return what must be cleared before a robot is armed: its devices' faults, and a battery that is too low [V]."""
+    low = low_battery(robot.drive, battery_min_v)
+    return robot.faults if low is None else (*robot.faults, low)

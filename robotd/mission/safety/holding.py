@@ -6,8 +6,6 @@ Our own loop stood still while the base was driven; or odometry fell silent, tho
 import asyncio
 import logging
 import math
-from collections.abc import Awaitable, Callable
-from typing import Protocol
 
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.modes import Mode
@@ -15,10 +13,10 @@ from robotd.core.attention import attention
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import LinkTimeout, RobotdError
 from robotd.core.silence import within
-from robotd.hardware.devices.device import Device
 from robotd.mission.modes import Occasion
-from robotd.mission.robot import Robot
+from robotd.mission.safety.arming import Arming
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, FellSilent, Hold, Stall
+from robotd.mission.safety.stopper import Stopper
 
 _ARM_TIMEOUT_S = 5.0
 _WAITED_FOR_S = 10.0
@@ -28,38 +26,17 @@ _NEXT_STEP = "continue with: robotctl arm (after a fault robotctl clear first), 
 
 _TOO_OFTEN = f"for the {HOLDS_A_MINUTE + 1}th time within a minute"
 
-Devices = tuple[Device, ...]
-
 log = logging.getLogger(__name__)
-
-
-class Host(Protocol):
-    """The supervisor, as far as a hold concerns it."""
-
-    robot: Robot
-
-    @property
-    def mode(self) -> Mode:
-        """What the robot is allowed to do now."""
-
-    def halt(self, occasion: Occasion, reason: str) -> None:
-        """Stop first, then end the mission."""
-
-    def publish_status(self) -> None:
-        """Tell everybody how the whole robot is."""
 
 
 class Holding:
     """Begins and ends holds; whatever else ends the mission ends them too."""
 
-    def __init__(
-        self, host: Host, hold: Hold, armed: Callable[[], Devices], arm: Callable[[Devices], Awaitable[None]]
-    ) -> None:
-        """Hold the missions of a host; ``armed`` tells what is armed for them, ``arm`` arms it again."""
-        self._armed = armed
-        self._arm = arm
+    def __init__(self, stopper: Stopper, hold: Hold, arming: Arming) -> None:
+        """Hold missions; ``arming`` knows what is armed for them, and arms it again."""
+        self._arming = arming
         self.hold = hold
-        self._host = host
+        self._stopper = stopper
         self._stall: Stall | None = None
         self._going_on: asyncio.Task[None] | None = None
         hold.wait_for_base = self._wait_for_base
@@ -71,10 +48,10 @@ class Holding:
         self.hold.unwell_ns = stall.time_ns
         if not stall.was_stopped:
             return
-        if self._host.mode is Mode.UNDER_WAY:
+        if self._stopper.mode is Mode.UNDER_WAY:
             self._hold_for(stall)
         else:
-            self._host.halt(Occasion.STOP, f"{stall}; {_NEXT_STEP}")
+            self._stopper.halt(Occasion.STOP, f"{stall}; {_NEXT_STEP}")
 
     def explains(self, status: DeviceStatus) -> bool:
         """Say whether a device is disarmed because of us, which ends nothing.
@@ -85,7 +62,7 @@ class Holding:
         stall = self._recent()
         if (
             status.link is not LinkState.READY
-            or self._host.mode is not Mode.UNDER_WAY
+            or self._stopper.mode is not Mode.UNDER_WAY
             or status.faults not in {(), _DEADMAN}
         ):
             return False
@@ -102,7 +79,7 @@ class Holding:
 
     def base_silent_s(self) -> float:
         """Return how old the newest odometry is, by its own time."""
-        latest = self._host.robot.drive.odometry.latest
+        latest = self._stopper.robot.drive.odometry.latest
         return math.inf if latest is None else (now_ns() - latest.time_ns) / NS_PER_S
 
     def has_waited_enough(self) -> bool:
@@ -112,7 +89,7 @@ class Holding:
     def give_up(self) -> None:
         """End a mission that waits for a base that does not come back."""
         if self.hold.cause is not None:
-            self._host.halt(Occasion.STOP, f"drive: no odometry for {_WAITED_FOR_S:g} s; {_NEXT_STEP}")
+            self._stopper.halt(Occasion.STOP, f"drive: no odometry for {_WAITED_FOR_S:g} s; {_NEXT_STEP}")
 
     def go_on(self) -> None:
         """Arm the devices again and let the mission go on; whatever comes between ends it as always."""
@@ -127,21 +104,21 @@ class Holding:
             self._going_on.cancel()
 
     async def _go_on(self) -> None:
-        devices = self._armed()
+        devices = self._arming.armed
         try:
             async with within(_ARM_TIMEOUT_S, of="going on"):
                 for device in devices:
                     if device.status.faults == _DEADMAN:
                         await device.clear_faults()
-                await self._arm(devices)
+                await self._arming.arm_these(devices)
         except (TimeoutError, RobotdError) as error:
             if self.hold.cause is not None:  # otherwise it was ended by a stop, which has said why
-                self._host.halt(Occasion.STOP, f"cannot go on: {str(error) or 'arming took too long'}; {_NEXT_STEP}")
+                self._stopper.halt(Occasion.STOP, f"cannot go on: {str(error) or 'arming took too long'}; {_NEXT_STEP}")
             return
         if self.hold.cause is not None:
             log.info("the mission goes on: all has been well for a while")
             self.hold.end()
-            self._host.publish_status()
+            self._stopper.publish_status()
 
     def _wait_for_base(self, error: FellSilent) -> None:
         """Hold the mission until the base is heard again.
@@ -149,23 +126,23 @@ class Holding:
         Raises:
             LinkTimeout: it is not waited for: it is not there, was never heard, or fell silent too often.
         """
-        robot = self._host.robot
-        if self._host.mode is not Mode.UNDER_WAY or not robot.has_base or robot.drive.odometry.latest is None:
+        robot = self._stopper.robot
+        if self._stopper.mode is not Mode.UNDER_WAY or not robot.has_base or robot.drive.odometry.latest is None:
             raise error
         if not self._begin(str(error), now_ns()):
             raise LinkTimeout(f"{error}, {_TOO_OFTEN}; {_NEXT_STEP}") from error
 
     def _hold_for(self, stall: Stall) -> None:
         if not self._begin(str(stall), stall.time_ns):
-            self._host.halt(Occasion.STOP, f"{stall}, {_TOO_OFTEN}; {_NEXT_STEP}")
+            self._stopper.halt(Occasion.STOP, f"{stall}, {_TOO_OFTEN}; {_NEXT_STEP}")
 
     def _begin(self, cause: str, time_ns: int) -> bool:
         """Stop and hold; False if that was so too often, and the mission must end."""
         if not self.hold.begin(f"{cause}; it goes on by itself", time_ns):
             return False
         log.warning("held: %s", cause)
-        self._host.robot.stop_now()
-        self._host.publish_status()
+        self._stopper.robot.stop_now()
+        self._stopper.publish_status()
         return True
 
     def _recent(self) -> Stall | None:

@@ -162,7 +162,7 @@ async def test_an_error_in_the_daemon_itself_stops_the_robot(short: Path, monkey
         def fail(*_: object) -> None:
             raise ValueError("a mistake of ours")
 
-        monkeypatch.setattr(daemon.supervisor, "_moved", fail)
+        monkeypatch.setattr(daemon.supervisor.whereabouts, "moved", fail)
         with pytest.raises(ExceptionGroup):
             await asyncio.wait_for(running, 5.0)
         await asyncio.sleep(0.05)
@@ -181,7 +181,7 @@ async def test_a_map_that_nobody_saved_outlives_sigterm(short: Path, monkeypatch
         await until_ready(daemon)
         place = MapInUse("new-1", "lab", grid)
         place.generation = 2
-        daemon.supervisor.adopt(place, None)
+        daemon.supervisor.use(place)
         os.kill(os.getpid(), signal.SIGTERM)
         await asyncio.wait_for(running, 5.0)
     stored = MapStore(short / "maps").load("lab")

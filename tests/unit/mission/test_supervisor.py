@@ -177,7 +177,7 @@ async def rig(*, armed: bool = True, talking: bool = True, battery_min_v: float 
         await turns()
         try:
             if armed:
-                await supervisor.arm()
+                await supervisor.arming.arm()
             yield Rig(events, supervisor, (drive, pantilt, rangefinder), tasks[0])
         finally:
             await supervisor.stop("the test is over")
@@ -209,7 +209,7 @@ async def test_a_device_that_refuses_leaves_all_disarmed_and_is_named() -> None:
 
         r.rangefinder.before_arming = refuse
         with pytest.raises(DeviceError, match="rangefinder"):
-            await r.supervisor.arm()
+            await r.supervisor.arming.arm()
         assert r.mode is Mode.DISARMED
         assert r.reason == "arming failed: rangefinder: wrong_state: Arm"
         assert not any(device.status.armed for device in r.devices)
@@ -220,7 +220,7 @@ async def test_a_device_that_does_not_answer_ends_arming_in_time() -> None:
         r.pantilt.before_arming = asyncio.Event().wait  # type: ignore[assignment]  # never returns
         began_ns = now_ns()
         with pytest.raises(LinkTimeout, match="longer than 5 s"):
-            await r.supervisor.arm()
+            await r.supervisor.arming.arm()
         assert now_ns() - began_ns == pytest.approx(5 * NS_PER_S, rel=0.01)
         assert not r.drive.status.armed
 
@@ -244,7 +244,7 @@ async def test_what_happens_while_arming_wins(happens: Callable[[Rig], None], mo
 
         r.pantilt.before_arming = hesitate
         with pytest.raises(RobotdError):
-            await r.supervisor.arm()
+            await r.supervisor.arming.arm()
         await turns()
         assert r.mode is mode
         assert reason in r.reason
@@ -254,7 +254,7 @@ async def test_what_happens_while_arming_wins(happens: Callable[[Rig], None], mo
 async def test_an_arm_that_is_given_up_by_its_client_leaves_all_disarmed() -> None:
     async with rig(armed=False) as r:
         r.pantilt.before_arming = asyncio.Event().wait  # type: ignore[assignment]  # never returns
-        arming = asyncio.create_task(r.supervisor.arm())
+        arming = asyncio.create_task(r.supervisor.arming.arm())
         await turns()
         assert r.drive.status.armed
         arming.cancel()
@@ -274,7 +274,7 @@ async def test_when_one_of_two_arms_fails_so_does_the_other() -> None:
                 raise DeviceError("pantilt", "wrong_state", "Arm")
 
         r.pantilt.before_arming = hesitate
-        outcomes = await asyncio.gather(r.supervisor.arm(), r.supervisor.arm(), return_exceptions=True)
+        outcomes = await asyncio.gather(r.supervisor.arming.arm(), r.supervisor.arming.arm(), return_exceptions=True)
         assert all(isinstance(outcome, RobotdError) for outcome in outcomes)
         assert r.mode is Mode.DISARMED
 
@@ -291,8 +291,8 @@ async def test_a_fault_keeps_its_reason_until_it_is_cleared() -> None:
         await turns()
         assert (r.mode.value, r.reason) == ("fault", "drive: bumper")
         with pytest.raises(MissionError, match="cannot arm while fault: drive: bumper"):
-            await r.supervisor.arm()
-        await r.supervisor.clear()
+            await r.supervisor.arming.arm()
+        await r.supervisor.arming.clear()
         assert (r.mode.value, r.reason) == ("disarmed", "faults cleared")
 
 
@@ -302,14 +302,14 @@ async def test_a_fault_that_stays_is_not_cleared() -> None:
         r.drive.change(armed=False, faults=("motor",))
         await turns()
         with pytest.raises(MissionError, match="faults remain: drive: motor"):
-            await r.supervisor.clear()
+            await r.supervisor.arming.clear()
         assert r.mode is Mode.FAULT
 
 
 async def test_what_is_armed_must_be_disarmed_before_it_is_cleared() -> None:
     async with rig() as r:
         with pytest.raises(MissionError, match="cannot clear while idle"):
-            await r.supervisor.clear()
+            await r.supervisor.arming.clear()
 
 
 @pytest.mark.parametrize("lost", [0, 1, 2])
@@ -322,7 +322,7 @@ async def test_a_lost_device_stops_the_others(lost: int) -> None:
         assert all(device.stops for device in r.devices)
         if lost:
             with pytest.raises(MissionError, match=f"cannot arm: {r.devices[lost].name} absent"):
-                await r.supervisor.arm()
+                await r.supervisor.arming.arm()
 
 
 async def test_without_a_base_it_can_be_armed_to_look_but_not_to_move() -> None:
@@ -330,16 +330,16 @@ async def test_without_a_base_it_can_be_armed_to_look_but_not_to_move() -> None:
         r.use_map()
         r.drive.change(**GONE)
         await turns()
-        await r.supervisor.arm()
+        await r.supervisor.arming.arm()
         assert (r.mode, r.reason) == (Mode.IDLE, "armed without a base: it can only look")
         assert [device.status.armed for device in r.devices] == [False, True, True]
         for mission in (DriveTo(0.1, 0.0), MapStart("m", ())):
             with pytest.raises(MissionError, match="the drive is not armed; it can only localize where it stands"):
-                r.supervisor.start(mission, 10.0)
+                r.supervisor.mission.start(mission, 10.0)
         r.drive.change(link=LinkState.CONNECTING, detail="line open")
         await turns()
         assert r.mode is Mode.IDLE
-        r.supervisor.start(Localize(heading_rad=0.0), 10.0)
+        r.supervisor.mission.start(Localize(heading_rad=0.0), 10.0)
         assert r.supervisor.status.mode == "localizing"
 
 
@@ -347,11 +347,11 @@ async def test_a_base_that_comes_back_stops_what_went_on_without_it() -> None:
     async with rig() as r:
         r.drive.change(**GONE)
         await turns()
-        await r.supervisor.arm()
+        await r.supervisor.arming.arm()
         r.drive.change(link=LinkState.READY, armed=False, detail="")
         await turns()
         assert (r.mode, r.reason) == (Mode.DISARMED, "drive is there again: arm anew")
-        await r.supervisor.arm()
+        await r.supervisor.arming.arm()
         assert all(device.status.armed for device in r.devices)
 
 
@@ -366,12 +366,12 @@ async def test_a_low_battery_stops_the_robot_until_it_is_cleared_and_cannot_be_c
         assert (r.mode, r.reason) == (Mode.FAULT, "drive: the battery is at 21.9 V, below 22 V")
         assert all(device.stops for device in r.devices)
         with pytest.raises(MissionError, match=r"faults remain: drive: the battery is at 21\.9 V"):
-            await r.supervisor.clear()
+            await r.supervisor.arming.clear()
         r.drive.readouts.publish(DriveReadout(now_ns(), 25.0, ()))
         await turns()
         assert r.mode.value == "fault"
-        await r.supervisor.clear()
-        await r.supervisor.arm()
+        await r.supervisor.arming.clear()
+        await r.supervisor.arming.arm()
 
 
 async def test_a_device_that_disarms_by_itself_stops_the_others() -> None:
@@ -393,13 +393,13 @@ async def test_what_a_lost_drive_said_last_is_not_shown_as_if_it_were_now() -> N
 async def test_an_error_of_ours_stops_the_robot_before_it_ends_the_daemon(monkeypatch: pytest.MonkeyPatch) -> None:
     async with rig(talking=False) as r:
         r.use_map()
-        r.supervisor.start(DriveTo(1.0, 0.0, Legs.STRAIGHT), 100.0)
+        r.supervisor.mission.start(DriveTo(1.0, 0.0, Legs.STRAIGHT), 100.0)
         await turns()
 
         def fail(*_: object) -> None:
             raise ValueError("a mistake of ours")
 
-        monkeypatch.setattr(r.supervisor, "_moved", fail)
+        monkeypatch.setattr(r.supervisor.whereabouts, "moved", fail)
         r.drive.odometry.publish(Odometry(now_ns(), IDENTITY, STANDSTILL))
         with pytest.raises(ExceptionGroup):
             await r.watching
@@ -412,7 +412,7 @@ async def test_an_error_of_ours_stops_the_robot_before_it_ends_the_daemon(monkey
 
 async def test_a_mission_stopped_before_its_first_step_says_so_and_gives_its_lease_back() -> None:
     async with rig() as r:
-        mission_id = r.supervisor.start(MapStart("new", ()), 0.5)
+        mission_id = r.supervisor.mission.start(MapStart("new", ()), 0.5)
         await r.supervisor.stop("changed my mind")
         end = await r.end_of_mission()
         assert (end.mission_id, end.phase, end.message) == (mission_id, MissionPhase.STOPPED, "changed my mind")
@@ -423,7 +423,7 @@ async def test_a_mission_stopped_before_its_first_step_says_so_and_gives_its_lea
 async def test_a_lost_drive_is_why_a_drive_ended() -> None:
     async with rig() as r:
         r.use_map()
-        r.supervisor.start(DriveTo(1.0, 0.0, Legs.STRAIGHT), 100.0)
+        r.supervisor.mission.start(DriveTo(1.0, 0.0, Legs.STRAIGHT), 100.0)
         await asyncio.sleep(1.0)
         assert r.drive.told
         r.drive.change(**GONE)
@@ -435,7 +435,7 @@ async def test_a_lost_drive_is_why_a_drive_ended() -> None:
 async def test_a_base_that_does_not_move_is_stopped() -> None:
     async with rig() as r:
         r.use_map()
-        r.supervisor.start(DriveTo(1.0, 0.0, Legs.STRAIGHT), 100.0)
+        r.supervisor.mission.start(DriveTo(1.0, 0.0, Legs.STRAIGHT), 100.0)
         end = await r.end_of_mission()
         assert end.phase is MissionPhase.FAILED
         assert "stalled: drive is no nearer" in end.message
@@ -444,7 +444,7 @@ async def test_a_base_that_does_not_move_is_stopped() -> None:
 
 async def test_without_odometry_nothing_begins() -> None:
     async with rig(talking=False) as r:
-        r.supervisor.start(MapStart("new", ((1.0, 0.0),)), 100.0)
+        r.supervisor.mission.start(MapStart("new", ((1.0, 0.0),)), 100.0)
         began_ns = now_ns()
         end = await r.end_of_mission()
         assert (end.phase, end.message) == (MissionPhase.FAILED, "drive: no odometry for 0.5 s")
@@ -456,7 +456,7 @@ async def test_without_odometry_nothing_begins() -> None:
 
 async def test_a_head_that_is_stuck_stops_the_robot() -> None:
     async with rig() as r:
-        r.supervisor.start(MapStart("new", ()), 100.0)
+        r.supervisor.mission.start(MapStart("new", ()), 100.0)
         end = await r.end_of_mission()
         assert (end.phase, end.message) == (MissionPhase.FAILED, "pantilt: still turning")
         assert r.mode is Mode.DISARMED
@@ -464,7 +464,7 @@ async def test_a_head_that_is_stuck_stops_the_robot() -> None:
 
 async def test_a_mission_that_cannot_be_done_leaves_the_robot_armed_and_idle() -> None:
     async with rig() as r:
-        r.supervisor.start(Localize(), 100.0)
+        r.supervisor.mission.start(Localize(), 100.0)
         end = await r.end_of_mission()
         assert end.phase is MissionPhase.FAILED
         assert "no map is in use" in end.message
@@ -479,7 +479,7 @@ async def test_an_error_of_ours_in_a_mission_stops_the_robot(monkeypatch: pytest
     async with rig() as r:
         r.use_map()
         monkeypatch.setattr("robotd.mission.missions.run_driving", fail)
-        r.supervisor.start(DriveTo(1.0, 0.0), 100.0)
+        r.supervisor.mission.start(DriveTo(1.0, 0.0), 100.0)
         end = await r.end_of_mission()
         assert end.phase is MissionPhase.FAILED
         assert "a mistake of ours" in end.message
@@ -489,26 +489,26 @@ async def test_an_error_of_ours_in_a_mission_stops_the_robot(monkeypatch: pytest
 async def test_one_mission_at_a_time_under_a_lease_that_only_it_renews() -> None:
     async with rig(armed=False) as r:
         with pytest.raises(MissionError, match="arm it first"):
-            r.supervisor.start(MapStart("new", ()), 0.5)
-        await r.supervisor.arm()
-        mission_id = r.supervisor.start(MapStart("new", ()), 0.5)
+            r.supervisor.mission.start(MapStart("new", ()), 0.5)
+        await r.supervisor.arming.arm()
+        mission_id = r.supervisor.mission.start(MapStart("new", ()), 0.5)
         with pytest.raises(MissionError, match="while mapping"):
-            r.supervisor.start(Localize(), 0.5)
+            r.supervisor.mission.start(Localize(), 0.5)
         with pytest.raises(MissionError, match="while mapping"):
-            await r.supervisor.arm()
+            await r.supervisor.arming.arm()
         with pytest.raises(MissionError, match="while a mission is under way"):
             r.use_map()
         with pytest.raises(MissionError, match="not under way"):
-            r.supervisor.renew(mission_id + 1)
+            r.supervisor.mission.renew(mission_id + 1)
         await asyncio.sleep(0.4)
-        r.supervisor.renew(mission_id)
+        r.supervisor.mission.renew(mission_id)
         assert r.supervisor.status.mission_id == mission_id
         await asyncio.sleep(0.4)
         assert r.supervisor.status.mode == "mapping"
         await asyncio.sleep(0.2)
         assert r.mode.value == "disarmed"
         with pytest.raises(MissionError, match=rf"not under way any more: the lease of mission {mission_id} expired"):
-            r.supervisor.renew(mission_id)
+            r.supervisor.mission.renew(mission_id)
 
 
 async def test_a_pose_is_never_predicted_where_nothing_ties_odometry_to_the_map() -> None:

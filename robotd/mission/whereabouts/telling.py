@@ -1,0 +1,50 @@
+"""Tells the world what becomes of the whereabouts: another map, a pose carried on, or that it is not known any more."""
+
+import logging
+from collections.abc import Callable
+
+from robotd.core.clock import now_ns
+from robotd.core.pose import Odometry
+from robotd.mission.news import Publish
+from robotd.mission.results import map_result
+from robotd.mission.whereabouts.map_in_use import MapInUse, in_place_of
+from robotd.mission.whereabouts.tie import Tie
+from robotd.mission.whereabouts.whereabouts import Whereabouts, unlocalized
+
+log = logging.getLogger(__name__)
+
+
+class WhereaboutsTold:
+    """Changes the whereabouts, and says so at once: not to know where the robot is, is said and not left to silence."""
+
+    def __init__(self, whereabouts: Whereabouts, publish: Publish, publish_status: Callable[[], None]) -> None:
+        """Change ``whereabouts``; another map is told of in the status, too."""
+        self._whereabouts = whereabouts
+        self._publish = publish
+        self._publish_status = publish_status
+
+    def begin(self) -> None:
+        """Say that nothing is known yet."""
+        self._publish(unlocalized(now_ns(), ""))
+
+    def adopt(self, place: MapInUse, tie: Tie | None) -> None:
+        """Take another map into use."""
+        log.info("map %s (%s) is in use%s", place.name, place.map_id, in_place_of(self._whereabouts.map_in_use))
+        self._whereabouts.adopt(place, tie)
+        whole = place.whole(now_ns())
+        self._publish(whole, map_result(whole, place.digest))
+        if tie is None:
+            self._publish(unlocalized(now_ns(), place.map_id))
+        self._publish_status()
+
+    def doubt(self) -> None:
+        """Believe odometry no longer; without a map there is nothing to be lost on."""
+        place = self._whereabouts.map_in_use
+        if self._whereabouts.doubt() and place is not None:
+            self._publish(unlocalized(now_ns(), place.map_id))
+
+    def moved(self, odometry: Odometry, *, predicts: bool) -> None:
+        """Pass odometry on, and the pose that it leads to, unless something else has the better word on that now."""
+        self._publish(odometry)
+        if predicts and (estimate := self._whereabouts.moved(odometry)) is not None:
+            self._publish(estimate)
