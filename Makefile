@@ -78,6 +78,8 @@ lint: .venv/.dev  ## Check format and style
 	@echo "robotd: ruff"
 	@$(BIN)/ruff format --check --quiet .
 	@$(BIN)/ruff check --quiet .
+	@echo "robotd: clang-format"
+	@$(BIN)/clang-format --dry-run --Werror robotd/grid/kernels/*/*.[ch]
 
 types: .venv/.dev  ## Check types
 	@echo "robotd: mypy --strict"

@@ -22,8 +22,7 @@ static inline uint8_t larger(uint8_t a, uint8_t b)
 }
 
 /* ways = rows to the nearest cell of the same column whose value is `source`, at most `cap`. */
-static void along_columns(const uint8_t *cells, int32_t rows, int32_t cols, uint8_t source, uint8_t cap,
-                          uint8_t *ways)
+static void along_columns(const uint8_t *cells, int32_t rows, int32_t cols, uint8_t source, uint8_t cap, uint8_t *ways)
 {
     for (int32_t row = 0; row < rows; row++) {
         const uint8_t *cell = cells + (size_t)row * (size_t)cols;

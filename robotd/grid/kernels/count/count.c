@@ -22,9 +22,9 @@
 /* What one thread keeps of the bodies of a batch in one tile: the free cells that each leaves open. Bodies of one chain
  * that leave the same cells share a plane. */
 typedef struct {
-    uint64_t *planes;   /* [slots + 3][32]; the last three are all free cells, none, and all cells */
-    uint64_t *columns;  /* [slots]: the columns of the tile that have an open cell */
-    int32_t *plane_of;  /* [slots] */
+    uint64_t *planes;  /* [slots + 3][32]; the last three are all free cells, none, and all cells */
+    uint64_t *columns; /* [slots]: the columns of the tile that have an open cell */
+    int32_t *plane_of; /* [slots] */
 } bodies;
 
 /* Where to find the plane of one beam in one tile. */

@@ -8,12 +8,12 @@ typedef struct {
     packed_map map;
     drawn_beams drawn;
     int32_t headings;
-    int32_t bits;              /* planes of a counter, at least 3 */
-    uint64_t *counters;        /* [tile_count][headings][bits][32] */
-    int32_t subtract;          /* take the beams back */
-    int32_t threads;           /* at most THREADS_MAX */
-    int32_t instructions;      /* PORTABLE and the like, or -1 for the best that this processor has */
-    uint64_t *scratch;         /* count_scratch_words() of it */
+    int32_t bits;         /* planes of a counter, at least 3 */
+    uint64_t *counters;   /* [tile_count][headings][bits][32] */
+    int32_t subtract;     /* take the beams back */
+    int32_t threads;      /* at most THREADS_MAX */
+    int32_t instructions; /* PORTABLE and the like, or -1 for the best that this processor has */
+    uint64_t *scratch;    /* count_scratch_words() of it */
 } count_job;
 
 /* How much scratch so many threads need. */

@@ -19,8 +19,8 @@ static inline TARGET uint64_t NAME(any)(const VEC *words)
 
 /* Of the free cells of a tile leave those from which one of a few beams may be feasible: at a miss all, else those that see
  * something that can end it. Returns whether any is left; if none is, the chains need not be walked. */
-static inline TARGET int NAME(narrow)(const count_job *job, const int32_t *tile, const int32_t *beam, const int32_t *end,
-                                      const bodies *kept)
+static inline TARGET int NAME(narrow)(const count_job *job, const int32_t *tile, const int32_t *beam,
+                                      const int32_t *end, const bodies *kept)
 {
     const size_t stride = column_of(&job->map);
     VEC *free = (VEC *)(kept->planes + (size_t)job->drawn.slots * TILE), seen[VECTORS] = {{0}};
@@ -237,7 +237,8 @@ static TARGET void NAME(count_tile)(const count_job *job, int32_t number, const 
     for (int32_t batch = 0; batch < job->drawn.batch_count; batch++) {
         const int32_t *list = job->drawn.lists + (size_t)batch * (size_t)job->headings;
         if (job->drawn.batch_count == 1 && list[job->headings] - list[0] <= FEW &&
-            !NAME(narrow)(job, tile, job->drawn.beams + 3 * (size_t)list[0], job->drawn.beams + 3 * (size_t)list[job->headings], kept))
+            !NAME(narrow)(job, tile, job->drawn.beams + 3 * (size_t)list[0],
+                          job->drawn.beams + 3 * (size_t)list[job->headings], kept))
             continue;
         for (int32_t group = job->drawn.batches[batch]; group < job->drawn.batches[batch + 1]; group++)
             if (job->map.blocked_by > 1)

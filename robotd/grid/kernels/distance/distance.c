@@ -61,8 +61,8 @@ static inline void put(envelope *e, const distance_job *job, int32_t column, int
     if (way == NOWHERE)
         return;
     const int32_t height = way * way;
-    while (e->last >= 0 && value(e->from[e->last], e->column[e->last], e->height[e->last]) >
-                               value(e->from[e->last], column, height))
+    while (e->last >= 0 &&
+           value(e->from[e->last], e->column[e->last], e->height[e->last]) > value(e->from[e->last], column, height))
         e->last--;
     int32_t from = job->first_col;
     if (e->last >= 0) {

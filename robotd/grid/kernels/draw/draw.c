@@ -90,7 +90,8 @@ static int is_one_chain(const draw_job *job, int32_t group)
     if (s[0] == s[2] && s[1] == s[3])
         return 1;
     for (int32_t k = 0; k < job->sizes[group]; k++)
-        if (floor_of(0.5 + k * s[0]) != floor_of(0.5 + k * s[2]) || floor_of(0.5 + k * s[1]) != floor_of(0.5 + k * s[3]))
+        if (floor_of(0.5 + k * s[0]) != floor_of(0.5 + k * s[2]) ||
+            floor_of(0.5 + k * s[1]) != floor_of(0.5 + k * s[3]))
             return 0;
     return 1;
 }
@@ -209,7 +210,7 @@ static int32_t share_slots(const draw_job *job, const int32_t *groups, int32_t *
 
 /* List the beams by batch and heading. */
 static void list_beams(const draw_job *job, const int32_t *groups, const int32_t *chains, int32_t batches,
-                           int32_t *lists, int32_t *beams)
+                       int32_t *lists, int32_t *beams)
 {
     const int32_t headings = job->heading_count, beam_count = job->reading_count * headings;
     const size_t list_count = (size_t)batches * (size_t)headings;
@@ -247,7 +248,7 @@ void draw_chains(const draw_job *job, int32_t *numbers, drawn_beams *drawn)
     const int32_t batch_count = share_slots(job, groups, chains, batches);
     int32_t *lists = batches + batch_count + 1;
     list_beams(job, groups, chains, batch_count, lists, beams);
-    *drawn = (drawn_beams){chains,           groups,      beams,      batches,     lists,
-                           job->cell_count,  group_count, beam_count, batch_count, job->heading_count,
+    *drawn = (drawn_beams){chains,          groups,      beams,      batches,     lists,
+                           job->cell_count, group_count, beam_count, batch_count, job->heading_count,
                            job->slots};
 }

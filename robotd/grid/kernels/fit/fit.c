@@ -226,8 +226,8 @@ void fit_poses(const fit_job *job)
     for (int32_t number = 0; number < job->box_count; number++) {
         double *pose = job->poses + 3 * (size_t)number;
         fit(job, job->boxes + 9 * (size_t)number, pose);
-        const found f = look(job, pose, job->outlier_cells, job->beyond + (size_t)number * (size_t)job->head_count,
-                             job->errors);
+        const found f =
+            look(job, pose, job->outlier_cells, job->beyond + (size_t)number * (size_t)job->head_count, job->errors);
         judge(job, &f, job->quality + 3 * (size_t)number, job->covariances + 9 * (size_t)number);
     }
 }
@@ -249,8 +249,8 @@ static inline void add_head(const scan_job *job, double x, double y)
     for (double at_row = row; at_row <= last_row; at_row += step)
         for (double at_col = col; at_col <= last_col; at_col += step) {
             const int32_t inside = at_col >= 0.0 && at_row >= 0.0 && at_col < job->cols && at_row < job->rows;
-            *totals++ += inside ? job->costs[job->codes[(size_t)at_row * (size_t)job->cols + (size_t)at_col] + 128]
-                                : job->far;
+            *totals++ +=
+                inside ? job->costs[job->codes[(size_t)at_row * (size_t)job->cols + (size_t)at_col] + 128] : job->far;
         }
 }
 
@@ -258,7 +258,8 @@ void scan_poses(const scan_job *job)
 {
     const int32_t *steps = job->steps, count = (steps[1] - steps[0] + 1) * (steps[3] - steps[2] + 1);
     for (int32_t turn = steps[4]; turn <= steps[5]; turn++) {
-        const double heading = job->start[2] + turn * job->step_rad, turned_cos = cos(heading), turned_sin = sin(heading);
+        const double heading = job->start[2] + turn * job->step_rad, turned_cos = cos(heading),
+                     turned_sin = sin(heading);
         memset(job->totals, 0, (size_t)count * sizeof *job->totals);
         for (int32_t i = 0; i < job->head_count; i++) {
             const double *head = job->heads + 2 * (size_t)i;

@@ -5,8 +5,8 @@
 
 #include "shared/bits.h"
 
-void pack_cells(const uint8_t *mask, int32_t cols, const int32_t *window, int32_t top, int32_t left,
-                int32_t stride, uint64_t *words)
+void pack_cells(const uint8_t *mask, int32_t cols, const int32_t *window, int32_t top, int32_t left, int32_t stride,
+                uint64_t *words)
 {
     for (int32_t word = (left + window[2]) / 64; word <= (left + window[3] - 1) / 64; word++) {
         const int32_t first = 64 * word - left; /* the column of bit 0 */

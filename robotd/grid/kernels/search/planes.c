@@ -231,7 +231,8 @@ static void distances(const search_map *map, const int32_t *box, uint8_t *near)
             const int32_t row = pass == 0 ? i : height - 1 - i, before = pass == 0 ? row - 1 : row + 1;
             const int at_rim = box[0] + before < 0 || box[0] + before >= map->rows;
             const uint8_t *other = before < 0 || before >= height ? NULL : near + (size_t)before * (size_t)width;
-            const uint8_t none = at_rim ? rim : far, left = box[2] == 0 ? rim : far, right = box[3] == map->cols ? rim : far;
+            const uint8_t none = at_rim ? rim : far, left = box[2] == 0 ? rim : far,
+                          right = box[3] == map->cols ? rim : far;
             uint8_t *line = near + (size_t)row * (size_t)width;
             const uint8_t *cells = map->blocking + (size_t)(box[0] + row) * (size_t)map->cols + box[2];
             for (int32_t col = 0; col < width; col++) {

@@ -12,11 +12,11 @@
 #include <stdint.h>
 
 typedef struct {
-    int32_t rows, cols;         /* of the map */
-    int32_t keys;               /* how many directions of approach are told apart, and one that stands for all */
+    int32_t rows, cols; /* of the map */
+    int32_t keys;       /* how many directions of approach are told apart, and one that stands for all */
     int32_t outside_blocks, outside_ends, blocked_by;
     const uint8_t *free, *blocking, *grown; /* [rows][cols] */
-    const int8_t *key_of;       /* [33][33]: the key of a body that ends at an offset from its head, 0 if it has none */
+    const int8_t *key_of; /* [33][33]: the key of a body that ends at an offset from its head, 0 if it has none */
     uint16_t *cells;
     uint64_t *pooled;
     uint8_t *near;

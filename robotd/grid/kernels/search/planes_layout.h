@@ -12,7 +12,11 @@
 #define NEAR_MAX 63
 #define RING 16 /* offsets of a body's end from its head that have a key reach so far */
 
-enum { FREE, BLOCKING, GROWN };
+enum {
+    FREE,
+    BLOCKING,
+    GROWN
+};
 
 static inline int32_t up(int32_t value, int32_t step)
 {
@@ -43,7 +47,8 @@ static inline uint16_t *cell_plane(const search_map *map, int32_t which)
 /* Pooled: words of 64 blocks, eight rows of blocks before the map, at least ten after it. */
 #define POOLS 4
 static const int32_t pools[POOLS] = {16, 8, 4, 2};
-#define BEYOND 8 /* outside the map, no farther away, planes may differ from what they are far away: the reach of keys */
+#define BEYOND                                                                                                         \
+    8 /* outside the map, no farther away, planes may differ from what they are far away: the reach of keys */
 
 static inline int32_t block_rows(const search_map *map, int32_t pool)
 {

@@ -53,7 +53,8 @@ static uint64_t within(const search_job *job, const int32_t *tile, int32_t i)
     const int32_t row = (tile[1] + i) * WINDOW, first = 64 * tile[0];
     if (row + WINDOW <= job->area[0] || row >= job->area[1])
         return 0;
-    const int32_t low = clamp(job->area[2] / WINDOW - first, 0, 63), high = clamp(up(job->area[3], WINDOW) - first, 0, 64);
+    const int32_t low = clamp(job->area[2] / WINDOW - first, 0, 63),
+                  high = clamp(up(job->area[3], WINDOW) - first, 0, 64);
     return high <= low ? 0 : ~UINT64_C(0) >> (64 - high) & ~UINT64_C(0) << low;
 }
 

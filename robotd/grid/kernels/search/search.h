@@ -12,26 +12,26 @@
 
 typedef struct {
     const search_map *map;
-    const double *readings;    /* [reading_count][4]: range [cells], (x, y) of the beam's start [m], is a miss; the sooner
+    const double *readings; /* [reading_count][4]: range [cells], (x, y) of the beam's start [m], is a miss; the sooner
                                 * neighbours lie in different directions, the sooner bad poses are given up */
-    const double *headings;    /* [heading_count][2]: sine and cosine */
-    const double *sines;       /* [heading_count][reading_count], of each beam's bearing in the map */
+    const double *headings; /* [heading_count][2]: sine and cosine */
+    const double *sines;    /* [heading_count][reading_count], of each beam's bearing in the map */
     const double *cosines;
     int32_t reading_count, heading_count;
     double resolution_m, error_radius_cells, reach_cells;
-    int32_t area[4];           /* rows from [0] to before [1], columns from [2] to before [3] */
-    const int32_t *spans;      /* [area rows][2]: first column and the one after the last */
-    int32_t by_blocks;         /* whether blocks are bounded first, or the few windows of the area are looked at at once */
+    int32_t area[4];      /* rows from [0] to before [1], columns from [2] to before [3] */
+    const int32_t *spans; /* [area rows][2]: first column and the one after the last */
+    int32_t by_blocks;    /* whether blocks are bounded first, or the few windows of the area are looked at at once */
     int32_t slack, least_rank;
-    int32_t limit;             /* of poses that are returned */
-    int32_t bits;              /* planes of a counter, at least 3; 2^bits > reading_count */
+    int32_t limit; /* of poses that are returned */
+    int32_t bits;  /* planes of a counter, at least 3; 2^bits > reading_count */
     int32_t threads;
-    int32_t instructions;      /* as in count_feasible */
-    uint64_t *scratch;         /* search_scratch_words() of it */
-    int32_t *poses;            /* [2 * limit + 256][4]: heading, row, column, rank */
-    int32_t best_rank;         /* out */
-    int32_t least;             /* out: every pose of at least this rank is returned, and no other */
-    int32_t pose_count;        /* out */
+    int32_t instructions; /* as in count_feasible */
+    uint64_t *scratch;    /* search_scratch_words() of it */
+    int32_t *poses;       /* [2 * limit + 256][4]: heading, row, column, rank */
+    int32_t best_rank;    /* out */
+    int32_t least;        /* out: every pose of at least this rank is returned, and no other */
+    int32_t pose_count;   /* out */
 } search_job;
 
 /* How much scratch a search needs. */

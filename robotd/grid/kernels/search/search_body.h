@@ -15,7 +15,8 @@
 #include "shared/carry_save.h"
 
 /* Where to find what the blocks of a tile may meet at a head. */
-static inline TARGET const uint64_t *NAME(place)(const grid *of, const pooled_beam *b, const int32_t *tile, uint64_t *shift)
+static inline TARGET const uint64_t *NAME(place)(const grid *of, const pooled_beam *b, const int32_t *tile,
+                                                 uint64_t *shift)
 {
     const int32_t word = tile[0] + b->word, row = tile[1] + b->row;
     *shift = b->shift;
@@ -173,7 +174,8 @@ static TARGET void NAME(draw_heading)(const search_job *job, int32_t heading, be
         const double start_row = starts_here ? 0.0 : (h[0] * r[1] + h[1] * r[2]) / job->resolution_m;
         const double start_col = starts_here ? 0.0 : (h[1] * r[1] - h[0] * r[2]) / job->resolution_m;
         beam *b = beams + i;
-        b->at = draw_reading(start_row, start_col, sines[i], cosines[i], r[0], job->error_radius_cells, job->reach_cells);
+        b->at =
+            draw_reading(start_row, start_col, sines[i], cosines[i], r[0], job->error_radius_cells, job->reach_cells);
         b->is_miss = r[3] > 0.0;
         for (int axis = 0; axis < 2; axis++) {
             b->last[axis] = body_cell(&b->at, axis, b->at.cells - 1);

@@ -34,9 +34,9 @@ typedef struct {
 /* The counters of one window. */
 typedef struct {
     int32_t row, col, bits, start, radius;
-    int32_t middle[2];              /* all that are alive are at most radius from it */
+    int32_t middle[2]; /* all that are alive are at most radius from it */
     window alive, misses[BITS_MAX + 1];
-    window *maybe;                  /* [readings]: from where the end of each beam is right */
+    window *maybe; /* [readings]: from where the end of each beam is right */
 } sheet;
 
 typedef struct {

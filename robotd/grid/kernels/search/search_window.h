@@ -13,10 +13,10 @@ struct search;
 /* What one of them keeps. */
 typedef struct {
     struct search *shared;
-    beam *beams;                    /* [readings] */
-    pooled_beam *pooled[POOLS];     /* [readings], of the heads of hits */
+    beam *beams;                /* [readings] */
+    pooled_beam *pooled[POOLS]; /* [readings], of the heads of hits */
     int32_t hits;
-    int32_t drawn;                  /* on how many grids they lie for this heading */
+    int32_t drawn; /* on how many grids they lie for this heading */
     sheet at;
 } worker;
 
@@ -26,16 +26,20 @@ typedef struct search {
     const kernel *with;
     grid grids[POOLS];
     int32_t units;
-    int32_t (*tiles)[2];            /* [units]: column of words and first row of blocks, or row and column of a window */
-    uint64_t *counters;             /* [headings][units][bits][8], if by blocks */
-    int32_t *bounds;                /* [headings][units] */
-    int32_t *order;                 /* [ordered]: the headings that can hold an answer, the best bound first */
+    int32_t (*tiles)[2]; /* [units]: column of words and first row of blocks, or row and column of a window */
+    uint64_t *counters;  /* [headings][units][bits][8], if by blocks */
+    int32_t *bounds;     /* [headings][units] */
+    int32_t *order;      /* [ordered]: the headings that can hold an answer, the best bound first */
     int32_t ordered;
-    hope *hopes;                    /* [headings] */
+    hope *hopes; /* [headings] */
     int32_t next;
-    enum { BOUNDING, RANKING, COLLECTING } phase; /* ranking: only the best rank is sought */
-    int32_t misses;                 /* how many readings met nothing */
-    int32_t least;                  /* what a pose must explain to be returned, as far as is known */
+    enum {
+        BOUNDING,
+        RANKING,
+        COLLECTING
+    } phase;        /* ranking: only the best rank is sought */
+    int32_t misses; /* how many readings met nothing */
+    int32_t least;  /* what a pose must explain to be returned, as far as is known */
     pthread_mutex_t lock;
     worker workers[THREADS_MAX];
 } search;

@@ -21,7 +21,7 @@ static inline TARGET __attribute__((always_inline)) ADDER(three_bits) ADDER(sum_
 
 /* Adds them to the lowest planes of a bit-sliced counter, `stride` bitmaps apart; returns what is carried to the fourth. */
 static inline TARGET __attribute__((always_inline)) CELLS ADDER(add_three_bits)(CELLS *counter, int stride,
-                                                                              ADDER(three_bits) number)
+                                                                                ADDER(three_bits) number)
 {
     const CELLS n0 = counter[0], n1 = counter[stride], n2 = counter[2 * stride];
     CELLS carry = n0 & number.ones;
@@ -34,7 +34,7 @@ static inline TARGET __attribute__((always_inline)) CELLS ADDER(add_three_bits)(
 
 /* Carries one bit a cell on from a plane to the last; returns what does not fit. */
 static inline TARGET __attribute__((always_inline)) CELLS ADDER(carry_on)(CELLS *counter, int stride, int32_t bit,
-                                                                        int32_t bits, CELLS carry)
+                                                                          int32_t bits, CELLS carry)
 {
     for (; bit < bits; bit++) {
         const CELLS old = counter[bit * stride];

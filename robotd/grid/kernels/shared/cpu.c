@@ -12,8 +12,8 @@ static int32_t best_instructions(void)
 #if defined(__x86_64__) && defined(__GNUC__)
     if (!__builtin_cpu_supports("bmi2") || !__builtin_cpu_supports("avx2"))
         return PORTABLE;
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512vbmi2"))
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512vbmi2"))
         return AVX512;
     return AVX2;
 #else

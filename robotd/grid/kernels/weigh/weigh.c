@@ -73,8 +73,8 @@ static void follow(const chance_map *map, const ray *r, double start_row, double
         chances[AS_MAPPED] += share * left;
 }
 
-void weigh_beams(const uint8_t *cells, const uint8_t *skips, int32_t rows, int32_t cols, const double *stops, const double *poses,
-                 int32_t pose_count, const double *beams, int32_t beam_count, double *chances)
+void weigh_beams(const uint8_t *cells, const uint8_t *skips, int32_t rows, int32_t cols, const double *stops,
+                 const double *poses, int32_t pose_count, const double *beams, int32_t beam_count, double *chances)
 {
     const chance_map map = {cells, skips, rows, cols, stops};
     for (int32_t i = 0; i < pose_count; i++) {
@@ -85,8 +85,15 @@ void weigh_beams(const uint8_t *cells, const uint8_t *skips, int32_t rows, int32
             const direction way = direction_of(row_way, col_way);
             const int is_miss = beam[7] > 0.0;
             const double pace = 1.0 / way.dominant;
-            ray r = {way.step[0], way.step[1], pace, beam[4], beam[5],
-                     is_miss ? beam[4] : beam[4] + FAR * beam[5], (int64_t)(beam[4] / pace + 0.5), is_miss, {1.0}};
+            ray r = {way.step[0],
+                     way.step[1],
+                     pace,
+                     beam[4],
+                     beam[5],
+                     is_miss ? beam[4] : beam[4] + FAR * beam[5],
+                     (int64_t)(beam[4] / pace + 0.5),
+                     is_miss,
+                     {1.0}};
             for (int i = 1; i <= SKIP_MAX; i++)
                 r.faded[i] = r.faded[i - 1] * (1.0 - stops[UNKNOWN] * pace);
             const double row = pose[0] + (sin * beam[0] + cos * beam[1]);
