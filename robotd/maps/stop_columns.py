@@ -1,8 +1,4 @@
-"""Stops as columns of numbers, and back: what is alike lies together, so that it can be packed small.
-
-A column is the bytes of its numbers, little-endian, transposed: all first bytes, then all second ones, and so on. Those
-of high place hardly vary, and cost next to nothing once packed.
-"""
+"""Stops as columns of numbers, little-endian, and back: what is alike lies together, so that it can be packed small."""
 
 from typing import Any
 
@@ -120,8 +116,7 @@ def _poses_of(name: str, data: bytes, count: int) -> tuple[Pose2, ...]:
 
 
 def _packed(values: ArrayLike, kind: DTypeLike) -> bytes:
-    numbers = np.ascontiguousarray(np.asarray(values, kind)).reshape(-1)
-    return numbers.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
+    return np.asarray(values, kind).tobytes()
 
 
 def _column(name: str, data: bytes, kind: str, count: int | None = None) -> NDArray[Any]:
@@ -129,8 +124,7 @@ def _column(name: str, data: bytes, kind: str, count: int | None = None) -> NDAr
     if len(data) % size or (count is not None and len(data) != count * size):
         wanted = "whole numbers" if count is None else f"{count} numbers"
         raise ValueError(f"{name}: expected {wanted} of {size} bytes, got {len(data)} bytes")
-    octets = np.frombuffer(data, np.uint8).reshape(size, -1)
-    numbers = np.ascontiguousarray(octets.T).reshape(-1).view(kind)
+    numbers = np.frombuffer(data, kind)
     if kind == _FLOAT and not bool((np.abs(numbers) <= _GREATEST).all()):
         raise ValueError(f"{name}: expected finite numbers up to {_GREATEST:g}")
     return numbers
