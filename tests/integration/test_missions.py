@@ -115,7 +115,7 @@ async def test_every_request_has_somebody_who_carries_it_out(live: Live) -> None
 async def test_a_map_that_cannot_be_saved_is_not_one_that_is_not_there(
     live: Live, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def full(*_: object) -> None:
+    def full(*_: object, **__: object) -> None:
         raise MapError("cannot save map office: No space left on device")
 
     robot = office()

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from robotd.contract.answers import ErrorCode, MissionStarted
 from robotd.contract.area import Area
-from robotd.contract.arguments import PoseArgument
 from robotd.contract.envelope import (
     BadRequest,
     NumberedRequest,
@@ -26,57 +25,27 @@ from robotd.contract.missions import DriveTo, Legs, Localize, MapStart, Mission,
 from robotd.contract.request import Request
 from robotd.contract.requests import (
     REQUESTS,
-    Arm,
-    Clear,
-    Disarm,
-    GetConfig,
     GetStatus,
-    Hello,
-    ListMaps,
-    MapDiscard,
     MapLoad,
-    MapSave,
     MapShow,
-    RecordStart,
-    RecordStop,
-    Renew,
-    Stop,
 )
 from robotd.core.errors import RemoteProtocolError, ServerError
 from robotd.core.pose import Pose2
-
-LIMIT = 65536
+from tests.unit.contract.messages import LIMIT, golden_request
 
 SAMPLES: list[Request[Any]] = [
-    Hello(),
-    GetStatus(),
-    GetConfig(),
-    Arm(),
-    Disarm(),
-    Stop("because"),
-    Clear(),
-    MapStart("lab-2", ((1.0, 2.0), (3.0, -4.5)), PoseArgument(1.0, 0.0, 0.5), Legs.STRAIGHT, 0.25),
-    Localize(-0.75, 1.0),
+    *map(golden_request, REQUESTS),
+    MapStart("lab-2"),
     Localize(),
-    DriveTo(1.5, -2.5, Legs.PLANNED, None),
-    Renew(17),
-    MapSave("a"),
-    MapLoad("a", 3, PoseArgument(0.0, 1.0)),
-    MapDiscard(),
-    ListMaps(),
-    MapShow("a", 1),
-    RecordStart("somewhere/new.mcap"),
-    RecordStop(),
+    DriveTo(1.5, -2.5),
+    MapLoad("a"),
+    MapShow(),
 ]
 
 
 def request(**fields: Any) -> bytes:
     packed: bytes = msgpack.packb({"v": 1, "id": 5, "cmd": "drive_to", "args": {"x_m": 1.0, "y_m": 2.0}} | fields)
     return packed
-
-
-def test_every_command_is_sampled() -> None:
-    assert {type(sample) for sample in SAMPLES} == set(REQUESTS.values())
 
 
 @pytest.mark.parametrize("command", SAMPLES, ids=lambda command: command.cmd)
@@ -307,7 +276,7 @@ NUMBERS = [
 
 
 def test_there_are_numbers_to_try() -> None:
-    assert {cmd for cmd, _, _ in NUMBERS} == {"map_start", "localize", "drive_to", "renew", "map_load", "map_show"}
+    assert {cmd for cmd, _, _ in NUMBERS} >= {"map_start", "localize", "drive_to", "renew", "map_load", "map_show"}
 
 
 @pytest.mark.parametrize("absurd", [math.nan, math.inf, -math.inf, 1e300, -1e6, 2**63])
