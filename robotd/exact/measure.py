@@ -2,14 +2,13 @@
 
 import math
 
+from robotd.core.rectangle import Rectangle
 from robotd.exact.arrangement import Arrangement, Edge
 from robotd.exact.points import Point
 from robotd.exact.supports import HalfCircle, Support
 
 Place = tuple[float, float]
 """A point in floats."""
-Box = tuple[float, float, float, float]
-"""``(west, south, east, north)``."""
 
 
 def face_areas(arrangement: Arrangement) -> list[float]:
@@ -23,14 +22,14 @@ def face_areas(arrangement: Arrangement) -> list[float]:
     return [math.inf, *(area / 2.0 for area in twice[1:])]
 
 
-def extent(support: Support, start: Place, end: Place) -> Box:
+def extent(support: Support, start: Place, end: Place) -> Rectangle:
     """Return the box around a piece of a support."""
     (x, y), (end_x, end_y) = start, end
     south, north = min(y, end_y), max(y, end_y)
     if isinstance(support, HalfCircle) and x < float(support.x) < end_x:
         middle, radius = float(support.y), math.sqrt(support.r2)
         south, north = (south, middle + radius) if support.upper else (middle - radius, north)
-    return min(x, end_x), south, max(x, end_x), north
+    return Rectangle(min(x, end_x), south, max(x, end_x), north)
 
 
 def edge_length(arrangement: Arrangement, edge: Edge) -> float:

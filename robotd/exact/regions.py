@@ -9,8 +9,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from robotd.core.rectangle import Rectangle
 from robotd.exact.arrangement import Arrangement, Mask
-from robotd.exact.measure import Box, edge_length, ends_of, extent, face_areas
+from robotd.exact.measure import edge_length, ends_of, extent, face_areas
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +26,7 @@ class Region:
     """Infinite if it reaches to infinity."""
     length_m: float
     """Of its edges that do not just surround or cut its areas."""
-    box_m: Box
+    box_m: Rectangle
     """Infinite if it reaches to infinity."""
     readings: Mask
     """Which readings hold in the best of its cells."""
@@ -124,12 +125,12 @@ def _region(arrangement: Arrangement, areas: list[float], around: list[list[int]
     )
 
 
-def _box(arrangement: Arrangement, around: list[list[int]], cells: _Cells) -> Box:
+def _box(arrangement: Arrangement, around: list[list[int]], cells: _Cells) -> Rectangle:
     if 0 in cells.faces:
-        return -math.inf, -math.inf, math.inf, math.inf
+        return Rectangle(-math.inf, -math.inf, math.inf, math.inf)
     numbers = {*cells.edges, *(number for face in cells.faces for number in around[face])}
     edges = (arrangement.edges[number] for number in numbers)
-    boxes = [extent(edge.support, *ends_of(arrangement, edge)) for edge in edges]
+    boxes: list[tuple[float, ...]] = [extent(edge.support, *ends_of(arrangement, edge)) for edge in edges]
     boxes += [arrangement.vertices[number].point.floats * 2 for number in cells.vertices]
     wests, souths, easts, norths = zip(*boxes, strict=True)
-    return min(wests), min(souths), max(easts), max(norths)
+    return Rectangle(min(wests), min(souths), max(easts), max(norths))

@@ -7,7 +7,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
-from robotd.cli.pictures.sheet import INK, TRUTH, Box, paper, save
+from robotd.cli.pictures.sheet import INK, TRUTH, paper, save
+from robotd.core.rectangle import Rectangle
 from robotd.exact.arrangement import Arrangement
 from robotd.exact.feasible import best_rank, of_rank
 from robotd.exact.loops import outline_loops, single_lines, single_points
@@ -21,11 +22,11 @@ _FAR_M = 1000.0
 """How far to fill a set that reaches to infinity; farther than any picture."""
 
 
-def box_of(planar: PlanarSet, margin_m: float = 0.1) -> Box:
+def box_of(planar: PlanarSet, margin_m: float = 0.1) -> Rectangle:
     """Return a box around all borders of a set."""
     ends = [end.floats for border in planar.borders for end in (border.start, border.end)]
     xs, ys = [x for x, _ in ends] or [0.0], [y for _, y in ends] or [0.0]
-    return min(xs) - margin_m, min(ys) - margin_m, max(xs) + margin_m, max(ys) + margin_m
+    return Rectangle(min(xs) - margin_m, min(ys) - margin_m, max(xs) + margin_m, max(ys) + margin_m)
 
 
 def fill(axes: Axes, planar: PlanarSet, colour: str, *, alpha: float = 1.0, zorder: float = 1.0) -> None:
@@ -56,7 +57,7 @@ def draw_ranks(
     obstacles: PlanarSet,
     ranks: Arrangement,
     *,
-    box: Box | None = None,
+    box: Rectangle | None = None,
     truth_m: tuple[float, float] | None = None,
     least: int = 1,
 ) -> None:
@@ -72,7 +73,7 @@ def draw_ranks(
     if best > 0:
         poses = of_rank(ranks, best)
         fill(axes, poses, _BEST, zorder=3.0)
-        _mark_small(axes, poses, (box[2] - box[0]) * _SMALL)
+        _mark_small(axes, poses, (box.east_m - box.west_m) * _SMALL)
     if truth_m is not None:
         axes.plot(*truth_m, "o", markersize=16, markerfacecolor="none", markeredgecolor=TRUTH, markeredgewidth=2)
     save(axes, file)

@@ -31,6 +31,7 @@ from robotd.cli.pictures.sheet import (
 )
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
+from robotd.core.rectangle import Rectangle
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +64,8 @@ def draw_room(
         robot_radius_m: if given, each stop shows how much room the robot takes.
     """
     corners = np.concatenate([*walls_m, *open_walls_m])
-    axes = paper(title, (*corners.min(axis=0), *corners.max(axis=0)), "the true room, with the stops in their order")
+    shown = Rectangle(*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist())
+    axes = paper(title, shown, "the true room, with the stops in their order")
     for number, wall in enumerate(sorted(walls_m, key=_extent_m, reverse=True)):
         style = {"facecolor": FURNITURE, "linewidth": 1.2} if number else {"facecolor": "white", "linewidth": 3.0}
         axes.add_patch(Polygon(wall, closed=True, edgecolor=WALL, zorder=1 + (number > 0), **style))

@@ -18,10 +18,9 @@ from numpy.typing import NDArray
 
 from robotd.cli.outputs import PNG, check, write
 from robotd.core.grid_spec import GridSpec
+from robotd.core.rectangle import Rectangle
 
 Points = NDArray[np.float64]
-Box = tuple[float, float, float, float]
-"""``x_min_m, y_min_m, x_max_m, y_max_m``"""
 
 INK = "#22303c"
 _QUIET = "#6b7a86"
@@ -36,7 +35,7 @@ _DPI = 150
 _NICE_STEPS = (1.0, 2.0, 5.0)
 
 
-def known_box(spec: GridSpec, occupancy: NDArray[np.uint8], margin_m: float = 0.3) -> Box:
+def known_box(spec: GridSpec, occupancy: NDArray[np.uint8], margin_m: float = 0.3) -> Rectangle:
     """Return the part of the map that holds more than one value, with a margin; the whole map if there is none."""
     known = np.argwhere(occupancy != occupancy[0, 0])
     if not len(known):
@@ -44,7 +43,7 @@ def known_box(spec: GridSpec, occupancy: NDArray[np.uint8], margin_m: float = 0.
     (row_min, col_min), (row_max, col_max) = known.min(axis=0), known.max(axis=0)
     x_min, y_min = spec.centre_of(row_min - 0.5, col_min - 0.5)
     x_max, y_max = spec.centre_of(row_max + 0.5, col_max + 0.5)
-    return x_min - margin_m, y_min - margin_m, x_max + margin_m, y_max + margin_m
+    return Rectangle(x_min - margin_m, y_min - margin_m, x_max + margin_m, y_max + margin_m)
 
 
 def bar_length_m(width_m: float) -> float:
@@ -65,7 +64,7 @@ def extent_of(spec: GridSpec) -> tuple[float, float, float, float]:
     return x_min, x_max, y_min, y_max
 
 
-def paper(title: str, box: Box, note: str) -> Axes:
+def paper(title: str, box: Rectangle, note: str) -> Axes:
     """Return empty axes to scale over a box, with a title, a line that explains, and a bar in metres."""
     x_min, y_min, x_max, y_max = (float(edge) for edge in box)
     pad = 0.03 * max(x_max - x_min, y_max - y_min)
