@@ -30,7 +30,7 @@ class Outcome(enum.StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class CastVerdict:
     """Whether a reading holds at a point, and how far it is from holding if not."""
 
     outcome: Outcome
@@ -40,19 +40,19 @@ class Verdict:
     """For one that ends in the open: how far from its end the next obstacle is."""
 
 
-def cast(obstacles: PlanarSet, beam: Beam, eps: Rational, pose: Point) -> Verdict:
+def cast(obstacles: PlanarSet, beam: Beam, eps: Rational, pose: Point) -> CastVerdict:
     """Return what becomes of a beam from a point of rational or irrational coordinates: O(n k) if it meets k edges."""
     entry = _entry(obstacles, beam, pose)
     if entry is not None and compare(entry, beam.body_share(eps)) < 0:
-        return Verdict(Outcome.BLOCKED, free_length=entry * beam.length)
+        return CastVerdict(Outcome.BLOCKED, free_length=entry * beam.length)
     if contains(interior(obstacles), pose):  # a beam without body begins somewhere all the same
-        return Verdict(Outcome.BLOCKED, free_length=arithmetic_of(beam.dx)(0))
+        return CastVerdict(Outcome.BLOCKED, free_length=arithmetic_of(beam.dx)(0))
     if beam.is_hit:
         end = pose.moved(beam.dx, beam.dy)
         square = distance_square(obstacles, end)
         if compare(square, eps * eps) > 0:
-            return Verdict(Outcome.ENDS_IN_THE_OPEN, nearest=sqrt(square))
-    return Verdict(Outcome.HOLDS)
+            return CastVerdict(Outcome.ENDS_IN_THE_OPEN, nearest=sqrt(square))
+    return CastVerdict(Outcome.HOLDS)
 
 
 def rank_at(obstacles: PlanarSet, beams: Iterable[Beam], eps: Rational, pose: Point) -> int:

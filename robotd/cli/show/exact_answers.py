@@ -8,7 +8,7 @@ from robotd.cli.exact_inputs import Question
 from robotd.cli.show.terminal import print_json, print_pairs, print_table
 from robotd.core.errors import RobotdError
 from robotd.exact.beams import Beam
-from robotd.exact.casting import Outcome, Verdict, cast
+from robotd.exact.casting import CastVerdict, Outcome, cast
 from robotd.exact.points import Point
 from robotd.exact.rationals import Rational, rational
 from robotd.exact.regions import Region
@@ -71,11 +71,11 @@ def say_why(asked: Question, eps: Rational, pose: Point, *, as_json: bool) -> No
     print_table(("reading", "length m", "hit", "why"), (_reason(number, *row) for number, row in enumerate(rows)))
 
 
-def _verdict(one: Verdict) -> dict[str, Any]:
+def _verdict(one: CastVerdict) -> dict[str, Any]:
     return {"outcome": one.outcome, "free_m": _size(one.free_length), "missed_by_m": _size(one.nearest)}
 
 
-def _reason(number: int, beam: Beam, verdict: Verdict) -> tuple[str, ...]:
+def _reason(number: int, beam: Beam, verdict: CastVerdict) -> tuple[str, ...]:
     why = str(verdict.outcome).replace("_", " ")
     if verdict.free_length is not None:
         why = f"{why} after {float(verdict.free_length):.4f} m"

@@ -107,8 +107,7 @@ class DrawKernel(Protocol):
         Each beam has the cells that :mod:`robotd.grid.drawn` gives it.
 
         Args:
-            readings: ``float64[n, 5]``: bearing [rad], range [m], x and y of the beam's start [m], all in the robot
-                frame, and 1 for a miss or 0.
+            readings: ``float64[n, 5]``, the rows of :class:`~robotd.grid.readings.Readings`.
             headings: ``float64[3, headings]`` of :func:`~robotd.grid.kernels.draw.draw_kernel.turned`.
             how: resolution and error radius.
 

@@ -27,8 +27,7 @@ class InsertKernel(Protocol):
 
         Args:
             cells: ``uint8[rows, cols]``, changed in place.
-            readings: ``float64[n, 5]``: bearing [rad], range [m], x and y of the beam's start [m], all in the robot
-                frame, and 1 for a miss or 0.
+            readings: ``float64[n, 5]``, the rows of :class:`~robotd.grid.readings.Readings`.
             map_from_robot: where the robot stood.
             spec: where the cells are.
             tables: for cells that a beam runs through, and for the one that it ends in, which is not one of them.
