@@ -1,4 +1,4 @@
-/* How a reading is drawn on the grid: start, body, head. The one place in C; ray.py says the same in Python.
+/* How a reading is drawn on the grid: start, body, head. The one place in C; drawn.py is the one in Python.
  *
  * Rounded as NumPy does it (the build forbids contraction; sines and cosines come from NumPy).
  */

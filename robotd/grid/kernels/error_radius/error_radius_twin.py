@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.grid.kernels.count.count_twin import seen_from
 from robotd.grid.kernels.draw.draw_kernel import NO_HEAD
 from robotd.grid.kernels.error_radius.error_radius_kernel import Bodies
+from robotd.grid.kernels.shared.packed_counting import seen_from
 from robotd.grid.kernels.shared.packed_map import PAD_WORDS, TILE_ROWS, PackedMap, unpack
 from robotd.grid.translation import translated
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from robotd.grid.fans import FanBeams
-from robotd.grid.kernels.count.count_twin import ripple, seen_from, tiles_of_plane
+from robotd.grid.kernels.shared.packed_counting import ripple, seen_from, tiles_of_plane
 from robotd.grid.kernels.shared.packed_map import PackedMap, Words
 
 
