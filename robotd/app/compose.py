@@ -14,14 +14,14 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.address import connector
 from robotd.hardware.transport.transport import Connect
 from robotd.maps.store import MapStore
-from robotd.mission.causes import Causes
 from robotd.mission.compute import Compute, NotedCompute
-from robotd.mission.context import MissionContext
 from robotd.mission.control import Control
+from robotd.mission.missions.context import MissionContext
+from robotd.mission.missions.settings import MissionSettings
 from robotd.mission.news import News
 from robotd.mission.robot import Robot
+from robotd.mission.safety.causes import Causes
 from robotd.mission.safety.lease import EndlessLease, Lease
-from robotd.mission.settings import MissionSettings
 from robotd.mission.supervisor import Supervisor
 from robotd.recording.preroll import PrerollJournal
 
@@ -90,7 +90,8 @@ def compose(
         recordings_dir=Path(config.recording.dir),
         config_text=effective_text(config),
     )
-    return Daemon(robot, supervisor, control, Causes(supervisor, journal))
+    causes = Causes(supervisor, supervisor.holding, supervisor.mission.lease_expired, journal)
+    return Daemon(robot, supervisor, control, causes)
 
 
 def mission_settings(config: Config) -> MissionSettings:

@@ -13,8 +13,8 @@ from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RecordingError, RobotdError
 from robotd.core.text import printable
 from robotd.hardware.devices.catalogue import request_words
-from robotd.mission.causes import check_cause
 from robotd.mission.noted import check_noted
+from robotd.mission.safety.causes import check_cause
 from robotd.recording.comparison import Difference, compare, results_digest
 from robotd.recording.entries import (
     LINE_BROKE,

@@ -21,11 +21,11 @@ from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import MissionError
 from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute
-from robotd.mission.keeping import Keeping
 from robotd.mission.map_requests import MapRequests
-from robotd.mission.modes import Occasion
 from robotd.mission.noted import NotedMap, noted, request_of
+from robotd.mission.safety.modes import Occasion
 from robotd.mission.supervisor import Supervisor
+from robotd.mission.whereabouts.keeping import Keeping
 from robotd.recording.entries import CommandEntry
 from robotd.recording.place import make_place
 from robotd.recording.preroll import PrerollJournal
@@ -118,7 +118,7 @@ class Control:
         await self._supervisor.mission.ended()
 
     def start(self, mission: Mission, lease_s: float) -> int:
-        """Start a mission under a lease, whatever becomes of the map in use; see :meth:`MissionUnderWay.start`."""
+        """Start a mission under a lease, whatever becomes of the map in use."""
         begun_ns = now_ns()
         mission_id = self._supervisor.mission.start(
             mission, lease_s
@@ -127,7 +127,7 @@ class Control:
         return mission_id
 
     def renew(self, mission_id: int) -> None:
-        """Keep a mission's lease alive; see :meth:`MissionUnderWay.renew`.
+        """Keep a mission's lease alive; MissionError if that mission is not under way.
 
         It is not noted: that a lease ran out is, and a client that renews a thousand times a second costs no memory.
         """

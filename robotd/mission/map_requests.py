@@ -22,10 +22,10 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.maps.entry import MapEntry, StoredMap
 from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute
-from robotd.mission.keeping import Keeping
 from robotd.mission.map_entries import entry_info
 from robotd.mission.noted import NotedMap, grid_of, noted_grid
 from robotd.mission.supervisor import Supervisor
+from robotd.mission.whereabouts.keeping import Keeping
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
 from robotd.recording.encoding import encoded

@@ -1,7 +1,7 @@
 """Who allows motion: the mode and its mission, what watches over them, and the stop that comes before everything.
 
-The rules are in :mod:`robotd.mission.modes`; the parts made here carry them out, each with one job: arming, holding,
-watching the devices, the mission under way, telling where the robot is. What goes wrong anywhere ends in
+The rules are in :mod:`robotd.mission.safety.modes`; the parts made here carry them out, each with one job: arming,
+holding, watching the devices, the mission under way, telling where the robot is. What goes wrong anywhere ends in
 :meth:`Supervisor.halt`, and there the preformatted stop goes to every board before anything is cancelled, logged or
 published.
 """
@@ -13,8 +13,8 @@ from robotd.contract.events import Status
 from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
-from robotd.mission.context import MissionContext
-from robotd.mission.modes import Occasion
+from robotd.mission.missions.context import MissionContext
+from robotd.mission.missions.under_way import MakeLease, MissionUnderWay, NoteCause
 from robotd.mission.news import News
 from robotd.mission.safety.arming import Arming
 from robotd.mission.safety.battery import faults_of
@@ -22,7 +22,7 @@ from robotd.mission.safety.current_mode import CurrentMode
 from robotd.mission.safety.device_watch import DeviceWatch
 from robotd.mission.safety.holding import Holding
 from robotd.mission.safety.lease import Lease
-from robotd.mission.under_way import MakeLease, MissionUnderWay, NoteCause
+from robotd.mission.safety.modes import Occasion
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.telling import WhereaboutsTold
 from robotd.mission.whereabouts.tie import Tie

@@ -18,7 +18,7 @@ from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, Clear, Stop
 from robotd.core.errors import MissionError
 from robotd.mission.compute import Compute
-from robotd.mission.stop_and_sweep import SweepSettings
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.sim.boards.rangefinder import RangefinderBoard
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.emulators.ptu import PtuEmulator

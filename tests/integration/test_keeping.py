@@ -18,8 +18,8 @@ from robotd.core.clock import run_virtual
 from robotd.core.errors import MapError, MissionError
 from robotd.maps import atomic
 from robotd.maps.store import MapStore
-from robotd.mission.keeping import EVERY_STOPS
-from robotd.mission.stop_and_sweep import SweepSettings
+from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.whereabouts.keeping import EVERY_STOPS
 from robotd.mission.whereabouts.laying import lay
 from robotd.sim.robot import SimulatedRobot
 from robotd.sim.world import load_world

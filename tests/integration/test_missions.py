@@ -15,7 +15,7 @@ from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.contract.modes import Mode
 from robotd.contract.requests import REQUESTS, Hello, MapLoad, MapSave, MapShow, RecordStart, RecordStop
 from robotd.core.errors import MapError, MissionError, RecordingError
-from robotd.mission.stop_and_sweep import SweepSettings
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.recording.entries import CommandEntry
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.world import load_world

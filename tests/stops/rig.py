@@ -21,7 +21,7 @@ from robotd.core.errors import RobotdError
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.mission.compute import Compute
-from robotd.mission.stop_and_sweep import SweepSettings
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.recording.preroll import PrerollJournal
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.robot import DEVICES, SimulatedRobot

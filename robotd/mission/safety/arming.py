@@ -6,8 +6,8 @@ from robotd.contract.device_status import LinkState
 from robotd.core.errors import LinkTimeout, MissionError
 from robotd.core.silence import within
 from robotd.hardware.devices.device import Device
-from robotd.mission.modes import Occasion
 from robotd.mission.safety.current_mode import CurrentMode
+from robotd.mission.safety.modes import Occasion
 from robotd.mission.safety.stopper import Stopper
 
 _DEVICE_TIMEOUT_S = 5.0

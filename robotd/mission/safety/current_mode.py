@@ -1,4 +1,4 @@
-"""The mode the robot is in, and why: changed by occasions alone, as the table of :mod:`robotd.mission.modes` allows."""
+"""The mode the robot is in, and why: changed by occasions alone, as the table of modes allows."""
 
 import logging
 from collections.abc import Callable
@@ -7,7 +7,7 @@ from robotd.contract.modes import Mode
 from robotd.core.errors import MissionError
 from robotd.core.log_limit import LogLimit
 from robotd.core.text import printable
-from robotd.mission.modes import Occasion, next_mode
+from robotd.mission.safety.modes import Occasion, next_mode
 
 _LONGEST_REASON = 500
 

@@ -7,10 +7,10 @@ from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.modes import Mode
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import Device
-from robotd.mission.modes import Occasion
 from robotd.mission.safety.arming import Arming
 from robotd.mission.safety.battery import low_battery
 from robotd.mission.safety.holding import Holding
+from robotd.mission.safety.modes import Occasion
 from robotd.mission.safety.stopper import Stopper
 
 

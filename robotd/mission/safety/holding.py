@@ -13,9 +13,9 @@ from robotd.core.attention import attention
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import LinkTimeout, RobotdError
 from robotd.core.silence import within
-from robotd.mission.modes import Occasion
 from robotd.mission.safety.arming import Arming
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, FellSilent, Hold, Stall
+from robotd.mission.safety.modes import Occasion
 from robotd.mission.safety.stopper import Stopper
 
 _ARM_TIMEOUT_S = 5.0

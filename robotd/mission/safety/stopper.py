@@ -3,8 +3,8 @@
 from typing import Protocol
 
 from robotd.contract.modes import Mode
-from robotd.mission.modes import Occasion
 from robotd.mission.robot import Robot
+from robotd.mission.safety.modes import Occasion
 
 
 class Stopper(Protocol):

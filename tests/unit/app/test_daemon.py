@@ -22,7 +22,7 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute
-from robotd.mission.keeping import Keeping
+from robotd.mission.whereabouts.keeping import Keeping
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import read

@@ -23,11 +23,11 @@ from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.mission.compute import ThreadCompute
-from robotd.mission.context import MissionContext
-from robotd.mission.modes import Occasion
+from robotd.mission.missions.context import MissionContext
+from robotd.mission.missions.settings import MissionSettings
 from robotd.mission.news import News
 from robotd.mission.robot import Robot
-from robotd.mission.settings import MissionSettings
+from robotd.mission.safety.modes import Occasion
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
@@ -478,7 +478,7 @@ async def test_an_error_of_ours_in_a_mission_stops_the_robot(monkeypatch: pytest
 
     async with rig() as r:
         r.use_map()
-        monkeypatch.setattr("robotd.mission.missions.run_driving", fail)
+        monkeypatch.setattr("robotd.mission.missions.rows.run_driving", fail)
         r.supervisor.mission.start(DriveTo(1.0, 0.0), 100.0)
         end = await r.end_of_mission()
         assert end.phase is MissionPhase.FAILED

@@ -12,8 +12,8 @@ from robotd.contract.modes import Mode
 from robotd.core.broadcast import Broadcast
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.drive import DriveReadout
-from robotd.mission.modes import Occasion
 from robotd.mission.safety.device_watch import DeviceWatch
+from robotd.mission.safety.modes import Occasion
 
 READY, ABSENT, CONNECTING = LinkState.READY, LinkState.ABSENT, LinkState.CONNECTING
 

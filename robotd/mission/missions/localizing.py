@@ -18,9 +18,9 @@ from robotd.core.reading import RangeReading
 from robotd.localization.estimator import Estimator
 from robotd.localization.localizer import Localizer
 from robotd.mission.compute import cores
-from robotd.mission.context import MissionContext, Reporter
+from robotd.mission.missions.context import MissionContext, Reporter
+from robotd.mission.missions.stop_and_sweep import faults_text, standing
 from robotd.mission.results import result_of
-from robotd.mission.stop_and_sweep import faults_text, standing
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.entries import ResultEntry
 

@@ -9,7 +9,7 @@ from robotd.core.errors import MissionError
 from robotd.core.pose import Odometry, Pose2
 from robotd.grid.latest import HIT
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.mission.context import MissionContext, Reporter
+from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.motion.legs import drive_leg, next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.planning.path import Path, PlanningSettings, Unreachable, plan

@@ -10,7 +10,7 @@ from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.binary import FREE_MAX
 from robotd.grid.latest import HIT, NOTHING, PASSED
 from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy
-from robotd.mission.driving import _plan
+from robotd.mission.missions.driving import _plan
 from robotd.mission.whereabouts.laying import lay
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.planning.path import Path, PlanningSettings

@@ -4,7 +4,7 @@ import pytest
 
 from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.mission.context import Reporter, SweepCounter
+from robotd.mission.missions.context import Reporter, SweepCounter
 
 
 def reading(status: ReadingStatus) -> RangeReading:

@@ -10,11 +10,11 @@ from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
-from robotd.mission.context import MissionContext, Reporter
-from robotd.mission.driving import run_driving
-from robotd.mission.localizing import pose_text, run_localizing
-from robotd.mission.looking_again import looking_again
-from robotd.mission.mapping import run_mapping
+from robotd.mission.missions.context import MissionContext, Reporter
+from robotd.mission.missions.driving import run_driving
+from robotd.mission.missions.localizing import pose_text, run_localizing
+from robotd.mission.missions.looking_again import looking_again
+from robotd.mission.missions.mapping import run_mapping
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie

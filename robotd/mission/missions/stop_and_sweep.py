@@ -17,11 +17,11 @@ from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
 from robotd.hardware.devices.pantilt import PanTiltLimits
+from robotd.mission.missions.sweep_plan import SweepPart, plan_sweep
 from robotd.mission.motion.legs import rotate_to, settle
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.mission.robot import Robot
 from robotd.mission.safety.hold import Hold
-from robotd.mission.sweep_plan import SweepPart, plan_sweep
 
 FAILED = frozenset(
     {

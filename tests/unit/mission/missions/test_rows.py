@@ -1,7 +1,7 @@
 """Every kind of mission has its row."""
 
 from robotd.contract.missions import MISSIONS
-from robotd.mission.missions import MISSION_ROWS
+from robotd.mission.missions.rows import MISSION_ROWS
 
 
 def test_every_kind_of_mission_has_its_row() -> None:

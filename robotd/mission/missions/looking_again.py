@@ -6,7 +6,7 @@ from typing import TypeVar
 from robotd.contract.events import MissionPhase
 from robotd.core.errors import DeviceError
 from robotd.hardware.devices.pantilt import LOST_STEPS
-from robotd.mission.context import MissionContext, Reporter
+from robotd.mission.missions.context import MissionContext, Reporter
 
 T = TypeVar("T")
 

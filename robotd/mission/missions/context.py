@@ -9,12 +9,12 @@ from robotd.core.clock import now_ns
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.core.text import printable
 from robotd.mission.compute import Compute
+from robotd.mission.missions.settings import MissionSettings
+from robotd.mission.missions.stop_and_sweep import Sweeper
 from robotd.mission.news import Publish
 from robotd.mission.results import result_of
 from robotd.mission.robot import Robot
 from robotd.mission.safety.hold import Hold
-from robotd.mission.settings import MissionSettings
-from robotd.mission.stop_and_sweep import Sweeper
 from robotd.mission.whereabouts.whereabouts import Whereabouts
 
 _PROGRESS_EVERY = 10

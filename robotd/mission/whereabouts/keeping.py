@@ -7,6 +7,7 @@ nothing.
 import asyncio
 import logging
 from functools import partial
+from typing import Protocol
 
 from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns, wall_offset_ns
@@ -14,8 +15,9 @@ from robotd.core.errors import MapError, MissionError
 from robotd.maps.entry import UNSAVED, MapEntry
 from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute
-from robotd.mission.supervisor import Supervisor
+from robotd.mission.news import News
 from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.whereabouts import Whereabouts
 
 EVERY_STOPS = 5
 """A map that grows is kept each time so many sweeps are in it that are in memory alone: more than that, not even a kill
@@ -26,11 +28,25 @@ _LAST_S = 20.0
 log = logging.getLogger(__name__)
 
 
+class KeepingHost(Protocol):
+    """The supervisor, as far as the map in use concerns it."""
+
+    whereabouts: Whereabouts
+    news: News
+
+    @property
+    def mode(self) -> Mode:
+        """What the robot is allowed to do now."""
+
+    def publish_status(self) -> None:
+        """Tell everybody how the whole robot is."""
+
+
 class Keeping:
     """Watches the map in use and keeps it when a mission has changed it, and every few stops while one does."""
 
-    def __init__(self, supervisor: Supervisor, store: MapStore, compute: Compute) -> None:
-        self._supervisor = supervisor
+    def __init__(self, host: KeepingHost, store: MapStore, compute: Compute) -> None:
+        self._host = host
         self._store = store
         self._compute = compute
         self.turn = asyncio.Lock()
@@ -40,19 +56,19 @@ class Keeping:
 
     async def run(self) -> None:
         """Keep the map at the end of every mission that changed it, and every few stops, until cancelled."""
-        with self._supervisor.news.events.subscribe() as events:
+        with self._host.news.events.subscribe() as events:
             async for _ in events:  # whichever: those missed while the disk was busy are no loss
-                place = self._supervisor.whereabouts.map_in_use
+                place = self._host.whereabouts.map_in_use
                 if place is not None and self._is_due(place) and self._tried != _state_of(place):
                     await self.keep()
 
     def _is_due(self, place: MapInUse) -> bool:
-        return place.at_risk >= (EVERY_STOPS if self._supervisor.mode is Mode.UNDER_WAY else 1)
+        return place.at_risk >= (EVERY_STOPS if self._host.mode is Mode.UNDER_WAY else 1)
 
     async def keep(self) -> str | None:
         """Bring what nobody saved of the map in use to the store; return why that cannot be done, None if it was."""
         async with self.turn:
-            while (place := self._supervisor.whereabouts.map_in_use) is not None and self._is_due(place):
+            while (place := self._host.whereabouts.map_in_use) is not None and self._is_due(place):
                 self._tried = _state_of(place)
                 try:
                     entry = await self._kept(place)
@@ -60,7 +76,7 @@ class Keeping:
                     log.error("the unsaved map %s is in memory alone: %s", place.name, error)  # noqa: TRY400  # foreseen
                     return str(error)
                 log.info("map %s is not saved, but kept as version %d: robotctl map save", entry.name, entry.version)
-                self._supervisor.publish_status()
+                self._host.publish_status()
             return None
 
     async def make_way(self) -> None:
@@ -69,10 +85,10 @@ class Keeping:
         Raises:
             MissionError: it cannot be kept, and nobody gave it up; says what to do.
         """
-        if self._supervisor.mode is Mode.UNDER_WAY:
+        if self._host.mode is Mode.UNDER_WAY:
             return  # then no other comes in its place
         why = await self.keep()
-        place = self._supervisor.whereabouts.map_in_use
+        place = self._host.whereabouts.map_in_use
         if why is not None and place is not None:
             raise MissionError(
                 f"the unsaved map {place.name} would be lost, for it cannot be kept: {why}; "

@@ -7,8 +7,8 @@ from typing import Any, cast
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.localization.estimator import Estimator
-from robotd.mission.context import MissionContext
-from robotd.mission.localizing import Narrowing
+from robotd.mission.missions.context import MissionContext
+from robotd.mission.missions.localizing import Narrowing
 
 
 class Counting:

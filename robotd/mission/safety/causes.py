@@ -5,6 +5,7 @@ have to guess, and it would guess another moment: so each of these is noted wher
 up there, with its own clocks silenced.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
@@ -13,7 +14,8 @@ from robotd.core.attention import attention
 from robotd.core.clock import now_ns
 from robotd.core.errors import RecordingError
 from robotd.mission.safety.hold import Stall
-from robotd.mission.supervisor import Supervisor
+from robotd.mission.safety.holding import Holding
+from robotd.mission.safety.stopper import Stopper
 from robotd.recording.journal import Journal
 
 STALL = "stall"
@@ -32,8 +34,13 @@ _MAX = 1e9
 class Causes:
     """Takes up what comes from within."""
 
-    def __init__(self, supervisor: Supervisor, journal: Journal) -> None:
-        self._supervisor = supervisor
+    def __init__(
+        self, stopper: Stopper, holding: Holding, lease_expired: Callable[[int], None], journal: Journal
+    ) -> None:
+        """Hand on to a hold, or to what ends the mission of that number; each cause is noted first."""
+        self._stopper = stopper
+        self._holding = holding
+        self._lease_expired = lease_expired
         self._journal = journal
         attention().fell = self._fell
 
@@ -43,19 +50,19 @@ class Causes:
     def stalled(self, stall: Stall) -> None:
         """Take up that the event loop stood still; see :meth:`robotd.mission.safety.holding.Holding.stalled`."""
         if stall.was_stopped:
-            self._supervisor.robot.stop_now()
+            self._stopper.robot.stop_now()
         self._journal.cause(now_ns(), STALL, msgspec.to_builtins(stall))
-        self._supervisor.holding.stalled(stall)
+        self._holding.stalled(stall)
 
     def go_on(self) -> None:
         """Take up that all has been well for long enough: a held mission goes on."""
         self._journal.cause(now_ns(), GO_ON, {})
-        self._supervisor.holding.go_on()
+        self._holding.go_on()
 
     def give_up(self) -> None:
         """Take up that a held mission has waited for the base for long enough."""
         self._journal.cause(now_ns(), GIVE_UP, {})
-        self._supervisor.holding.give_up()
+        self._holding.give_up()
 
     def repeat(self, name: str, arguments: dict[str, Any]) -> None:
         """Take up a cause as the journal noted it; one of a later version is left out.
@@ -71,7 +78,7 @@ class Causes:
         elif name == GIVE_UP:
             self.give_up()
         elif name == LEASE:
-            self._supervisor.mission.lease_expired(arguments["mission_id"])
+            self._lease_expired(arguments["mission_id"])
         elif name == SILENCE:
             attention().let_fall(arguments["of"])
 

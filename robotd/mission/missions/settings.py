@@ -7,8 +7,8 @@ from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibratio
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
-from robotd.mission.stop_and_sweep import SweepSettings
 from robotd.planning.path import PlanningSettings
 
 

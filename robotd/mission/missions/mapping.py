@@ -8,11 +8,11 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
 from robotd.core.reading import Sweep
-from robotd.mission.context import MissionContext, Reporter
-from robotd.mission.driving import drive_to
-from robotd.mission.looking_again import looking_again
+from robotd.mission.missions.context import MissionContext, Reporter
+from robotd.mission.missions.driving import drive_to
+from robotd.mission.missions.looking_again import looking_again
+from robotd.mission.missions.stop_and_sweep import faults_text
 from robotd.mission.results import map_result
-from robotd.mission.stop_and_sweep import faults_text
 from robotd.mission.whereabouts.laying import lay
 from robotd.mission.whereabouts.map_in_use import MapInUse
 

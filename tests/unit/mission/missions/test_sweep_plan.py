@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robotd.core.angles import FULL_TURN_RAD
-from robotd.mission.sweep_plan import SweepPart, plan_sweep
+from robotd.mission.missions.sweep_plan import SweepPart, plan_sweep
 
 limits = st.tuples(st.floats(-math.pi, -0.2), st.floats(0.2, math.pi))
 

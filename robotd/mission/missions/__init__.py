@@ -1,0 +1,1 @@
+"""What the robot does: map, localize, drive; each a row, and one of them under way at a time."""
