@@ -123,6 +123,9 @@ class PoseEstimate:
     """Least contrast of the best place with any elsewhere on the map, in standard errors; None if there is no other."""
     bearings_rad: tuple[float, ...] = ()
     """Directions of the readings it is built from, robot frame, in the order in which they were made."""
+    jumped_m: float | None = None
+    """How far the first region lies from where odometry puts the robot, if that is farther than odometry errs: then the
+    state is ``ambiguous`` until another look agrees. Else None."""
 
     def unexplained_rad(self, region: Region) -> tuple[float, ...]:
         """Return the directions of the readings that a region does not explain, robot frame."""

@@ -35,7 +35,7 @@ def result_of(event: Event) -> ResultEntry | None:
         case SweepDone():
             return _result(event.time_ns, "sweep", _sweep(event.sweep))
         case PoseEstimate() if event.state is not PoseState.PREDICTED:
-            return _result(event.time_ns, "estimate", _without_time(msgspec.to_builtins(event)))
+            return _result(event.time_ns, "estimate", _estimate(event))
         case MissionProgress() if event.is_last:
             return _result(event.time_ns, "mission", _without_time(msgspec.to_builtins(event)))
         case _:
@@ -45,6 +45,13 @@ def result_of(event: Event) -> ResultEntry | None:
 def _result(time_ns: int, kind: str, content: dict[str, Any]) -> ResultEntry:
     text = json.dumps(content, sort_keys=True)
     return encoded(ResultEntry(time_ns, kind, content, hashlib.sha256(text.encode()).hexdigest()))
+
+
+def _estimate(estimate: PoseEstimate) -> dict[str, Any]:
+    content = _without_time(msgspec.to_builtins(estimate))
+    if estimate.jumped_m is None:
+        del content["jumped_m"]  # as in recordings made before it could be said: their digests are of what there was
+    return content
 
 
 def _sweep(sweep: Sweep) -> dict[str, Any]:

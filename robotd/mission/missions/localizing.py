@@ -43,7 +43,7 @@ async def run_localizing(
     try:
         sweep = await context.sweep(number, narrowing.offer)
         report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
-        narrowing.end()
+        narrowing.end(sweep.in_odom)
         estimate = await narrowed
     finally:
         narrowed.cancel()
@@ -84,6 +84,7 @@ class Narrowing:
         self._readings_between = readings_between
         self._batches: asyncio.Queue[tuple[RangeReading, ...] | None] = asyncio.Queue()  # bounded by one sweep
         self._batch: list[RangeReading] = []
+        self._in_odom: Pose2 | None = None
 
     @classmethod
     async def begin(
@@ -106,8 +107,9 @@ class Narrowing:
         if len(self._batch) == self._readings_between:
             self._flush()
 
-    def end(self) -> None:
-        """Say that the sweep is whole."""
+    def end(self, in_odom: Pose2) -> None:
+        """Say that the sweep is whole, and where odometry put the robot when it began."""
+        self._in_odom = in_odom
         if self._batch:
             self._flush()
         self._batches.put_nowait(None)
@@ -122,10 +124,20 @@ class Narrowing:
             batch = await self._batches.get()
             final = batch is None
             estimate, made = await self._context.compute.run("narrow", self._narrow, batch or (), now_ns(), final)
+            told = self._weighed(estimate)
+            if told is not estimate:
+                estimate, made = told, result_of(told)
             self._context.whereabouts.said(estimate)
             self._context.publish(estimate, made)
             if final:
                 return estimate
+
+    def _weighed(self, estimate: PoseEstimate) -> PoseEstimate:
+        """Return a final estimate as it may be told: who counts wheels knows how far the robot cannot have come."""
+        if self._in_odom is None or not estimate.final or not self._context.robot.has_base:
+            return estimate
+        near_m = self._context.settings.judgement.second_look.same_within_m
+        return self._context.whereabouts.weighed(estimate, self._in_odom, near_m=near_m)
 
     def _narrow(
         self, batch: tuple[RangeReading, ...], time_ns: int, final: bool

@@ -106,6 +106,12 @@ def describe(estimate: PoseEstimate) -> str:
     share = f"{estimate.best_rank or 'too few'} of {estimate.readings} readings"
     if estimate.best is not None:
         return f"{estimate.state} at {pose_text(estimate.best)}: {share}"
+    if estimate.jumped_m is not None and estimate.regions:
+        found = pose_text(estimate.regions[0].pose)
+        return (
+            f"{estimate.state}: found at {found}, {estimate.jumped_m:.1f} m from where odometry puts it ({share});"
+            " localize once more, best from another place: it counts when two looks agree"
+        )
     if not estimate.regions:
         return f"{estimate.state}: no pose is believed; the best explain {share}"
     regions = len(estimate.regions) + estimate.regions_left_out

@@ -14,6 +14,7 @@ belongs here too.
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.angles import wrap_rad
 from robotd.core.pose import Odometry, Pose2
+from robotd.mission.whereabouts.jumps import Jumps
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
 
@@ -29,6 +30,7 @@ class Whereabouts:
         self._tie: Tie | None = None
         self._said: Pose2 | None = None
         """The pose that was said last; a prediction is news only if it lies far enough from there."""
+        self._jumps = Jumps()
 
     @property
     def map_in_use(self) -> MapInUse | None:
@@ -48,6 +50,7 @@ class Whereabouts:
     def adopt(self, another: MapInUse, tie: Tie | None = None) -> None:
         """Take another map into use, with what ties odometry to it, if anything does."""
         self._map, self._tie, self._said = another, tie, None
+        self._jumps.forget()
 
     def pose_of(self, odometry: Odometry) -> Pose2 | None:
         """Return where odometry places the robot on the map, if anything ties them that is believed."""
@@ -60,6 +63,13 @@ class Whereabouts:
         A doubted tie will do: a robot that does not know where it is may still know which way it looks.
         """
         return None if self._tie is None else self._tie.in_map(odometry.in_odom).heading_rad
+
+    def weighed(self, estimate: PoseEstimate, in_odom: Pose2, *, near_m: float) -> PoseEstimate:
+        """Return the estimate of a look round as it may be told: not sure of a place where the robot should not be.
+
+        See :class:`Jumps`; a second look that agrees is sure.
+        """
+        return self._jumps.weighed(estimate, self.believed, in_odom, near_m)
 
     def said(self, estimate: PoseEstimate) -> None:
         """Take note of an estimate that is told: what is predicted next is measured against it."""
@@ -74,6 +84,7 @@ class Whereabouts:
         """
         if estimate.state is PoseState.LOCALIZED and estimate.best is not None:
             self._tie = Tie.between(estimate.best, in_odom)
+            self._jumps.forget()
             return
         says_something = estimate.regions or estimate.state is PoseState.LOST
         if self._tie is None or not says_something:
@@ -92,6 +103,7 @@ class Whereabouts:
 
     def moved(self, odometry: Odometry) -> PoseEstimate | None:
         """Return the estimate that odometry leads to, if the robot has moved since the last one said, else None."""
+        self._jumps.moved(odometry.in_odom)
         pose = self.pose_of(odometry)
         if self._map is None or pose is None or not self._has_moved(pose):
             return None

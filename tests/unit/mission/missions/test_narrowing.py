@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.core.pose import IDENTITY
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.localization.estimator import Estimator
 from robotd.mission.missions.context import MissionContext
@@ -36,6 +37,7 @@ async def test_another_estimator_is_asked_after_each_batch_and_given_what_was_me
     context = SimpleNamespace(
         compute=Inline(),
         whereabouts=SimpleNamespace(said=lambda estimate: None),
+        robot=SimpleNamespace(has_base=False),
         publish=lambda estimate, made: published.append(estimate),
     )
     estimator: Estimator = Counting()
@@ -43,7 +45,7 @@ async def test_another_estimator_is_asked_after_each_batch_and_given_what_was_me
     for number in range(10):
         status = ReadingStatus.WEAK if number == 5 else ReadingStatus.OK
         narrowing.offer(RangeReading(number, 0.1 * number, status, None if number == 5 else 1.0))
-    narrowing.end()
+    narrowing.end(IDENTITY)
     last = await narrowing.run()
     assert [(estimate.readings, estimate.final) for estimate in published] == [
         (4, False),
