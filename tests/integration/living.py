@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import inspect
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,10 +22,22 @@ from robotd.sim.runtime import connectors
 LEASE_S = 10_000.0
 
 
+_OF_MISSIONS = {"begin map", "insert", "narrow", "plan", "prepare"}
+
+
 class AtOnce:
-    """Computes where it is asked; the virtual loop would do the same in its executor."""
+    """Computes where it is asked; the virtual loop would do the same in its executor.
+
+    What missions let it compute must be what another process could be sent: a function that reaches nothing by itself,
+    and values. An object of the mission's would let the worker see, or change, what the loop lives on.
+    """
 
     async def run(self, name: str, function: Callable[..., object], *args: object) -> object:
+        if name in _OF_MISSIONS:
+            assert inspect.isfunction(function), f"{name}: {function} brings an object along"
+            assert function.__closure__ is None, f"{name}: {function} reaches what it was made in"
+            own = [arg for arg in args if type(arg).__module__.startswith("robotd.mission")]
+            assert own == [], f"{name}: handed over what is the mission's own"
         return function(*args)
 
 

@@ -22,6 +22,7 @@ from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.stop_and_sweep import faults_text, standing
 from robotd.mission.results import result_of
 from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.readiness import made_ready
 from robotd.recording.entries import ResultEntry
 
 _BATCH = 20
@@ -91,15 +92,17 @@ class Narrowing:
         cls, context: MissionContext, place: MapInUse, mission: Localize, headings_rad: tuple[float, ...]
     ) -> "Narrowing":
         """Make the map ready, and try these headings on it."""
-        job = place.readiness.hand_over(place.grid, context.settings.localization, context.settings.error_model)
-        ready = await context.compute.run("prepare", job)
+        settings, (before, changed) = context.settings, place.readiness.hand_over()
+        ready = await context.compute.run(
+            "prepare", made_ready, place.grid, settings.localization, settings.error_model, before, changed
+        )
         place.readiness.keep(ready)
-        judgement = context.settings.judgement
+        judgement = settings.judgement
         estimator = Localizer.at_stop(
             ready, place.map_id, headings_rad, mission.within, judgement=judgement, threads=cores()
         )
         is_searched = mission.heading is PriorHeading.UNKNOWN
-        return cls(context, estimator, -(-context.settings.sweep.readings // _ESTIMATES) if is_searched else _BATCH)
+        return cls(context, estimator, -(-settings.sweep.readings // _ESTIMATES) if is_searched else _BATCH)
 
     def offer(self, reading: RangeReading) -> None:
         """Take a reading."""
@@ -123,7 +126,9 @@ class Narrowing:
         while True:
             batch = await self._batches.get()
             final = batch is None
-            estimate, made = await self._context.compute.run("narrow", self._narrow, batch or (), now_ns(), final)
+            estimate, made = await self._context.compute.run(
+                "narrow", _narrow, self._estimator, batch or (), now_ns(), final
+            )
             told = self._weighed(estimate)
             if told is not estimate:
                 estimate, made = told, result_of(told)
@@ -139,12 +144,17 @@ class Narrowing:
         near_m = self._context.settings.judgement.second_look.same_within_m
         return self._context.whereabouts.weighed(estimate, self._in_odom, near_m=near_m)
 
-    def _narrow(
-        self, batch: tuple[RangeReading, ...], time_ns: int, final: bool
-    ) -> tuple[PoseEstimate, ResultEntry | None]:
-        self._estimator.add(*(reading for reading in batch if reading.is_measured))
-        estimate = self._estimator.estimate(time_ns, final=final)
-        return estimate, result_of(estimate)
+
+def _narrow(
+    estimator: Estimator, batch: tuple[RangeReading, ...], time_ns: int, final: bool
+) -> tuple[PoseEstimate, ResultEntry | None]:
+    """Return what the readings so far say, and its entry in the journal, encoded off the loop.
+
+    The estimator is the worker's from its first batch on: the loop only hands it back, and never looks inside.
+    """
+    estimator.add(*(reading for reading in batch if reading.is_measured))
+    estimate = estimator.estimate(time_ns, final=final)
+    return estimate, result_of(estimate)
 
 
 def pose_text(pose: Pose2) -> str:

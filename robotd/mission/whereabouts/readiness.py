@@ -1,6 +1,5 @@
 """What localization has made of the map in use: kept, so that a changed map is not made ready from nothing."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from robotd.grid.occupancy import OccupancyGrid
@@ -26,20 +25,29 @@ class Readiness:
         """Take note that cells changed."""
         self.changed = self.changed.joined(changed)
 
-    def hand_over(
-        self, grid: OccupancyGrid, settings: LocalizationSettings, errors: ErrorModel
-    ) -> Callable[[], ReadyMap]:
-        """Return the job that makes the map ready; hand its result to :meth:`keep`.
+    def hand_over(self) -> tuple[ReadyMap | None, CellWindow]:
+        """Return what :func:`made_ready` begins with, and where the map changed since; hand its result to :meth:`keep`.
 
         If nobody comes back with a result, because the mission was stopped, the next job begins where this one did.
         """
         ready, changed = self.ready, self.handed_over.joined(self.changed)
         self.handed_over, self.changed = changed, _NOTHING
-        return lambda: _made(grid, settings, errors) if ready is None else ready.updated(grid, changed)
+        return ready, changed
 
     def keep(self, ready: ReadyMap) -> None:
         """Take over what a job has made."""
         self.ready, self.handed_over = ready, _NOTHING
+
+
+def made_ready(
+    grid: OccupancyGrid,
+    settings: LocalizationSettings,
+    errors: ErrorModel,
+    before: ReadyMap | None,
+    changed: CellWindow,
+) -> ReadyMap:
+    """Return a grid made ready: from nothing, or from what was ready before and where it changed since."""
+    return _made(grid, settings, errors) if before is None else before.updated(grid, changed)
 
 
 def _made(grid: OccupancyGrid, settings: LocalizationSettings, errors: ErrorModel) -> ReadyMap:

@@ -30,6 +30,10 @@ def place() -> MapInUse:
     return MapInUse("m", "office", OccupancyGrid(GridSettings(rows=90, cols=120).spec_covering(((0, 0),), 1.0)))
 
 
+def made(here: MapInUse) -> ReadyMap:
+    return readiness.made_ready(here.grid, SETTINGS, ERRORS, *here.readiness.hand_over())
+
+
 def insert(here: MapInUse, x_m: float) -> None:
     sweep = swept(here, x_m)
     here.take(lay(here.grid, here.latest, None, sweep, sweep.in_odom))
@@ -64,14 +68,14 @@ def test_sweeps_between_two_localizations_are_taken_in_at_once_and_only_where_th
 ) -> None:
     here = place()
     insert(here, -0.5)
-    here.readiness.keep(here.readiness.hand_over(here.grid, SETTINGS, ERRORS)())
+    here.readiness.keep(made(here))
     insert(here, 0.4)
     insert(here, 0.9)
-    updated = here.readiness.hand_over(here.grid, SETTINGS, ERRORS)()
+    updated = made(here)
     assert len(from_nothing) == 1
     anew = place()
     anew.grid = here.grid
-    fresh = anew.readiness.hand_over(anew.grid, SETTINGS, ERRORS)()
+    fresh = made(anew)
     assert len(from_nothing) == 2
     for one, other in zip(arrays(updated), arrays(fresh), strict=True):
         np.testing.assert_array_equal(one, other)
@@ -79,19 +83,19 @@ def test_sweeps_between_two_localizations_are_taken_in_at_once_and_only_where_th
 
 def test_a_map_that_did_not_change_stays_ready(from_nothing: list[int]) -> None:
     here = place()
-    ready = here.readiness.hand_over(here.grid, SETTINGS, ERRORS)()
+    ready = made(here)
     here.readiness.keep(ready)
-    assert here.readiness.hand_over(here.grid, SETTINGS, ERRORS)() is ready
+    assert made(here) is ready
 
 
 def test_where_nobody_took_the_result_of_a_job_the_next_takes_in_what_that_one_did(from_nothing: list[int]) -> None:
     here = place()
     insert(here, -0.5)
-    here.readiness.keep(here.readiness.hand_over(here.grid, SETTINGS, ERRORS)())
+    here.readiness.keep(made(here))
     insert(here, 0.4)
-    here.readiness.hand_over(here.grid, SETTINGS, ERRORS)()  # the mission was stopped while it ran
+    made(here)  # the mission was stopped while it ran
     insert(here, 0.9)
-    updated = here.readiness.hand_over(here.grid, SETTINGS, ERRORS)()
+    updated = made(here)
     assert len(from_nothing) == 1
     for one, other in zip(arrays(updated), arrays(ReadyMap.of(here.grid, SETTINGS, ERRORS)), strict=True):
         np.testing.assert_array_equal(one, other)
