@@ -11,7 +11,7 @@ from robotd.core.clock import now_ns
 from robotd.hardware.devices.catalogue import drive, line_format, pantilt, rangefinder
 from robotd.hardware.devices.gaze import Gaze
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.transport.address import connector
+from robotd.hardware.transport.address import connector, no_line
 from robotd.hardware.transport.transport import Connect
 from robotd.maps.store import MapStore
 from robotd.mission.compute import Compute, NotedCompute
@@ -43,8 +43,8 @@ class Daemon:
 
 def serial_connectors(config: Config) -> dict[str, Connect]:
     """Return how to open the three serial lines."""
-    ports = {"drive": config.drive, "pantilt": config.pantilt, "rangefinder": config.rangefinder}
-    return {name: connector(settings.port, line_format(name, settings)) for name, settings in ports.items()}
+    lines = {name: (settings.port, line_format(name, settings)) for name, settings in config.devices.items()}
+    return {name: no_line if line is None else connector(port, line) for name, (port, line) in lines.items()}
 
 
 def compose(

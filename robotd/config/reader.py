@@ -14,6 +14,7 @@ import types
 import typing
 from typing import Annotated, Any, Generic, TypeVar, cast
 
+from robotd.config.chosen import ChosenBy, chosen_in
 from robotd.config.lines import KeyPath
 from robotd.config.problems import Problems, did_you_mean, unknown_name
 from robotd.core.bounds import Within, bounds_in
@@ -107,6 +108,8 @@ def _put_back(shape: _Shape[T], values: Table, key: list[str]) -> bool:
     section, default = values.get(key[0]), shape.defaults.get(key[0])
     if key[0] not in values:
         return False
+    if dataclasses.is_dataclass(default) and type(section) is not type(default):
+        section, default = _as_kin(section, default, shape.types[key[0]], key[1:])
     if len(key) == 1 or default is None or getattr(section, key[1], None) == getattr(default, key[1], None):
         return len(key) == 1 and values.pop(key[0]) is not None
     try:
@@ -114,6 +117,18 @@ def _put_back(shape: _Shape[T], values: Table, key: list[str]) -> bool:
     except ValueError:  # the default does not go with the rest of the section
         del values[key[0]]
     return True
+
+
+def _as_kin(section: Any, default: Any, hint: Any, key: list[str]) -> tuple[Any, Any]:
+    """Return a section that was chosen and its default, as one of a kind.
+
+    If what it was chosen by is put back, it becomes of the default's kind, with what both kinds know.
+    """
+    choice = chosen_in(hint)
+    if choice is None or key != [choice.key]:
+        return section, type(section)()
+    known = {item.name for item in dataclasses.fields(default)} & {item.name for item in dataclasses.fields(section)}
+    return dataclasses.replace(default, **{name: getattr(section, name) for name in known}), default
 
 
 def _blame(message: str, names: list[str], path: KeyPath, problems: Problems) -> str:
@@ -134,8 +149,7 @@ def read_value(kind: Any, value: object, path: KeyPath, problems: Problems, defa
         Bad: it is not one; why was added to ``problems``.
     """
     if typing.get_origin(kind) is Annotated:
-        read = read_value(typing.get_args(kind)[0], value, path, problems, default)
-        return _read_within(bounds_in(kind), read, path, problems, default)
+        return _read_annotated(kind, value, path, problems, default)
     if dataclasses.is_dataclass(kind):
         if not isinstance(value, dict):
             raise _bad(path, problems, f"expected a table, got {_describe(value)}")
@@ -148,6 +162,35 @@ def read_value(kind: Any, value: object, path: KeyPath, problems: Problems, defa
     if issubclass(kind, enum.Enum):
         return _read_enum(kind, value, path, problems)
     return _read_plain(kind, value, path, problems)
+
+
+def _read_annotated(kind: Any, value: object, path: KeyPath, problems: Problems, default: Any) -> Any:
+    choice = chosen_in(kind)
+    if choice is not None:
+        return _read_chosen(choice, value, path, problems, default)
+    read = read_value(typing.get_args(kind)[0], value, path, problems, default)
+    return _read_within(bounds_in(kind), read, path, problems, default)
+
+
+def _read_chosen(choice: ChosenBy, value: object, path: KeyPath, problems: Problems, default: Any) -> Any:
+    """Return a table as the dataclass that one of its keys chooses.
+
+    Options of the others are refused, unless they say their default: configurations that say everything stay valid.
+    """
+    if not isinstance(value, dict):
+        raise _bad(path, problems, f"expected a table, got {_describe(value)}")
+    word = value.get(choice.key, getattr(default, choice.key))
+    kind = choice.kind(word) or type(default)
+    own = {item.name for item in dataclasses.fields(kind)}
+    table: Table = {}
+    for name, said in value.items():
+        owners = {} if name in own else choice.owners(name)
+        if not owners:
+            table[name] = said
+        elif choice.kind(word) is not None and said not in owners.values():
+            others = f"{choice.key} {', '.join(owners)}"
+            problems.add((*path, name), f'is an option of {others}, and not of "{word}": leave it out')
+    return read_table(kind, table, path, problems, default if type(default) is kind else None)
 
 
 def _read_within(bounds: Within | None, value: Any, path: KeyPath, problems: Problems, default: Any) -> Any:

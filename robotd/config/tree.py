@@ -3,13 +3,25 @@
 import os
 from dataclasses import dataclass, field
 from pathlib import PurePath
+from typing import Annotated
 
+from robotd.config.chosen import ChosenBy
 from robotd.config.environment import runtime_dir
 from robotd.config.sections import MapsSettings, RecordingSettings
 from robotd.core.errors import ConfigError
 from robotd.grid.occupancy import GridSettings
+from robotd.hardware.devices.board_drive import BoardDriveSettings
+from robotd.hardware.devices.board_pantilt import BoardPanTiltSettings
+from robotd.hardware.devices.board_rangefinder import BoardRangefinderSettings
 from robotd.hardware.devices.catalogue import DIALECTS, MOTORLESS, SCANNERS, line_format
-from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, PortSettings, RangefinderSettings
+from robotd.hardware.devices.settings import (
+    BoardOptions,
+    DriveSettings,
+    PanTiltSettings,
+    PortSettings,
+    RangefinderSettings,
+    ReportOptions,
+)
 from robotd.hardware.transport.address import connector
 from robotd.localization.fit.refinement import RefinementSettings
 from robotd.localization.judge.error_model import ErrorModel
@@ -22,14 +34,21 @@ from robotd.planning.path import PlanningSettings
 from robotd.server.server import ServerSettings
 
 
+def _by_dialect(device: str) -> ChosenBy:
+    """Return how the section of a device is chosen: each dialect has options of its own."""
+    return ChosenBy("dialect", {name: dialect.options for name, dialect in DIALECTS[device].items()})
+
+
 @dataclass(frozen=True, slots=True)
 class Config:
     """What ``robotd.toml`` says; each field is a section."""
 
     server: ServerSettings = field(default_factory=lambda: ServerSettings(runtime_dir=runtime_dir()))
-    drive: DriveSettings = field(default_factory=DriveSettings)
-    pantilt: PanTiltSettings = field(default_factory=PanTiltSettings)
-    rangefinder: RangefinderSettings = field(default_factory=RangefinderSettings)
+    drive: Annotated[DriveSettings, _by_dialect("drive")] = field(default_factory=BoardDriveSettings)
+    pantilt: Annotated[PanTiltSettings, _by_dialect("pantilt")] = field(default_factory=BoardPanTiltSettings)
+    rangefinder: Annotated[RangefinderSettings, _by_dialect("rangefinder")] = field(
+        default_factory=BoardRangefinderSettings
+    )
     sweep: SweepSettings = field(default_factory=SweepSettings)
     driving: DrivingSettings = field(default_factory=DrivingSettings)
     grid: GridSettings = field(default_factory=GridSettings)
@@ -67,14 +86,17 @@ def _check_device(device: str, settings: PortSettings) -> None:
         known = ", ".join(DIALECTS[device])
         raise ValueError(f'{device}.dialect must be one of {known}; got "{settings.dialect}"')
     try:
-        connector(settings.port, line_format(device, settings))
+        line = line_format(device, settings)
+        if line is not None:
+            connector(settings.port, line)
     except ConfigError as error:
         raise ValueError(f'{device}.port must be a device path or tcp://host:port, got "{settings.port}"') from error
 
 
 def _check_ports_differ(devices: dict[str, PortSettings]) -> None:
     owners: dict[str, str] = {}
-    for device, settings in devices.items():
+    with_lines = {name: settings for name, settings in devices.items() if line_format(name, settings) is not None}
+    for device, settings in with_lines.items():
         owner = owners.setdefault(settings.port, device)
         if owner != device:
             raise ValueError(f"{device}.port must not be the port of another device, got {owner}.port")
@@ -89,26 +111,27 @@ def _check_head(pantilt: PanTiltSettings, rangefinder: RangefinderSettings) -> N
 
 
 def _check_motion(drive: DriveSettings, driving: DrivingSettings) -> None:
-    if driving.setpoint_ttl_s * 1000.0 > drive.ttl_max_ms:
+    if isinstance(drive, BoardOptions) and driving.setpoint_ttl_s * 1000.0 > drive.ttl_max_ms:
         raise ValueError(
             f"driving.setpoint_ttl_s must be within drive.ttl_max_ms, got {driving.setpoint_ttl_s} s"
             f" and {drive.ttl_max_ms} ms"
         )
-    if driving.setpoint_ttl_s * 1000.0 <= drive.telemetry_ms:  # set-points follow the telemetry
-        raise ValueError(
-            f"driving.setpoint_ttl_s must be longer than drive.telemetry_ms, got {driving.setpoint_ttl_s} s"
-            f" and {drive.telemetry_ms} ms"
-        )
-    if driving.silence_s * 1000.0 <= drive.telemetry_ms:
-        raise ValueError(
-            f"driving.silence_s must be longer than drive.telemetry_ms, got {driving.silence_s} s"
-            f" and {drive.telemetry_ms} ms"
-        )
+    if isinstance(drive, ReportOptions):  # set-points follow the reports
+        _check_paced(drive.telemetry_ms, driving)
     if driving.setpoint_ttl_s > driving.silence_s:  # the base must not drive on for longer than it may be silent
         raise ValueError(
             f"driving.setpoint_ttl_s must be no longer than driving.silence_s, got {driving.setpoint_ttl_s} s"
             f" and {driving.silence_s} s"
         )
+
+
+def _check_paced(telemetry_ms: int, driving: DrivingSettings) -> None:
+    for name in ("setpoint_ttl_s", "silence_s"):
+        seconds = getattr(driving, name)
+        if seconds * 1000.0 <= telemetry_ms:
+            raise ValueError(
+                f"driving.{name} must be longer than drive.telemetry_ms, got {seconds} s and {telemetry_ms} ms"
+            )
 
 
 def _check_cells(grid: GridSettings, planning: PlanningSettings) -> None:

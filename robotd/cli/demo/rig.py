@@ -10,12 +10,14 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any, TypeVar
 
 from robotd.cli.outputs import DEMO_MARK, write
 from robotd.client import Client
 from robotd.config import Config, effective_text
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import RequestTimeout, RobotdError
+from robotd.hardware.devices.settings import PortSettings, SilenceOptions
 from robotd.mission.safety.hold import TOO_BUSY
 from robotd.sim.pace import PATIENCE_S, SLOWED
 
@@ -28,6 +30,9 @@ _SILENT = re.compile(r"\b(silent for|no odometry for|no answer to|deadman)\b")
 _START_S = 180.0
 """Starting is quick, unless the machine is busy with something else."""
 _END_S = 60.0
+
+
+P = TypeVar("P", bound=PortSettings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +50,18 @@ def wired(config: Config, directory: Path) -> Config:
         config,
         sweep=replace(config.sweep, aim_timeout_s=PATIENCE_S),
         server=replace(config.server, runtime_dir=str(directory / "run")),
-        drive=replace(config.drive, port=str(links / "drive"), silence_s=PATIENCE_S),
-        pantilt=replace(config.pantilt, port=str(links / "pantilt"), silence_s=PATIENCE_S),
-        rangefinder=replace(config.rangefinder, port=str(links / "rangefinder"), silence_s=PATIENCE_S),
+        drive=_patient(config.drive, links / "drive"),
+        pantilt=_patient(config.pantilt, links / "pantilt"),
+        rangefinder=_patient(config.rangefinder, links / "rangefinder"),
         maps=replace(config.maps, dir=str(directory / "maps")),
         recording=replace(config.recording, dir=str(directory / "recordings")),
     )
+
+
+def _patient(device: P, link: Path) -> P:
+    """Return a device's settings for a link, with patience where it is one that reports by itself."""
+    patience: dict[str, Any] = {"silence_s": PATIENCE_S} if isinstance(device, SilenceOptions) else {}
+    return replace(device, port=str(link), **patience)
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from robotd.hardware.devices.credible import IMPLAUSIBLE, Times
 from robotd.hardware.devices.device import PAST_LOOP_EVERY
 from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.rest import Rest
-from robotd.hardware.devices.settings import PortSettings
+from robotd.hardware.devices.settings import BoardOptions
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.handshake import Terms
 from robotd.hardware.link.reconnect import Link
@@ -30,7 +30,7 @@ class BoardDevice:
     REPORTED: ClassVar[frozenset[str]] = frozenset({"armed"})
     """What its telemetry tells that is over when it rests."""
 
-    def __init__(self, settings: PortSettings, wiring: Wiring) -> None:
+    def __init__(self, settings: BoardOptions, wiring: Wiring) -> None:
         """Make the device; nothing happens before :meth:`run`."""
         self._wire = BoardWire(self.KIND)
         self._counters = LinkCounters()

@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+from dataclasses import dataclass
 from typing import ClassVar
 
 from firmware_proto.common import BoardKind
@@ -15,12 +16,22 @@ from robotd.hardware.devices.board_device import BoardDevice
 from robotd.hardware.devices.credible import check_battery, check_twist
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
-from robotd.hardware.devices.settings import DriveSettings
+from robotd.hardware.devices.settings import BoardOptions, DriveSettings
 from robotd.hardware.devices.wiring import Wiring
 
 _MILLI = 1000
 _BUMPERS = 16
 _BUMPER_STEP_RAD = math.tau / _BUMPERS
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoardDriveSettings(BoardOptions, DriveSettings):
+    """Of our own board."""
+
+    def __post_init__(self) -> None:
+        """Refuse what the device or the board refuses."""
+        DriveSettings.__post_init__(self)
+        self.refuse_short_silence()
 
 
 class BoardDrive(BoardDevice):
@@ -29,7 +40,7 @@ class BoardDrive(BoardDevice):
     KIND: ClassVar[BoardKind] = BoardKind.DRIVE
     REPORTED: ClassVar[frozenset[str]] = frozenset({"armed", "moving"})
 
-    def __init__(self, settings: DriveSettings, wiring: Wiring) -> None:
+    def __init__(self, settings: BoardDriveSettings, wiring: Wiring) -> None:
         """Make the device; its ``odom`` frame begins where the base is first seen."""
         super().__init__(settings, wiring)
         self._odometer = JudgedOdometer(self.name, settings.calibration)

@@ -1,5 +1,6 @@
 """The laser rangefinder on our own board."""
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 from firmware_proto import rangefinder as proto
@@ -10,10 +11,11 @@ from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.board_device import BoardDevice
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
-from robotd.hardware.devices.settings import RangefinderSettings
+from robotd.hardware.devices.settings import BoardOptions, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.session import Session
 
+_REACH_M = 500.0
 _MM_PER_M = 1000
 _STATUS: dict[int, ReadingStatus] = {
     ShotStatus.OK: ReadingStatus.OK,
@@ -28,15 +30,25 @@ _STATUS: dict[int, ReadingStatus] = {
 }
 
 
+@dataclass(frozen=True, kw_only=True)
+class BoardRangefinderSettings(BoardOptions, RangefinderSettings):
+    """Of our own board."""
+
+    def __post_init__(self) -> None:
+        """Refuse what the device or the board refuses."""
+        RangefinderSettings.__post_init__(self)
+        self.refuse_short_silence()
+
+
 class BoardRangefinder(BoardDevice):
     """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`."""
 
     KIND: ClassVar[BoardKind] = BoardKind.RANGEFINDER
 
-    def __init__(self, settings: RangefinderSettings, wiring: Wiring) -> None:
+    def __init__(self, settings: BoardRangefinderSettings, wiring: Wiring) -> None:
         """Make the device; its bias is applied to every range."""
         super().__init__(settings, wiring)
-        self._instrument = Instrument(settings)
+        self._instrument = Instrument(settings, _REACH_M)
 
     async def switch_laser(self, *, on: bool) -> None:
         """Switch the light; same errors as :meth:`arm`."""

@@ -3,8 +3,9 @@
 import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar, NoReturn, Self
+from typing import Annotated, ClassVar, NoReturn, Self
 
+from robotd.core.bounds import Within
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
@@ -18,6 +19,7 @@ from robotd.hardware.wire import dimetix, disto
 from robotd.hardware.wire.dimetix import DimetixWire, Distance, ErrorCode, Failed, Message, Ready, Value
 
 _TENTH_MM_PER_M = 10_000
+_REACH_M, _REACH_OF_DISTO_M = 500.0, 200.0
 _ANSWER_S = 1.0
 _TRIES = 3
 _IDLE_POLL_S = 1.0
@@ -34,10 +36,23 @@ _STATUS: dict[int, ReadingStatus] = {
 }
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DimetixSettings(RangefinderSettings):
+    """Of a Dimetix, of which several can share a line; a DISTO has its line for itself."""
+
+    device_id: Annotated[int, Within(0, 9)] = 0
+    """Which device on the line: the switch on it, 0 to 9."""
+
+    def __post_init__(self) -> None:
+        """Refuse what the device refuses."""
+        RangefinderSettings.__post_init__(self)
+
+
 @dataclass(frozen=True, slots=True)
 class _Tongue:
     """What differs between the two dialects."""
 
+    reach_m: float
     parse: Callable[[str], Message | None]
     device: int
     off: bytes
@@ -48,10 +63,10 @@ class _Tongue:
 
     @classmethod
     def of(cls, settings: RangefinderSettings) -> Self:
-        if settings.dialect == "disto":
-            return cls(disto.parsed, 0, *map(disto.command, "pogt"))
+        if not isinstance(settings, DimetixSettings):
+            return cls(_REACH_OF_DISTO_M, disto.parsed, 0, *map(disto.command, "pogt"))
         device = settings.device_id
-        return cls(dimetix.parsed, device, *(dimetix.command(device, letter) for letter in "cogt"))
+        return cls(_REACH_M, dimetix.parsed, device, *(dimetix.command(device, letter) for letter in "cogt"))
 
 
 class DimetixRangefinder(VendorDevice[Message]):
@@ -64,7 +79,7 @@ class DimetixRangefinder(VendorDevice[Message]):
         self._tongue = _Tongue.of(settings)
         super().__init__(DimetixWire(self._tongue.parse), wiring)
         self.STOP = _LINE_END + self._tongue.off
-        self._instrument = Instrument(settings)
+        self._instrument = Instrument(settings, self._tongue.reach_m)
         self._shooting = asyncio.Lock()
 
     async def switch_laser(self, *, on: bool) -> None:

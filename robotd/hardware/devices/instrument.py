@@ -5,36 +5,17 @@ reaches is the instrument's mistake (a sentinel that nobody documented, a phase 
 the room: taken for a miss, it would clear cells as far as the cut-off.
 """
 
-from collections.abc import Mapping
-
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
-
-_ANY_INSTRUMENT_M = 500.0
-
-REACH_M: Mapping[str, float] = {
-    "board": _ANY_INSTRUMENT_M,
-    "dimetix": 500.0,
-    "disto": 200.0,
-    "lw20": 100.0,
-    "lwnx": 100.0,
-    "scip": 120.0,
-    "tfmini": 15.0,
-    "tfmini-s": 15.0,
-    "tfmini-plus": 15.0,
-    "tf-luna": 10.0,
-}
-"""How far each model can measure at all, by dialect: on the best of targets, where the maker names one, and a quarter
-beyond the maker's figure in the TFmini family, whose devices do read so far on bright walls."""
 
 
 class Instrument:
     """One rangefinder's reach and bias, and how often it said what cannot be."""
 
-    def __init__(self, settings: RangefinderSettings) -> None:
-        """Take its dialect for its model."""
-        self.reach_m = REACH_M.get(settings.dialect, _ANY_INSTRUMENT_M)
+    def __init__(self, settings: RangefinderSettings, reach_m: float) -> None:
+        """Take how far its model can measure at all, on the best of targets, for what it may say."""
+        self.reach_m = reach_m
         self._bias_m = settings.range_bias_m
         self.implausible = 0
         """Distances below zero or beyond its reach, since start."""

@@ -20,6 +20,7 @@ from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard, Wire
 
+_REACH_M = 100.0
 M = TypeVar("M")
 
 ANSWER_S = 0.2
@@ -37,7 +38,7 @@ class LightwareRangefinder(VendorDevice[M]):
     def __init__(self, wire: Wire[M], settings: RangefinderSettings, wiring: Wiring) -> None:
         """Make the device; its bias is applied to every range."""
         super().__init__(wire, wiring)
-        self._instrument = Instrument(settings)
+        self._instrument = Instrument(settings, _REACH_M)
         self._shooting = asyncio.Lock()
 
     async def switch_laser(self, *, on: bool) -> None:

@@ -11,6 +11,7 @@ import asyncio
 import contextlib
 import logging
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import cycle, islice
 from typing import ClassVar, NoReturn
 
@@ -22,7 +23,7 @@ from robotd.core.silence import within
 from robotd.hardware.devices.credible import IMPLAUSIBLE, check_battery, check_twist, implausible
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
-from robotd.hardware.devices.settings import DriveSettings
+from robotd.hardware.devices.settings import DriveSettings, ReportOptions
 from robotd.hardware.devices.vendor_device import VendorDevice, is_a
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
@@ -70,6 +71,16 @@ log = logging.getLogger(__name__)
 _HALT = tuple(set_direction(axis, 0, 1_000_000, torque, forwards=True) for axis, torque in enumerate(_TORQUES))
 
 
+@dataclass(frozen=True, kw_only=True)
+class RflexSettings(ReportOptions, DriveSettings):
+    """Of an rFLEX base, which reports as often as it is told."""
+
+    def __post_init__(self) -> None:
+        """Refuse what the device refuses."""
+        DriveSettings.__post_init__(self)
+        self.refuse_short_silence()
+
+
 class RflexDrive(VendorDevice[Message]):
     """Implements :class:`robotd.hardware.devices.drive.Drive`."""
 
@@ -77,7 +88,7 @@ class RflexDrive(VendorDevice[Message]):
     STOP = b"".join(_HALT)
     """Of a burst only the first may be heard, so both are said again, with pauses, until they are obeyed."""
 
-    def __init__(self, settings: DriveSettings, wiring: Wiring) -> None:
+    def __init__(self, settings: RflexSettings, wiring: Wiring) -> None:
         """Make the device; its ``odom`` frame begins where the base is first seen."""
         super().__init__(RflexWire(), wiring, quiet_s=_QUIET_S)
         self._settings = settings

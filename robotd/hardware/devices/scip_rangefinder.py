@@ -22,6 +22,7 @@ from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.wire import scip
 from robotd.hardware.wire.scip import Parameters, Reply, ScipWire, Verdict
 
+_REACH_M = 120.0
 _MM_PER_M = 1000.0
 _ANSWER_S = 0.5
 _TRIES = 3
@@ -44,7 +45,7 @@ class ScipRangefinder(VendorDevice[Reply]):
     def __init__(self, settings: RangefinderSettings, wiring: Wiring) -> None:
         """Make the device; its bias is applied to every range."""
         super().__init__(ScipWire(), wiring)
-        self._instrument = Instrument(settings)
+        self._instrument = Instrument(settings, _REACH_M)
         self._gaze = wiring.gaze
         self._parameters: Parameters | None = None
         self._scan: Heard[tuple[int, ...]] | None = None

@@ -1,8 +1,9 @@
 """From the address in the configuration to a line."""
 
 import urllib.parse
+from typing import NoReturn
 
-from robotd.core.errors import ConfigError
+from robotd.core.errors import ConfigError, TransportError
 from robotd.hardware.transport.descriptor import DescriptorTransport
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.serial_port import open_serial
@@ -28,6 +29,11 @@ def connector(address: str, line_format: LineFormat) -> Connect:
         return await open_tcp(host, port)
 
     return connect
+
+
+async def no_line() -> NoReturn:
+    """Stand for the line of a device that has none; TransportError."""
+    raise TransportError("this device has no line")
 
 
 def _host_and_port(address: str) -> tuple[str, int]:

@@ -3,10 +3,13 @@
 import enum
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Generic, TypeVar
 
 from robotd.core.errors import ConfigError
-from robotd.hardware.transport.line_format import LineFormat
+from robotd.hardware.devices import catalogue as dialects
+from robotd.hardware.devices.dialect import Line
+from robotd.hardware.wire.tfmini import Model
 from robotd.sim.boards.drive import DriveBoard
 from robotd.sim.boards.pantilt import PanTiltBoard
 from robotd.sim.boards.rangefinder import RangefinderBoard
@@ -44,32 +47,44 @@ class Emulator(Generic[Plant]):
     """What the daemon's configuration of the device must say, beside its dialect, to understand it."""
 
 
+def _spoken(
+    line: Line | None, make: Callable[[Plant], HostedBoard], settings: Mapping[str, object] | None = None
+) -> Emulator[Plant]:
+    """Return an emulator that says its bytes no quicker than the line of its dialect takes them."""
+    assert line is not None  # what speaks has a line
+    return Emulator(lambda plant, _: Paced(make(plant), line.usual), settings or {})
+
+
 DRIVES: Mapping[str, Emulator[DrivePlant]] = {
     "board": Emulator(lambda plant, boot_id: DriveBoard(plant, boot_id=boot_id)),
-    "rwi-ascii": Emulator(
-        lambda plant, _: Paced(RwiEmulator(plant), LineFormat(9_600)),
+    "rwi-ascii": _spoken(
+        dialects.DRIVES["rwi-ascii"].line,
+        RwiEmulator,
         {"counts_per_m": rwi.COUNTS_PER_M, "counts_per_rad": rwi.COUNTS_PER_RAD},
     ),
-    "rflex": Emulator(
-        lambda plant, _: Paced(RflexEmulator(plant), LineFormat(115_200)),
+    "rflex": _spoken(
+        dialects.DRIVES["rflex"].line,
+        RflexEmulator,
         {"counts_per_m": rflex.COUNTS_PER_M, "counts_per_rad": rflex.COUNTS_PER_RAD},
     ),
 }
+_HEADS: Mapping[str, Callable[[HeadPlant], HostedBoard]] = {"dynamixel": DynamixelEmulator, "ptu": PtuEmulator}
 PANTILTS: Mapping[str, Emulator[HeadPlant]] = {
     "board": Emulator(lambda plant, boot_id: PanTiltBoard(plant, boot_id=boot_id)),
     "fixed": Emulator(lambda plant, _: FixedEmulator(plant)),
-    "dynamixel": Emulator(lambda plant, _: Paced(DynamixelEmulator(plant), LineFormat(57_600))),
-    "ptu": Emulator(lambda plant, _: Paced(PtuEmulator(plant), LineFormat(9_600))),
+    **{name: _spoken(dialects.PANTILTS[name].line, make) for name, make in _HEADS.items()},
+}
+_SENSORS: Mapping[str, Callable[[ScannerPlant], HostedBoard]] = {
+    **{model.value: partial(TfminiEmulator, model=model) for model in Model},
+    "dimetix": DimetixEmulator,
+    "disto": DistoEmulator,
+    "lw20": Lw20Emulator,
+    "lwnx": LwnxEmulator,
+    "scip": ScipEmulator,
 }
 RANGEFINDERS: Mapping[str, Emulator[ScannerPlant]] = {
     "board": Emulator(lambda plant, boot_id: RangefinderBoard(plant, boot_id=boot_id)),
-    "tfmini-s": Emulator(lambda plant, _: Paced(TfminiEmulator(plant), LineFormat(115_200))),
-    "tfmini": Emulator(lambda plant, _: Paced(TfminiEmulator(plant, is_first=True), LineFormat(115_200))),
-    "dimetix": Emulator(lambda plant, _: Paced(DimetixEmulator(plant), LineFormat(19_200, 7, "E", 1))),
-    "disto": Emulator(lambda plant, _: Paced(DistoEmulator(plant), LineFormat(9_600, 7, "E", 1))),
-    "lw20": Emulator(lambda plant, _: Paced(Lw20Emulator(plant), LineFormat(115_200))),
-    "lwnx": Emulator(lambda plant, _: Paced(LwnxEmulator(plant), LineFormat(115_200))),
-    "scip": Emulator(lambda plant, _: Paced(ScipEmulator(plant), LineFormat(115_200))),
+    **{name: _spoken(dialects.RANGEFINDERS[name].line, make) for name, make in _SENSORS.items()},
 }
 OWN = "board"
 
@@ -96,8 +111,9 @@ class Dialects:
             dialect = getattr(self, device)
             if dialect not in table:
                 raise ConfigError(f"no emulated {device} speaks {dialect!r}; known: {', '.join(table)}", key=device)
-        if (self.pantilt == "fixed") != (self.rangefinder == "scip"):
-            raise ConfigError("a head that is fixed and a scanner (scip) need each other", key="pantilt")
+        if (self.pantilt == dialects.MOTORLESS) != (self.rangefinder in dialects.SCANNERS):
+            scanners = ", ".join(dialects.SCANNERS)
+            raise ConfigError(f"a head that is fixed and a scanner ({scanners}) need each other", key="pantilt")
         if self.boards is Firmware.C and firmware is None:
             raise ConfigError("there was no C compiler for the firmware when robotd was installed", key="boards")
 

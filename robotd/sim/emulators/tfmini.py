@@ -1,10 +1,10 @@
-"""An emulated Benewake TFmini-S: streams from power-up, and measures on a trigger once it is told to.
+"""An emulated Benewake TFmini of any model: streams from power-up, and measures on a trigger once it is told to.
 
-And a TFmini of the first generation, which streams and hears nothing.
+But for the first generation, which streams and hears nothing.
 """
 
 from firmware_proto.rangefinder import ShotStatus
-from robotd.hardware.wire.tfmini import FORMAT_CM, OUTPUT_OFF, OUTPUT_ON, RATE_0, TRIGGER, VERSION, command
+from robotd.hardware.wire.tfmini import FORMAT_CM, OUTPUT_OFF, OUTPUT_ON, RATE_0, TRIGGER, VERSION, Model, command
 from robotd.sim.plant import LaserPlant, ShotAnswer
 
 _STREAM_US = 10_000
@@ -15,18 +15,21 @@ _SENTINELS = {
     ShotStatus.WEAK: (0xFFFF, 60),
     ShotStatus.TOO_NEAR: (0, 60),
     ShotStatus.SATURATED: (0xFFFE, 0xFFFF),
-    ShotStatus.AMBIENT: (0xFFFC, 500),
 }
-_SENTINELS_OF_FIRST = {ShotStatus.OVER_RANGE: (1200, 60), ShotStatus.WEAK: (0xFFFF, 10)}
+_SENTINELS_OF = {
+    Model.TFMINI: {ShotStatus.OVER_RANGE: (1200, 60), ShotStatus.WEAK: (0xFFFF, 10)},
+    Model.TFMINI_S: {**_SENTINELS, ShotStatus.AMBIENT: (0xFFFC, 500)},
+}
 _STRENGTH_MIN, _STRENGTH_MAX = 101, 30_000
 
 
 class TfminiEmulator:
     """Its light is always on."""
 
-    def __init__(self, plant: LaserPlant, *, is_first: bool = False) -> None:
+    def __init__(self, plant: LaserPlant, *, model: Model = Model.TFMINI_S) -> None:
         self._plant = plant
-        self._is_first = is_first
+        self._is_first = model is Model.TFMINI
+        self._sentinels = _SENTINELS_OF.get(model, _SENTINELS)
         self._plant.switch(on=True)
         self._typed = bytearray()
         self._said = bytearray()
@@ -103,7 +106,6 @@ class TfminiEmulator:
             strength = min(max(answer.strength, _STRENGTH_MIN), _STRENGTH_MAX)
             distance = round(answer.range_m * 100)
         else:
-            sentinels = _SENTINELS_OF_FIRST if self._is_first else _SENTINELS
-            distance, strength = sentinels.get(answer.status, (0xFFFF, 0))
+            distance, strength = self._sentinels.get(answer.status, (0xFFFF, 0))
         frame = b"\x59\x59" + distance.to_bytes(2, "little") + strength.to_bytes(2, "little") + _TEMPERATURE
         self._said += frame + bytes((sum(frame) & 0xFF,))

@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import typing
 from collections.abc import Iterator
 from typing import Any
 
@@ -24,7 +23,8 @@ def numbers() -> Iterator[tuple[str, str, Any]]:
 
 
 def bounds(section: str, key: str) -> Within:
-    found = bounds_of(typing.get_type_hints(Config)[section])
+    kind: Any = type(getattr(Config(), section))
+    found = bounds_of(kind)
     assert key in found, f"{section}.{key} has no bounds"
     return found[key]
 

@@ -1,5 +1,6 @@
 """The daemon's own configuration: files, directories, what must agree between sections."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,8 @@ from hypothesis import strategies as st
 
 from robotd.config import Config, default_path, effective_text, load, loads
 from robotd.core.errors import ConfigError
+from robotd.hardware.devices.dimetix_rangefinder import DimetixSettings
+from robotd.hardware.devices.dynamixel_pantilt import DynamixelSettings
 
 
 def complaints(text: str) -> list[str]:
@@ -66,8 +69,28 @@ def test_the_effective_text_loads_to_the_same(readings: int, tilt_rad: float, po
             ),
         ),
         (
-            "[pantilt]\npan_min_rad = 1.0\npan_max_rad = 0.5",
+            "[pantilt]\npan_min_rad = 1.0\ndialect = 'fixed'\npan_max_rad = 0.5\n[rangefinder]\ndialect = 'scip'",
             "r.toml:2: pantilt.pan_min_rad: must be less than pan_max_rad, got 1.0, 0.5",
+        ),
+        (
+            "[pantilt]\ndialect = 'ptu'\npan_id = 3",
+            'r.toml:3: pantilt.pan_id: is an option of dialect dynamixel, and not of "ptu": leave it out',
+        ),
+        (
+            "[rangefinder]\ndevice_id = 3",
+            'r.toml:2: rangefinder.device_id: is an option of dialect dimetix, and not of "board": leave it out',
+        ),
+        (
+            "[drive]\ndialect = 'rwi-ascii'\nttl_max_ms = 600",
+            'r.toml:3: drive.ttl_max_ms: is an option of dialect board, and not of "rwi-ascii": leave it out',
+        ),
+        (
+            "[rangefinder]\ndialect = 'dimetix'\ndevice_id = 10",
+            "r.toml:3: rangefinder.device_id: must be 0 to 9, got 10",
+        ),
+        (
+            "[pantilt]\ndialect = 'dynamixel'\npan_id = 2",
+            "r.toml:3: pantilt.pan_id: tilt_id must differ from pan_id, got 2 twice",
         ),
         (
             "[pantilt]\ndialect = 'klingon'",
@@ -218,3 +241,26 @@ def test_the_file_to_read_is_the_one_the_environment_names(monkeypatch: pytest.M
     assert default_path() == Path("/etc/robotd/robotd.toml")
     monkeypatch.setenv("ROBOTD_CONFIG", "/srv/robot.toml")
     assert default_path() == Path("/srv/robot.toml")
+
+
+def test_a_device_has_the_options_of_its_dialect_alone() -> None:
+    text = "[pantilt]\ndialect = 'dynamixel'\npan_id = 7\n[rangefinder]\ndialect = 'dimetix'\ndevice_id = 4\n"
+    config = loads(text)
+    assert isinstance(config.pantilt, DynamixelSettings)
+    assert (config.pantilt.pan_id, config.pantilt.tilt_id) == (7, 2)
+    assert isinstance(config.rangefinder, DimetixSettings)
+    assert config.rangefinder.device_id == 4
+    written = effective_text(config)
+    assert loads(written) == config
+    assert "telemetry_ms" in written.split("[pantilt]")[0]
+    assert "telemetry_ms" not in written.split("[pantilt]")[1]
+
+
+@pytest.mark.parametrize("dialect", ["board", "ptu", "dynamixel"])
+def test_a_text_that_says_the_defaults_of_all_dialects_stays_valid(dialect: str) -> None:
+    """As every configuration and every recording did before the dialects had options of their own."""
+    text = (
+        f"[pantilt]\ndialect = '{dialect}'\ntelemetry_ms = 40\nttl_max_ms = 30000\nsilence_s = 1.0\n"
+        f"pan_id = 1\ntilt_id = 2\npan_min_rad = {-math.pi}\npan_max_rad = {math.pi}\n"
+    )
+    assert loads(text) == loads(f"[pantilt]\ndialect = '{dialect}'")

@@ -16,11 +16,10 @@ from robotd.core.clock import run_virtual
 from robotd.core.errors import TransportError
 from robotd.core.pose import Pose2, Twist2
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.board_drive import BoardDrive
-from robotd.hardware.devices.board_pantilt import BoardPanTilt
-from robotd.hardware.devices.board_rangefinder import BoardRangefinder
+from robotd.hardware.devices.board_drive import BoardDrive, BoardDriveSettings
+from robotd.hardware.devices.board_pantilt import BoardPanTilt, BoardPanTiltSettings
+from robotd.hardware.devices.board_rangefinder import BoardRangefinder, BoardRangefinderSettings
 from robotd.hardware.devices.device import Device
-from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.line_format import LineFormat
@@ -62,9 +61,9 @@ async def armed(connect: dict[str, Connect]) -> AsyncIterator[Daemon]:
         return Wiring(connect[device], NoTap(), random.Random(1))
 
     daemon = Daemon(
-        BoardDrive(DriveSettings(), wiring("drive")),
-        BoardPanTilt(PanTiltSettings(), wiring("pantilt")),
-        BoardRangefinder(RangefinderSettings(), wiring("rangefinder")),
+        BoardDrive(BoardDriveSettings(), wiring("drive")),
+        BoardPanTilt(BoardPanTiltSettings(), wiring("pantilt")),
+        BoardRangefinder(BoardRangefinderSettings(), wiring("rangefinder")),
     )
     devices: list[Device] = [daemon.drive, daemon.pantilt, daemon.rangefinder]
     tasks = [asyncio.create_task(device.run()) for device in devices]

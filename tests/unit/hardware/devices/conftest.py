@@ -13,11 +13,10 @@ from firmware_proto.schema import Message
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.core.errors import TransportError
 from robotd.hardware.devices.board_device import BoardDevice
-from robotd.hardware.devices.board_drive import BoardDrive
-from robotd.hardware.devices.board_pantilt import BoardPanTilt
-from robotd.hardware.devices.board_rangefinder import BoardRangefinder
+from robotd.hardware.devices.board_drive import BoardDrive, BoardDriveSettings
+from robotd.hardware.devices.board_pantilt import BoardPanTilt, BoardPanTiltSettings
+from robotd.hardware.devices.board_rangefinder import BoardRangefinder, BoardRangefinderSettings
 from robotd.hardware.devices.device import Device
-from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Connect, Transport
@@ -44,13 +43,13 @@ def either_firmware(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPa
 class Rig:
     """A simulated robot and the three devices that talk to it."""
 
-    def __init__(self, robot: SimulatedRobot, connect: dict[str, Connect], pantilt: PanTiltSettings) -> None:
+    def __init__(self, robot: SimulatedRobot, connect: dict[str, Connect], pantilt: BoardPanTiltSettings) -> None:
         self.robot = robot
         self.lines: dict[str, FaultyLine] = {}
         self._connect = connect
-        self.drive = BoardDrive(DriveSettings(), self._wiring("drive"))
+        self.drive = BoardDrive(BoardDriveSettings(), self._wiring("drive"))
         self.pantilt = BoardPanTilt(pantilt, self._wiring("pantilt"))
-        self.rangefinder = BoardRangefinder(RangefinderSettings(range_bias_m=0.01), self._wiring("rangefinder"))
+        self.rangefinder = BoardRangefinder(BoardRangefinderSettings(range_bias_m=0.01), self._wiring("rangefinder"))
         self.devices: tuple[BoardDevice, ...] = (self.drive, self.pantilt, self.rangefinder)
 
     def _wiring(self, device: str) -> Wiring:
@@ -76,12 +75,12 @@ class Rig:
 
 @asynccontextmanager
 async def rig(
-    *, armed: bool = True, sim: SimSettings | None = None, pantilt: PanTiltSettings | None = None
+    *, armed: bool = True, sim: SimSettings | None = None, pantilt: BoardPanTiltSettings | None = None
 ) -> AsyncIterator[Rig]:
     settings = sim or SimSettings(noise=NOISELESS)
     robot = SimulatedRobot(load_world("laboratory"), seed=1, settings=settings, dialects=Dialects(boards=BOARDS))
     async with connectors(robot) as connect:
-        rig = Rig(robot, connect, pantilt or PanTiltSettings())
+        rig = Rig(robot, connect, pantilt or BoardPanTiltSettings())
         tasks = [asyncio.create_task(device.run()) for device in rig.devices]
         for device in rig.devices:
             await rig.wait(device, LinkState.READY)

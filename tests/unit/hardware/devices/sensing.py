@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 from firmware_proto.rangefinder import ShotStatus
 from robotd.contract.device_status import DeviceStatus, LinkState
+from robotd.hardware.devices.catalogue import RANGEFINDERS as DIALECTS
 from robotd.hardware.devices.catalogue import rangefinder
 from robotd.hardware.devices.rangefinder import Rangefinder
-from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
@@ -68,7 +68,7 @@ async def sensor(dialect: str, *, greeted: bool = True) -> AsyncIterator[Sensor]
         ends.put_nowait(far)
         return near
 
-    settings = RangefinderSettings(dialect=dialect, range_bias_m=0.01)
+    settings = DIALECTS[dialect].options(dialect=dialect, range_bias_m=0.01)
     board = RANGEFINDERS[dialect].power_up(wall, 0)
     it = Sensor(rangefinder(settings, Wiring(connect, NoTap(), random.Random(0))), wall, board)
     tasks = [

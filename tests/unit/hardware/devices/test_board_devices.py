@@ -17,13 +17,12 @@ from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
-from robotd.hardware.devices.board_drive import BoardDrive
-from robotd.hardware.devices.board_pantilt import BoardPanTilt
-from robotd.hardware.devices.board_rangefinder import BoardRangefinder
+from robotd.hardware.devices.board_drive import BoardDrive, BoardDriveSettings
+from robotd.hardware.devices.board_pantilt import BoardPanTilt, BoardPanTiltSettings
+from robotd.hardware.devices.board_rangefinder import BoardRangefinder, BoardRangefinderSettings
 from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
-from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.sim.head import HeadSettings
@@ -67,9 +66,9 @@ def test_the_adapters_are_what_the_mission_expects() -> None:
 
     wiring = Wiring(nowhere, NoTap(), random.Random(0))
     accept(
-        BoardDrive(DriveSettings(), wiring),
-        BoardPanTilt(PanTiltSettings(), wiring),
-        BoardRangefinder(RangefinderSettings(), wiring),
+        BoardDrive(BoardDriveSettings(), wiring),
+        BoardPanTilt(BoardPanTiltSettings(), wiring),
+        BoardRangefinder(BoardRangefinderSettings(), wiring),
     )
 
 
@@ -260,7 +259,7 @@ async def test_the_head_turns_and_says_where_it_rests() -> None:
 
 
 async def test_the_zeros_of_the_mount_are_applied_both_ways() -> None:
-    async with rig(pantilt=PanTiltSettings(pan_zero_rad=0.3, tilt_zero_rad=-0.1)) as r:
+    async with rig(pantilt=BoardPanTiltSettings(pan_zero_rad=0.3, tilt_zero_rad=-0.1)) as r:
         limits = await r.pantilt.limits()
         assert limits.pan_max_rad == pytest.approx(math.radians(159) + 0.3, abs=1e-3)
         assert limits.tilt_min_rad == pytest.approx(math.radians(-47) - 0.1, abs=1e-3)
@@ -271,7 +270,7 @@ async def test_the_zeros_of_the_mount_are_applied_both_ways() -> None:
 
 async def test_a_head_without_end_pans_all_round_whatever_its_zero() -> None:
     sim = SimSettings(noise=NOISELESS, head=HeadSettings(pan_limit_rad=math.pi))
-    async with rig(sim=sim, pantilt=PanTiltSettings(pan_zero_rad=1.0)) as r:
+    async with rig(sim=sim, pantilt=BoardPanTiltSettings(pan_zero_rad=1.0)) as r:
         limits = await r.pantilt.limits()
         assert (limits.pan_min_rad, limits.pan_max_rad) == (-math.pi, math.pi)
         for pan_rad in (-math.pi, -2.5, 0.0, 3.0, math.pi):

@@ -12,8 +12,7 @@ from firmware_proto.rangefinder import ShotStatus
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.dimetix_rangefinder import DimetixRangefinder
-from robotd.hardware.devices.settings import RangefinderSettings
+from robotd.hardware.devices.dimetix_rangefinder import DimetixRangefinder, DimetixSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
@@ -59,7 +58,7 @@ async def sensor(device_id: int = 0) -> AsyncIterator[Sensor]:
         ends.put_nowait(far)
         return near
 
-    settings = RangefinderSettings(device_id=device_id, range_bias_m=0.01)
+    settings = DimetixSettings(device_id=device_id, range_bias_m=0.01)
     device = DimetixRangefinder(settings, Wiring(connect, NoTap(), random.Random(0)))
     tasks = [
         asyncio.create_task(serve(DimetixEmulator(wall, device_id), BoardClock(), ends)),

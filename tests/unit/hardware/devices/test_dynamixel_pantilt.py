@@ -10,8 +10,7 @@ import pytest
 
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError
-from robotd.hardware.devices.dynamixel_pantilt import DynamixelPanTilt
-from robotd.hardware.devices.settings import PanTiltSettings
+from robotd.hardware.devices.dynamixel_pantilt import DynamixelPanTilt, DynamixelSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Transport
@@ -53,7 +52,7 @@ async def servos(*, hardware_error: int = 0) -> AsyncIterator[Servos]:
             lines.append(await connects["pantilt"]())
             return lines[-1]
 
-        device = DynamixelPanTilt(PanTiltSettings(), Wiring(connect, NoTap(), random.Random(0)))
+        device = DynamixelPanTilt(DynamixelSettings(), Wiring(connect, NoTap(), random.Random(0)))
         running = asyncio.create_task(device.run())
         with device.status_changes.subscribe() as changes:
             while device.status.link is not LinkState.READY:

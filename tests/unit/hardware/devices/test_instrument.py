@@ -13,10 +13,10 @@ from robotd.contract.device_status import LinkState
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
 from robotd.hardware.devices.catalogue import RANGEFINDERS, rangefinder
-from robotd.hardware.devices.instrument import REACH_M, Instrument
+from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Rangefinder, Shot
-from robotd.hardware.devices.settings import RangefinderSettings
+from robotd.hardware.devices.tfmini_rangefinder import TfminiSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.memory import memory_pair
@@ -24,8 +24,21 @@ from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire import tfmini
 from robotd.hardware.wire.tfmini import Model
 from robotd.sim.plant import ShotAnswer
-from tests.unit.hardware.devices.conftest import rig
+from tests.unit.hardware.devices.conftest import nowhere, rig
 from tests.unit.hardware.devices.sensing import sensor
+
+REACH_M = {
+    "board": 500.0,
+    "dimetix": 500.0,
+    "disto": 200.0,
+    "lw20": 100.0,
+    "lwnx": 100.0,
+    "scip": 120.0,
+    "tfmini": 15.0,
+    "tfmini-s": 15.0,
+    "tfmini-plus": 15.0,
+    "tf-luna": 10.0,
+}
 
 
 def laid(shot: Shot, calibration: RangefinderCalibration | None = None) -> RangeReading:
@@ -34,7 +47,11 @@ def laid(shot: Shot, calibration: RangefinderCalibration | None = None) -> Range
 
 
 def instrument(dialect: str) -> Instrument:
-    return Instrument(RangefinderSettings(dialect=dialect))
+    """Return the instrument in the adapter of a dialect."""
+    device = rangefinder(RANGEFINDERS[dialect].options(dialect=dialect), Wiring(nowhere, NoTap(), random.Random(0)))
+    found = vars(device)["_instrument"]
+    assert isinstance(found, Instrument)
+    return found
 
 
 def test_every_dialect_has_a_reach() -> None:
@@ -116,7 +133,7 @@ async def test_what_a_tfmini_cannot_have_measured_is_a_fault(
     async def connect() -> Transport:
         return near
 
-    settings = RangefinderSettings(dialect=model.value)
+    settings = TfminiSettings(dialect=model.value)
     it = Wired(rangefinder(settings, Wiring(connect, NoTap(), random.Random(0))))
     it.data = frame(distance_cm, 900)
     tasks = [asyncio.create_task(it.answer(far)), asyncio.create_task(it.device.run())]

@@ -14,8 +14,7 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Twist2
 from robotd.hardware.devices.device import PAST_LOOP_S
-from robotd.hardware.devices.rflex_drive import NO_WATCHDOG, RflexDrive
-from robotd.hardware.devices.settings import DriveSettings
+from robotd.hardware.devices.rflex_drive import NO_WATCHDOG, RflexDrive, RflexSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Transport
@@ -29,7 +28,7 @@ from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
 from robotd.sim.world import load_world
 
-SETTINGS = DriveSettings(counts_per_m=rflex.COUNTS_PER_M, counts_per_rad=rflex.COUNTS_PER_RAD)
+SETTINGS = RflexSettings(counts_per_m=rflex.COUNTS_PER_M, counts_per_rad=rflex.COUNTS_PER_RAD)
 TTL_S = 0.4
 
 

@@ -13,10 +13,10 @@ from firmware_proto.rangefinder import ShotStatus
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError, TransportError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.fixed_pantilt import FixedPanTilt
+from robotd.hardware.devices.fixed_pantilt import FixedHeadSettings, FixedPanTilt
 from robotd.hardware.devices.gaze import Fan, Gaze
 from robotd.hardware.devices.scip_rangefinder import ScipRangefinder
-from robotd.hardware.devices.settings import PanTiltSettings, RangefinderSettings
+from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.line_format import LineFormat
@@ -72,7 +72,7 @@ class Robot:
 
 
 @contextlib.asynccontextmanager
-async def robot(settings: PanTiltSettings | None = None) -> AsyncIterator[Robot]:
+async def robot(settings: FixedHeadSettings | None = None) -> AsyncIterator[Robot]:
     ends: asyncio.Queue[Transport] = asyncio.Queue()
 
     async def connect() -> Transport:
@@ -83,7 +83,7 @@ async def robot(settings: PanTiltSettings | None = None) -> AsyncIterator[Robot]
 
     wiring = Wiring(connect, NoTap(), random.Random(0), Gaze())
     it = Robot(
-        FixedPanTilt(settings or PanTiltSettings(), wiring),
+        FixedPanTilt(settings or FixedHeadSettings(), wiring),
         ScipRangefinder(RangefinderSettings(range_bias_m=0.01), wiring),
     )
     emulator = Paced(ScipEmulator(it.room), LineFormat(115_200))
@@ -155,7 +155,7 @@ async def test_a_scan_that_does_not_come_is_a_reading_that_timed_out() -> None:
 
 
 async def test_limits_are_what_the_scanner_sees_within_the_settings_as_it_is_mounted() -> None:
-    async with robot(PanTiltSettings(pan_zero_rad=0.5, pan_min_rad=-1.0, tilt_zero_rad=0.1)) as r:
+    async with robot(FixedHeadSettings(pan_zero_rad=0.5, pan_min_rad=-1.0, tilt_zero_rad=0.1)) as r:
         limits = await r.head.limits()
         assert limits.pan_min_rad == -1.0
         assert limits.pan_max_rad == pytest.approx(0.5 + 0.75 * math.pi)
@@ -183,7 +183,7 @@ async def test_the_head_aims_only_when_armed_and_a_stop_disarms_it() -> None:
 
 
 async def test_a_head_whose_scanner_nobody_has_heard_of_cannot_say_its_limits() -> None:
-    head = FixedPanTilt(PanTiltSettings(), Wiring(memory_pair, NoTap(), random.Random(0)))  # type: ignore[arg-type]  # never called
+    head = FixedPanTilt(FixedHeadSettings(), Wiring(memory_pair, NoTap(), random.Random(0)))  # type: ignore[arg-type]  # never called
     with pytest.raises(TransportError, match="absent"):
         await head.arm()
     with pytest.raises(TransportError, match="has not said yet"):

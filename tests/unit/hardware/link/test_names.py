@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from robotd.contract.device_status import LinkState
-from robotd.hardware.devices.board_drive import BoardDrive
-from robotd.hardware.devices.settings import DriveSettings
+from robotd.hardware.devices.board_drive import BoardDrive, BoardDriveSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.address import connector
@@ -30,7 +29,7 @@ async def until(device: BoardDrive, link: LinkState, detail: str = "") -> None:
 async def test_the_name_is_looked_up_anew_at_each_attempt_and_who_answers_is_asked(tmp_path: Path) -> None:
     async with cables_on_ptys(SimulatedRobot(load_world("office"), 1), tmp_path) as (laid, links):
         connect = connector(links["drive"], LineFormat(115_200))
-        drive = BoardDrive(DriveSettings(), Wiring(connect, NoTap(), random.Random(1)))
+        drive = BoardDrive(BoardDriveSettings(), Wiring(connect, NoTap(), random.Random(1)))
         running = asyncio.create_task(drive.run())
         await until(drive, LinkState.READY)
         laid["drive"].unplug()
