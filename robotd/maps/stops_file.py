@@ -6,13 +6,14 @@ in the manifest.
 """
 
 import zlib
-from typing import Annotated
+from dataclasses import asdict, fields
+from typing import Annotated, Any
 
 import msgspec
 
 from robotd.core.errors import MapError
 from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import GridSettings
+from robotd.grid.occupancy import BetweenBeams, GridSettings
 from robotd.maps.stop_columns import StopColumns, columns_of, stops_of
 
 FORMAT = 1
@@ -25,8 +26,12 @@ _HEAD = b"robotd stops "
 _LEVEL = 6
 
 
+SETTINGS_SINCE: dict[str, Any] = {"between_beams": BetweenBeams.UNSEEN}
+"""What settings that came later were when a file did not have them yet: not what they are by default now."""
+
+
 class _Content(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    settings: GridSettings
+    settings: dict[str, Any]
     arithmetic: Annotated[str, msgspec.Meta(max_length=16)]
     columns: StopColumns
 
@@ -37,7 +42,7 @@ def encode_stops(stops: MapStops) -> bytes:
     Raises:
         MapError: it could not be read again: there are too many readings, or numbers that no robot has.
     """
-    content = _Content(stops.settings, stops.arithmetic, columns_of(stops.stops))
+    content = _Content(asdict(stops.settings), stops.arithmetic, columns_of(stops.stops))
     data = _HEAD + b"%d\n" % FORMAT + zlib.compress(msgspec.msgpack.encode(content), _LEVEL)
     if decode_stops(data) != stops:
         raise MapError("the stops would not come back as they are")
@@ -58,9 +63,18 @@ def decode_stops(data: bytes) -> MapStops:
         raise MapError(f"it has format {named!r}, this version reads format {FORMAT}")
     try:
         content = msgspec.msgpack.decode(_unpacked(packed), type=_Content)
-        return MapStops(content.settings, stops_of(content.columns, STOPS_MAX, READINGS_MAX), content.arithmetic)
+        return MapStops(
+            _settings_of(content.settings), stops_of(content.columns, STOPS_MAX, READINGS_MAX), content.arithmetic
+        )
     except (ValueError, zlib.error, RecursionError) as error:
         raise MapError(str(error)[:200]) from error
+
+
+def _settings_of(said: dict[str, Any]) -> GridSettings:
+    unknown = said.keys() - {field.name for field in fields(GridSettings)}
+    if unknown:
+        raise ValueError(f"settings: it has {str(sorted(unknown))[:80]}, which this version does not know")
+    return msgspec.convert(SETTINGS_SINCE | said, GridSettings)
 
 
 def _unpacked(packed: bytes) -> bytes:

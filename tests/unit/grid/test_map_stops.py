@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from robotd.core.grid_spec import GridSpec
 from robotd.grid import map_stops
 from robotd.grid.arithmetic import arithmetic
-from robotd.grid.occupancy import GridSettings, OccupancyGrid, OverRange, UpdatePolicy
+from robotd.grid.occupancy import BetweenBeams, GridSettings, OccupancyGrid, OverRange, UpdatePolicy
 from tests.unit.maps.made_maps import SPEC, made_stops
 
 SETTINGS = [
@@ -75,6 +76,20 @@ def test_the_arithmetic_is_told_by_the_last_place(monkeypatch: pytest.MonkeyPatc
     assert compute() == here
     monkeypatch.setattr("robotd.grid.arithmetic.np.sin", slightly_other)
     assert compute() != here
+
+
+FINE = GridSpec(0.02, -1.5, -1.0, (100, 150))
+CLOSE = {
+    BetweenBeams.SEEN: "d4924035c611995ea5dc7e45854ecadd616b8078cdcefe02e8259ebc988dae75",
+    BetweenBeams.UNSEEN: "4e707b38ad5db30ad104689177abef5115f44f110474747e04e3bdbf6df09dec",
+}
+
+
+@pytest.mark.parametrize("chosen", BetweenBeams)
+def test_beams_close_together_do_what_they_did(chosen: BetweenBeams) -> None:
+    """As the one below."""
+    made = made_stops(7, 2, 300, settings=GridSettings(between_beams=chosen))
+    assert made.grid_on(FINE).digest() == CLOSE[chosen]
 
 
 @pytest.mark.parametrize(("chosen", "digest"), list(zip(SETTINGS, DIGESTS, strict=True)))

@@ -1,5 +1,6 @@
 """The file of a map's stops comes back bit for bit; what is not one is refused by a MapError, in bounded memory."""
 
+import dataclasses
 import math
 import tracemalloc
 import zlib
@@ -18,7 +19,7 @@ from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import GridSettings, UpdatePolicy
-from robotd.maps.stops_file import READINGS_MAX, STOPS_MAX, decode_stops, encode_stops
+from robotd.maps.stops_file import READINGS_MAX, SETTINGS_SINCE, STOPS_MAX, decode_stops, encode_stops
 from tests.unit.maps.made_maps import made_stops
 
 HEAD = b"robotd stops 1\n"
@@ -134,12 +135,13 @@ def test_the_column_of_this_test_is_that_of_the_file() -> None:
         ({"times_ns": 5}, "Expected `bytes`"),
         ({"settings": {"raise_alpha": 7.0}}, "raise_alpha"),
         ({"settings": []}, "Expected `object`"),
+        ({"settings": {"dancing": True}}, "which this version does not know"),
         ({"arithmetic": "a" * 17}, "length <= 16"),
         ({"arithmetic": None}, "missing required field `arithmetic`"),
         ({"columns": None}, "missing required field `columns`"),
         ({"numbers": None}, "missing required field `numbers`"),
     ],
-    ids=range(23),
+    ids=range(24),
 )
 def test_what_no_store_wrote_is_refused(changes: dict[str, Any], says: str) -> None:
     with pytest.raises(MapError, match=says):
@@ -165,6 +167,14 @@ def test_what_no_store_wrote_is_refused(changes: dict[str, Any], says: str) -> N
 def test_what_is_another_file_is_refused(data: bytes, says: str) -> None:
     with pytest.raises(MapError, match=says):
         decode_stops(data)
+
+
+def test_settings_that_came_later_are_what_they_were_before_they_came() -> None:
+    """A setting that is added belongs into ``SETTINGS_SINCE``: by its default old stops may come to another grid."""
+    first = {"resolution_m", "rows", "cols", "raise_alpha", "lower_alpha", "policy", "over_range"}
+    assert {field.name for field in dataclasses.fields(GridSettings)} == first | SETTINGS_SINCE.keys()
+    old = {name: value for name, value in dataclasses.asdict(GridSettings()).items() if name in first}
+    assert decode_stops(content(settings=old)).settings == dataclasses.replace(GridSettings(), **SETTINGS_SINCE)
 
 
 def test_a_bomb_takes_no_more_memory_than_stated() -> None:
