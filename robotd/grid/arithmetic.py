@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 _RULE = 1
-"""Counts the changes of what an insertion does to cells that were made on purpose."""
+"""Counts the changes of what an insertion does to cells, made on purpose, that no setting undoes."""
 _ANGLES_RAD = np.linspace(-3.0 * math.pi, 3.0 * math.pi, 4001)
 
 
