@@ -1,13 +1,10 @@
 """What the adapters of our own three boards share: the link, health, arming."""
 
-import contextlib
-from collections.abc import Iterator
 from typing import ClassVar
 
 from firmware_proto.common import Arm, BoardKind, BoardState, BoardStatus, Clear, Fault
 from firmware_proto.schema import Message
-from robotd.contract.device_status import DeviceStatus, LinkState
-from robotd.core.broadcast import Broadcast
+from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError, TransportError
 from robotd.hardware.devices.credible import IMPLAUSIBLE, Times
 from robotd.hardware.devices.device import PAST_LOOP_EVERY
@@ -15,6 +12,7 @@ from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.rest import Rest
 from robotd.hardware.devices.settings import BoardOptions
 from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.devices.with_health import WithHealth
 from robotd.hardware.link.handshake import Terms
 from robotd.hardware.link.reconnect import Link
 from robotd.hardware.link.session import LinkCounters, Session
@@ -23,7 +21,7 @@ from robotd.hardware.wire.board import BoardWire
 _FAULT_BITS = 16
 
 
-class BoardDevice:
+class BoardDevice(WithHealth):
     """One of our boards, as a device: a subclass adds what it measures and what it moves."""
 
     KIND: ClassVar[BoardKind]
@@ -58,16 +56,6 @@ class BoardDevice:
     def name(self) -> str:
         """``drive``, ``pantilt`` or ``rangefinder``."""
         return self.KIND.name.lower()
-
-    @property
-    def status(self) -> DeviceStatus:
-        """Its health now."""
-        return self._health.status
-
-    @property
-    def status_changes(self) -> Broadcast[DeviceStatus]:
-        """Its health, whenever it changes; counters alone are no change."""
-        return self._health.changes
 
     async def run(self) -> None:
         """Own the link until cancelled: connect, serve, reconnect with back-off, never arm by itself."""
@@ -153,16 +141,6 @@ class BoardDevice:
         if self._session is not session:
             raise TransportError(f"{self.name} was lost: {self._health.detail}")
 
-    @contextlib.contextmanager
-    def _judging(self) -> Iterator[None]:
-        """Distrust the board for what is found implausible within; the error goes on."""
-        try:
-            yield
-        except DeviceError as error:
-            if error.code == IMPLAUSIBLE:
-                self._distrust(error)
-            raise
-
     def _distrust(self, error: DeviceError) -> None:
         """Stop, count, and latch that it said what cannot be."""
         self._counters.implausible += 1
@@ -195,10 +173,6 @@ class BoardDevice:
             ("implausible", link.implausible + self._unlikely()),
             *self._clock(),
         )
-
-    def _unlikely(self) -> int:
-        """Return how many values a subclass left out by itself."""
-        return 0
 
     def _clock(self) -> tuple[tuple[str, int], ...]:
         """Return how much faster the board's clock runs than ours, and how well that is known."""

@@ -8,10 +8,9 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from robotd.contract.device_status import DeviceStatus, LinkState
+from robotd.contract.device_status import LinkState
 from robotd.core.angles import wrap_rad
 from robotd.core.bounds import Within
-from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, TransportError
 from robotd.hardware.devices.gaze import Fan
@@ -19,6 +18,7 @@ from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
 from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.devices.with_health import WithHealth
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +39,7 @@ class FixedHeadSettings(PanTiltSettings):
             raise ValueError(f"pan_min_rad must be less than pan_max_rad, got {self.pan_min_rad}, {self.pan_max_rad}")
 
 
-class FixedPanTilt:
+class FixedPanTilt(WithHealth):
     """Implements :class:`robotd.hardware.devices.pantilt.PanTilt`."""
 
     NAME: ClassVar[str] = "pantilt"
@@ -56,16 +56,6 @@ class FixedPanTilt:
     def name(self) -> str:
         """``pantilt``."""
         return self.NAME
-
-    @property
-    def status(self) -> DeviceStatus:
-        """Its health now."""
-        return self._health.status
-
-    @property
-    def status_changes(self) -> Broadcast[DeviceStatus]:
-        """Its health, whenever it changes."""
-        return self._health.changes
 
     async def run(self) -> None:
         """Be there until cancelled."""

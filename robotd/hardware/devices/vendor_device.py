@@ -1,17 +1,16 @@
 """What the adapters of vendor devices share: the line, health, and an arming that is ours, for makers know none."""
 
-import contextlib
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import ClassVar, Generic, NoReturn, TypeVar
 
-from robotd.contract.device_status import DeviceStatus, LinkState
-from robotd.core.broadcast import Broadcast
+from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError, RemoteProtocolError, TransportError
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import PAST_LOOP_EVERY
 from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.wiring import Wiring
+from robotd.hardware.devices.with_health import WithHealth
 from robotd.hardware.link.dialogue import Dialogue, DialogueCounters, Heard, Wire
 from robotd.hardware.link.keep_up import keep_up
 from robotd.hardware.link.rest import seen_at_rest
@@ -23,7 +22,7 @@ M = TypeVar("M")
 _WAITING = "line open, waiting for the device"
 
 
-class VendorDevice(ABC, Generic[M]):
+class VendorDevice(WithHealth, ABC, Generic[M]):
     """A device that speaks its maker's protocol: a subclass adds what it measures and what it moves.
 
     It implements :class:`robotd.hardware.devices.device.Device`. Nothing on the line arms or latches a fault, so both
@@ -53,16 +52,6 @@ class VendorDevice(ABC, Generic[M]):
     def name(self) -> str:
         """``drive``, ``pantilt`` or ``rangefinder``."""
         return self.NAME
-
-    @property
-    def status(self) -> DeviceStatus:
-        """Its health now."""
-        return self._health.status
-
-    @property
-    def status_changes(self) -> Broadcast[DeviceStatus]:
-        """Its health, whenever it changes; counters alone are no change."""
-        return self._health.changes
 
     @property
     def sessions(self) -> int:
@@ -213,20 +202,6 @@ class VendorDevice(ABC, Generic[M]):
         """Count that it said what cannot be, stop, and latch it."""
         self._counters.implausible += 1
         self._latch(IMPLAUSIBLE, str(error))
-
-    @contextlib.contextmanager
-    def _judging(self) -> Iterator[None]:
-        """Distrust the device for what is found implausible within; the error goes on."""
-        try:
-            yield
-        except DeviceError as error:
-            if error.code == IMPLAUSIBLE:
-                self._distrust(error)
-            raise
-
-    def _unlikely(self) -> int:
-        """Return how many values a subclass left out by itself."""
-        return 0
 
     def _counted(self) -> tuple[tuple[str, int], ...]:
         ours = (
