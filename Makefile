@@ -24,7 +24,7 @@ demo-real: .venv/.demo  ## The same in a recorded building: make demo-real LOG=p
 	@$(BIN)/robotctl demo building "$(LOG)" --out demo
 
 demo-busy: .venv/.dev  ## Whether make demo finishes beside busy programs: N="2 4 8" RUNS=10 NICE=0 HARSH=1 LOG=... (an hour)
-	@$(BIN)/python -m tests.busy.run --world $(WORLD) $(if $(N),--busy $(N)) $(if $(RUNS),--runs $(RUNS)) \
+	@$(BIN)/python -m tests.studies.busy.run --world $(WORLD) $(if $(N),--busy $(N)) $(if $(RUNS),--runs $(RUNS)) \
 		$(if $(NICE),--nice $(NICE)) $(if $(HARSH),--harsh) $(if $(LOG),--log "$(LOG)")
 
 test: .venv/.dev  ## Run all tests
@@ -38,41 +38,41 @@ bench-peers: .venv/.dev  ## Localizers of others beside ours, on the same questi
 	@$(BIN)/python -m tests.benchmarks.peers.run
 
 paper: .venv/.dev  ## The paper's five tests in simulated rooms, as pictures and tables: writes docs/paper (a minute)
-	@$(BIN)/python -m tests.paper.run
+	@$(BIN)/python -m tests.studies.paper.run
 
 conservative: .venv/.dev  ## Look 10 000 times for a true pose that the conservative mode loses
-	@$(BIN)/python -m tests.conservative.run $(if $(CASES),--cases $(CASES))
+	@$(BIN)/python -m tests.studies.conservative.run $(if $(CASES),--cases $(CASES))
 
 exact: .venv/.dev  ## The exact algorithm measured, and the paper's figures of it: writes docs/exact (minutes)
-	@$(BIN)/python -m tests.exact.run
+	@$(BIN)/python -m tests.studies.exact.run
 
 faults: .venv/.dev  ## Everything that can go wrong on a serial line, in every state of the daemon: a table (two minutes)
-	@$(BIN)/python -m tests.faults.run $(if $(ONLY),--only $(ONLY))
+	@$(BIN)/python -m tests.studies.faults.run $(if $(ONLY),--only $(ONLY))
 
 replay-many: .venv/.dev  ## Random sessions with faults, stalls, kills and dying clients, each replayed: COUNT=500 REAL=20 (real ones: minutes)
-	@$(BIN)/python -m tests.replay_many.run --count $(or $(COUNT),500) --real $(or $(REAL),20)
+	@$(BIN)/python -m tests.studies.replay_many.run --count $(or $(COUNT),500) --real $(or $(REAL),20)
 
 firmware-test: .venv/.dev  ## The boards' C against Python under the sanitizers: vectors, random frames, random lives
-	@$(BIN)/python -m pytest -q tests/firmware
-	@$(BIN)/python -m tests.firmware.run
+	@$(BIN)/python -m pytest -q tests/studies/firmware
+	@$(BIN)/python -m tests.studies.firmware.run
 
 kernels-sanitized: .venv/.dev  ## All tests that call a kernel, with every kernel under the address and undefined-behaviour sanitizers (minutes)
-	@$(BIN)/python -m tests.sanitized.run
+	@$(BIN)/python -m tests.studies.sanitized.run
 
 liars: .venv/.dev  ## Devices that lie, with right checksums, in every state of the daemon: 10 000 lies, a table (ten minutes)
-	@$(BIN)/python -m tests.liars.run $(if $(TRIALS),--trials $(TRIALS))
+	@$(BIN)/python -m tests.studies.liars.run $(if $(TRIALS),--trials $(TRIALS))
 
-fuzz: .venv/.dev  ## Strange bytes for every parser, a minute each: make fuzz FUZZ_SECONDS=5; keeps what it learns in tests/fuzz/corpus
-	@$(BIN)/python -m tests.fuzz.run $(if $(FUZZ_SECONDS),--seconds $(FUZZ_SECONDS)) $(if $(ONLY),--only $(ONLY))
+fuzz: .venv/.dev  ## Strange bytes for every parser, a minute each: make fuzz FUZZ_SECONDS=5; keeps what it learns in tests/studies/fuzz/corpus
+	@$(BIN)/python -m tests.studies.fuzz.run $(if $(FUZZ_SECONDS),--seconds $(FUZZ_SECONDS)) $(if $(ONLY),--only $(ONLY))
 
 safety: .venv/.dev  ## How late stops are on the wires in real time, all processors busy (half an hour; make safety SHARE=0.1)
-	@$(BIN)/python -m tests.safety.run $(if $(SHARE),--share $(SHARE))
+	@$(BIN)/python -m tests.studies.safety.run $(if $(SHARE),--share $(SHARE))
 
 stops: .venv/.dev  ## Whether the robot comes to rest whatever ends the daemon, whatever its devices speak: a table (minutes)
-	@$(BIN)/python -m tests.stops.run $(if $(ONLY),--only $(ONLY)) $(if $(TRIALS),--trials $(TRIALS))
+	@$(BIN)/python -m tests.studies.stops.run $(if $(ONLY),--only $(ONLY)) $(if $(TRIALS),--trials $(TRIALS))
 
 lag: .venv/.dev  ## How late the event loop is while the daemon works hard, quiet and beside busy programs: writes docs/benchmarks/loop-lag.md
-	@$(BIN)/python -m tests.lag.run
+	@$(BIN)/python -m tests.studies.lag.run
 
 lint: .venv/.dev  ## Check format and style
 	@echo "robotd: ruff"

@@ -9,7 +9,7 @@ from robotd.cli.outputs import CONFIG_MARK, write
 from robotd.config import Config, effective_text, loads
 from robotd.config.writer import write_value
 from robotd.recording.reader import Recording
-from robotd.sim.recorded_building import OdometrySource
+from robotd.sim.recorded_robot import OdometrySource
 
 RUNTIME_DIR, MAPS_DIR, RECORDINGS_DIR = "run", "maps", "recordings"
 

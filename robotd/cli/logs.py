@@ -9,7 +9,7 @@ from robotd.cli.quantities import positive
 from robotd.cli.show.terminal import complain
 from robotd.core.errors import RecordingError
 from robotd.logs.scan import RecordedLog
-from robotd.sim.log_file import read_log
+from robotd.sim.buildings.log_file import read_log
 
 LOG_HELP = "a CARMEN log, as it is or packed (.gz, .bz2, .xz); - is standard input"
 RAW_HELP = "take a log whose poses are raw odometry all the same"

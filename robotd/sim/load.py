@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from robotd.sim.building import load_recorded_building
+from robotd.sim.buildings.building import load_recorded_building
+from robotd.sim.buildings.map_world import load_map_world
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
-from robotd.sim.map_world import load_map_world
-from robotd.sim.recorded_building import OdometrySource, RecordedRobot
+from robotd.sim.recorded_robot import OdometrySource, RecordedRobot
 from robotd.sim.robot import EmulatedRobot, SimSettings, SimulatedRobot
-from robotd.sim.world import load_world
 
 _GZIP_MAGIC = b"\x1f\x8b"
 

@@ -6,17 +6,17 @@ from typing import Protocol
 
 from robotd.core.errors import ConfigError
 from robotd.core.pose import Pose2
-from robotd.sim.board_clock import BoardClock, DriveOnClock, HeadOnClock, LaserOnClock
 from robotd.sim.boards.board import Board
-from robotd.sim.body import Body, BodySettings
+from robotd.sim.buildings.world import World
 from robotd.sim.emulators.catalogue import Dialects
-from robotd.sim.head import Head, HeadSettings
-from robotd.sim.host import HostedBoard, OwnBoard
-from robotd.sim.laser import Laser, LaserSettings
-from robotd.sim.noise import NoiseSettings, stream
-from robotd.sim.plant import DrivePlant, HeadPlant, ScannerPlant
-from robotd.sim.walls import Point, clearance_m
-from robotd.sim.world import World
+from robotd.sim.hosting.board_clock import BoardClock, DriveOnClock, HeadOnClock, LaserOnClock
+from robotd.sim.hosting.host import HostedBoard, OwnBoard
+from robotd.sim.physics.body import Body, BodySettings
+from robotd.sim.physics.head import Head, HeadSettings
+from robotd.sim.physics.laser import Laser, LaserSettings
+from robotd.sim.physics.noise import NoiseSettings, stream
+from robotd.sim.physics.plant import DrivePlant, HeadPlant, ScannerPlant
+from robotd.sim.physics.walls import Point, clearance_m
 
 DEVICES = ("drive", "pantilt", "rangefinder")
 

@@ -9,8 +9,8 @@ from robotd.core.errors import TransportError
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.pty import open_pty
 from robotd.hardware.transport.transport import Connect, Transport
-from robotd.sim.host import serve
-from robotd.sim.pace import HostTime, SlowedTime, Time
+from robotd.sim.hosting.host import serve
+from robotd.sim.hosting.pace import HostTime, SlowedTime, Time
 from robotd.sim.robot import EmulatedRobot
 from robotd.sim.truth import truth_log
 

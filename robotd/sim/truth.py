@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TextIO
 
 from robotd.core.pose import Pose2
-from robotd.sim.pace import Time
+from robotd.sim.hosting.pace import Time
 from robotd.sim.robot import EmulatedRobot
 
 

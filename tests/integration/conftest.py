@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.integration.living import Living, living
+from tests.support.living import Living, living
 
 Live = Callable[..., AbstractAsyncContextManager[Living]]
 

@@ -20,15 +20,15 @@ from robotd.core.errors import MissionError
 from robotd.mission.compute import Compute
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.sim.boards.rangefinder import RangefinderBoard
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.emulators.ptu import PtuEmulator
 from robotd.sim.faults.laid import cables, connects_of
-from robotd.sim.plant import ShotAnswer
+from robotd.sim.physics.plant import ShotAnswer
 from robotd.sim.robot import SimulatedRobot, own_board
-from robotd.sim.world import load_world
 from tests.integration.conftest import Live
-from tests.integration.living import AtOnce, Living, in_directory, until_ready
 from tests.integration.test_dialects import config_for
+from tests.support.living import AtOnce, Living, in_directory, until_ready
 
 QUICK = replace(Config(), sweep=SweepSettings(readings=120))
 

@@ -7,9 +7,9 @@ from robotd.config import Config, loads
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.missions import Localize, MapStart
 from robotd.hardware.devices.catalogue import MOTORLESS, SCANNERS
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
 from robotd.sim.robot import DEVICES, SimulatedRobot
-from robotd.sim.world import load_world
 from tests.integration.conftest import Live
 
 COMBINATIONS = [

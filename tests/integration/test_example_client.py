@@ -13,7 +13,7 @@ from robotd.cli.demo.rig import rig, wired
 from robotd.client import Client
 from robotd.config import Config
 from robotd.contract.missions import MapStart
-from robotd.sim.world import load_world
+from robotd.sim.buildings.world import load_world
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_clock, pytest.mark.shares_descriptors]
 

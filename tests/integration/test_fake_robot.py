@@ -14,10 +14,10 @@ from robotd.contract.requests import Arm, RecordStart, RecordStop
 from robotd.core.reading import Sweep
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.recording.reader import Recording, read
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import OWN
-from robotd.sim.fake_robot import FakeRobot
+from robotd.sim.fakes.fake_robot import FakeRobot
 from robotd.sim.robot import DEVICES, SimulatedRobot
-from robotd.sim.world import load_world
 
 pytestmark = pytest.mark.slow
 

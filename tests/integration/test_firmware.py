@@ -14,13 +14,13 @@ from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.missions import Localize, MapStart
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.pose import Pose2
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects, Firmware
 from robotd.sim.faults.laid import cables
-from robotd.sim.host import HostedBoard
+from robotd.sim.hosting.host import HostedBoard
 from robotd.sim.robot import SimulatedRobot
-from robotd.sim.world import load_world
 from tests.integration.conftest import Live
-from tests.integration.living import living, until_ready
+from tests.support.living import living, until_ready
 
 pytestmark = pytest.mark.skipif(
     find_spec("robotd.sim.firmware._native") is None, reason="there was no C compiler for the firmware"

@@ -19,10 +19,10 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, Stall
+from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
-from robotd.sim.world import load_world
 from tests.integration.conftest import Live
-from tests.integration.living import LEASE_S, AtOnce, Living
+from tests.support.living import LEASE_S, AtOnce, Living
 
 pytestmark = pytest.mark.slow
 

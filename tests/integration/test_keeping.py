@@ -21,10 +21,10 @@ from robotd.maps.store import MapStore
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.whereabouts.keeping import EVERY_STOPS
 from robotd.mission.whereabouts.laying import lay
+from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
-from robotd.sim.world import load_world
 from tests.integration.conftest import Live
-from tests.integration.living import LEASE_S, Living
+from tests.support.living import LEASE_S, Living
 
 QUICK = replace(Config(), sweep=SweepSettings(readings=120))
 

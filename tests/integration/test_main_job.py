@@ -20,10 +20,10 @@ from robotd.core.clock import NS_PER_S
 from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
 from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot, own_board
-from robotd.sim.world import load_world
 from tests.integration.conftest import Live
-from tests.integration.living import Living, until_ready
+from tests.support.living import Living, until_ready
 
 pytestmark = pytest.mark.slow
 

@@ -17,10 +17,10 @@ from robotd.contract.requests import REQUESTS, Hello, MapLoad, MapSave, MapShow,
 from robotd.core.errors import MapError, MissionError, RecordingError
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.recording.entries import CommandEntry
+from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot, own_board
-from robotd.sim.world import load_world
 from tests.integration.conftest import Live
-from tests.integration.living import Living
+from tests.support.living import Living
 
 QUICK = replace(Config(), sweep=SweepSettings(readings=120))
 

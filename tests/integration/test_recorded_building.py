@@ -10,9 +10,9 @@ from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import SweepDone
 from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.core.reading import ReadingStatus
-from robotd.sim.building import RecordedBuilding, select_stops
-from robotd.sim.log_file import read_log
-from robotd.sim.recorded_building import OdometrySource, RecordedRobot
+from robotd.sim.buildings.building import RecordedBuilding, select_stops
+from robotd.sim.buildings.log_file import read_log
+from robotd.sim.recorded_robot import OdometrySource, RecordedRobot
 from tests.integration.conftest import Live
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_data]

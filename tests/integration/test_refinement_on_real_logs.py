@@ -18,7 +18,7 @@ from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
 from robotd.localization.reference.tracking import Tracked, TrackingSettings, track
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk
-from robotd.sim.log_file import read_log
+from robotd.sim.buildings.log_file import read_log
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_data]
 

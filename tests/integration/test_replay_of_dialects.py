@@ -26,10 +26,10 @@ from robotd.recording.comparison import NOTHING, compare
 from robotd.recording.entries import BytesEntry, ComputedEntry, Entry, RecordingHeader
 from robotd.recording.reader import Recording, read
 from robotd.recording.recorder import Recorder
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
-from robotd.sim.fake_robot import FakeRobot
+from robotd.sim.fakes.fake_robot import FakeRobot
 from robotd.sim.robot import DEVICES, SimulatedRobot
-from robotd.sim.world import load_world
 
 pytestmark = pytest.mark.slow
 

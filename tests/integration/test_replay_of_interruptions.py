@@ -11,10 +11,10 @@ from robotd.contract.events import MissionPhase
 from robotd.contract.missions import Localize, MapStart
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, MapLoad, MapSave, RecordStart, RecordStop, Stop
+from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
-from robotd.sim.world import load_world
 from tests.integration.conftest import Live
-from tests.integration.living import Living
+from tests.support.living import Living
 
 pytestmark = pytest.mark.slow
 

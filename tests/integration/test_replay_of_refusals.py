@@ -13,11 +13,11 @@ from robotd.core.errors import MapError, MissionError, RobotdError
 from robotd.core.pose import IDENTITY
 from robotd.recording.entries import CommandEntry
 from robotd.recording.reader import read
+from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot, own_board
-from robotd.sim.world import load_world
 from tests.integration.conftest import Live
-from tests.integration.living import Living
 from tests.integration.test_replay_of_interruptions import check, replayed
+from tests.support.living import Living
 
 pytestmark = pytest.mark.slow
 

@@ -15,8 +15,8 @@ from robotd.mission.safety.hold import Stall
 from robotd.recording.entries import CauseEntry
 from robotd.recording.reader import read
 from robotd.sim.emulators.catalogue import Dialects
-from tests.faults.bench import Bench, bench
-from tests.faults.states import STATES
+from tests.support.bench import Bench, bench
+from tests.support.states import STATES
 
 pytestmark = pytest.mark.slow
 

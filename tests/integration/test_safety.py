@@ -31,13 +31,13 @@ from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
 from robotd.recording.entries import BytesEntry
 from robotd.recording.preroll import PrerollJournal
-from robotd.sim.body import Body
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects, Firmware
-from robotd.sim.head import Head
+from robotd.sim.physics.body import Body
+from robotd.sim.physics.head import Head
 from robotd.sim.robot import DEVICES, SimulatedRobot, board_of, own_board
 from robotd.sim.runtime import connectors
-from robotd.sim.world import load_world
-from tests.integration.living import in_directory, until_ready
+from tests.support.living import in_directory, until_ready
 
 LEASE_S = 0.5
 REST_WITHIN_S = 1.5

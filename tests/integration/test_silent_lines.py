@@ -25,7 +25,7 @@ from robotd.sim.faults.fault import Fault
 from robotd.sim.faults.of_flow import Silence
 from robotd.sim.faults.of_frames import frames_of
 from robotd.sim.robot import DEVICES
-from tests.faults.bench import Bench, bench
+from tests.support.bench import Bench, bench
 
 pytestmark = pytest.mark.slow
 

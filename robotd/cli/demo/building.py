@@ -23,9 +23,9 @@ from robotd.contract.events import MapChanged
 from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.core.errors import MissionError
 from robotd.mission.motion.steering import DrivingSettings
-from robotd.sim.building import RecordedBuilding, encode_recorded_building, select_stops
+from robotd.sim.buildings.building import RecordedBuilding, encode_recorded_building, select_stops
 from robotd.sim.load import load_robot
-from robotd.sim.recorded_building import OdometrySource
+from robotd.sim.recorded_robot import OdometrySource
 
 _RIGHT_M = 0.3
 

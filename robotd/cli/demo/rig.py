@@ -19,7 +19,7 @@ from robotd.contract.device_status import LinkState
 from robotd.core.errors import RequestTimeout, RobotdError
 from robotd.hardware.devices.settings import PortSettings, SilenceOptions
 from robotd.mission.safety.hold import TOO_BUSY
-from robotd.sim.pace import PATIENCE_S, SLOWED
+from robotd.sim.hosting.pace import PATIENCE_S, SLOWED
 
 UNFINISHED = "unfinished"
 """Name of the map of a demonstration that failed."""

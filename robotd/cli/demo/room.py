@@ -28,7 +28,7 @@ from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.ready_map import ReadyMap
 from robotd.mission.motion.steering import DrivingSettings
-from robotd.sim.world import World, load_world
+from robotd.sim.buildings.world import World, load_world
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

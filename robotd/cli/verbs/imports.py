@@ -8,7 +8,7 @@ from robotd.cli.outputs import RECORDED_BUILDING, output_argument, write
 from robotd.cli.quantities import positive, whole
 from robotd.cli.show.terminal import command_line, out, print_json
 from robotd.cli.verb import OK, Verb
-from robotd.sim.building import RecordedBuilding, encode_recorded_building, select_stops
+from robotd.sim.buildings.building import RecordedBuilding, encode_recorded_building, select_stops
 
 
 def _carmen(arguments: argparse.Namespace) -> int:

@@ -29,7 +29,7 @@ from robotd.core.grid_bytes import grid_digest
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.grid.tables import NO_INFORMATION
 from robotd.sim.load import load_robot
-from robotd.sim.recorded_building import OdometrySource
+from robotd.sim.recorded_robot import OdometrySource
 
 
 def _start(arguments: argparse.Namespace) -> int:

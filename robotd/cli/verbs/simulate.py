@@ -14,17 +14,17 @@ from robotd.cli.show.terminal import command_line, err, out, print_json, print_p
 from robotd.cli.verb import FAILED, OK, Verb
 from robotd.core.log import configure
 from robotd.recording.reader import read
+from robotd.sim.buildings.world import world_names
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects, Firmware
-from robotd.sim.fake_robot import FakeRobot
+from robotd.sim.fakes.fake_robot import FakeRobot
 from robotd.sim.faults.catalogue import FAULTS, meaning_of
 from robotd.sim.faults.laid import run_faulty_on_ptys
 from robotd.sim.faults.plan import PlannedFault, parse_plan
+from robotd.sim.hosting.pace import PATIENCE_S
 from robotd.sim.load import load_robot
-from robotd.sim.pace import PATIENCE_S
-from robotd.sim.recorded_building import OdometrySource
+from robotd.sim.recorded_robot import OdometrySource
 from robotd.sim.robot import EmulatedRobot
 from robotd.sim.runtime import run_on_ptys
-from robotd.sim.world import world_names
 
 
 def _sim(arguments: argparse.Namespace) -> int:

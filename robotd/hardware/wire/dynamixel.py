@@ -20,7 +20,8 @@ LENGTH_MAX = 128
 
 TORQUE_ENABLE, HARDWARE_ERROR, BUS_WATCHDOG = 64, 70, 98
 PROFILE_VELOCITY, GOAL_POSITION, MOVING, PRESENT_POSITION = 112, 116, 122, 132
-_ASKED = (MOVING, PRESENT_POSITION)
+_ASKED = (MOVING, PRESENT_POSITION, TORQUE_ENABLE)
+"""What is read again and again until the answer is right: how often is a matter of the machine's pace."""
 BUS_WATCHDOG_MS = 20
 """Unit of the bus watchdog."""
 ALERT = 0x80
@@ -180,7 +181,7 @@ def _message(servo: int, body: bytes) -> Message:
 
 
 def requests(data: bytes) -> list[Word]:
-    """Return what bytes to the servos ask for, in words: without the questions where they are and whether they turn."""
+    """Return what bytes to the servos ask for, in words: without the questions that are asked until they are obeyed."""
     orders = (message for message in DynamixelWire().feed(data) if isinstance(message, Instruction))
     return whole(data, ((packet(one.servo, one.instruction, one.parameters), _word(one)) for one in orders))
 

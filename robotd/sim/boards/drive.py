@@ -6,7 +6,7 @@ from firmware_proto.common import BoardKind, Fault, Result
 from firmware_proto.drive import TTL_LIMIT_MS, DriveReport, OdometryReport, SetVelocity
 from firmware_proto.schema import Message
 from robotd.sim.boards.board import Board, Outcome
-from robotd.sim.plant import DrivePlant
+from robotd.sim.physics.plant import DrivePlant
 
 WATCH_US = 10_000
 """How often a moving base looks at its bumpers."""

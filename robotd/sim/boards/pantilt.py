@@ -7,7 +7,7 @@ from firmware_proto.common import BoardKind, Result
 from firmware_proto.pantilt import Aim, AimReadback, AimReport, Limits, Motion, ReadAim, ReadLimits
 from firmware_proto.schema import Message
 from robotd.sim.boards.board import Board, Handler, Outcome
-from robotd.sim.plant import HeadPlant
+from robotd.sim.physics.plant import HeadPlant
 
 PER_RAD = 10_000
 """Counts of an angle on the wire."""

@@ -6,7 +6,7 @@ from firmware_proto.common import BoardKind, Result
 from firmware_proto.rangefinder import SetLaser, Shoot, Shot, ShotStatus
 from firmware_proto.schema import Message
 from robotd.sim.boards.board import Board, Handler, Outcome
-from robotd.sim.plant import LaserPlant, ShotAnswer
+from robotd.sim.physics.plant import LaserPlant, ShotAnswer
 
 
 class RangefinderBoard(Board):

@@ -26,8 +26,8 @@ from robotd.sim.emulators.rflex import RflexEmulator
 from robotd.sim.emulators.rwi import RwiEmulator
 from robotd.sim.emulators.scip import ScipEmulator
 from robotd.sim.emulators.tfmini import TfminiEmulator
-from robotd.sim.host import HostedBoard
-from robotd.sim.plant import DrivePlant, HeadPlant, ScannerPlant
+from robotd.sim.hosting.host import HostedBoard
+from robotd.sim.physics.plant import DrivePlant, HeadPlant, ScannerPlant
 
 try:
     from robotd.sim.firmware import boards as firmware

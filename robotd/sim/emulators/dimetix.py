@@ -3,7 +3,7 @@
 import re
 
 from firmware_proto.rangefinder import ShotStatus
-from robotd.sim.plant import LaserPlant, ShotAnswer
+from robotd.sim.physics.plant import LaserPlant, ShotAnswer
 
 _COMMAND = re.compile(rb"s(\d)([a-z]+)")
 _TEMPERATURE_TENTH_C = 253

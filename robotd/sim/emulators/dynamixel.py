@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from robotd.hardware.wire import dynamixel
 from robotd.hardware.wire.dynamixel import BROADCAST, STATUS, DynamixelWire, Instruction
-from robotd.sim.plant import HeadPlant
+from robotd.sim.physics.plant import HeadPlant
 
 _COUNTS_PER_RAD = 4096 / math.tau
 _CENTRE = 2048

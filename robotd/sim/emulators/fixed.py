@@ -1,6 +1,6 @@
 """An emulated head without a motor: nobody ever hears of it."""
 
-from robotd.sim.plant import HeadPlant
+from robotd.sim.physics.plant import HeadPlant
 
 
 class FixedEmulator:

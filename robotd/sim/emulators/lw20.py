@@ -1,7 +1,7 @@
 """An emulated LightWare LW20 on its ASCII line: it measures all the time, and answers with the newest."""
 
 from firmware_proto.rangefinder import ShotStatus
-from robotd.sim.plant import LaserPlant
+from robotd.sim.physics.plant import LaserPlant
 
 _PRODUCT = "p:LW20,1.0,1.0"
 _LOST = -1.0

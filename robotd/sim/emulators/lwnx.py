@@ -4,7 +4,7 @@ import struct
 
 from firmware_proto.rangefinder import ShotStatus
 from robotd.hardware.wire.lwnx import DISTANCE, LASER_FIRING, NAME, LwnxWire, Packet, encoded
-from robotd.sim.plant import LaserPlant
+from robotd.sim.physics.plant import LaserPlant
 
 _NAME = b"LW20".ljust(16, b"\0")
 _LOST_CM = -100

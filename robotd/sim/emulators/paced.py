@@ -3,7 +3,7 @@
 from collections import deque
 
 from robotd.hardware.transport.line_format import LineFormat
-from robotd.sim.host import HostedBoard
+from robotd.sim.hosting.host import HostedBoard
 
 _US_PER_S = 1_000_000
 

@@ -3,7 +3,7 @@
 import math
 import re
 
-from robotd.sim.plant import HeadPlant
+from robotd.sim.physics.plant import HeadPlant
 
 ARC_SECONDS_PER_STEP = 185.142857
 _STEP_RAD = math.radians(ARC_SECONDS_PER_STEP / 3600.0)

@@ -13,7 +13,7 @@ from robotd.hardware.wire.rflex import (
     RflexWire,
     frame,
 )
-from robotd.sim.plant import BumperWatch, DrivePlant
+from robotd.sim.physics.plant import BumperWatch, DrivePlant
 
 COUNTS_PER_M = 101_230.0
 COUNTS_PER_RAD = 35_343.888

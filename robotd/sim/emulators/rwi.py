@@ -4,7 +4,7 @@ import math
 import re
 
 from robotd.hardware.wire.rwi_ascii import BUMPERS_NONE, ITEMS, TICKS_PER_S
-from robotd.sim.plant import BumperWatch, DrivePlant
+from robotd.sim.physics.plant import BumperWatch, DrivePlant
 
 COUNTS_PER_M = 27_300.0
 COUNTS_PER_TURN = 1024.0

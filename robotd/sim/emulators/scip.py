@@ -4,7 +4,7 @@ import math
 
 from firmware_proto.rangefinder import ShotStatus
 from robotd.hardware.wire.scip import OK, sum_of
-from robotd.sim.plant import ScannerPlant
+from robotd.sim.physics.plant import ScannerPlant
 
 _STEPS_PER_TURN, _FIRST, _FRONT, _LAST = 1440, 0, 540, 1080
 _RANGE_MIN_MM, _RANGE_MAX_MM = 100, 30_000

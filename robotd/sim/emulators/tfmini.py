@@ -5,7 +5,7 @@ But for the first generation, which streams and hears nothing.
 
 from firmware_proto.rangefinder import ShotStatus
 from robotd.hardware.wire.tfmini import FORMAT_CM, OUTPUT_OFF, OUTPUT_ON, RATE_0, TRIGGER, VERSION, Model, command
-from robotd.sim.plant import LaserPlant, ShotAnswer
+from robotd.sim.physics.plant import LaserPlant, ShotAnswer
 
 _STREAM_US = 10_000
 _TEMPERATURE = b"\xc8\x08"

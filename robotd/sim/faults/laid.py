@@ -10,12 +10,12 @@ from tempfile import TemporaryDirectory
 from robotd.core.errors import TransportError
 from robotd.hardware.transport.pty import PtyEnd, open_pty
 from robotd.hardware.transport.transport import Connect
+from robotd.sim.buildings.world import load_world
 from robotd.sim.faults.cable import Cable
 from robotd.sim.faults.plan import PlannedFault, carry_out
-from robotd.sim.host import OwnBoard
+from robotd.sim.hosting.host import OwnBoard
 from robotd.sim.robot import DEVICES, EmulatedRobot, SimulatedRobot
 from robotd.sim.runtime import connectors
-from robotd.sim.world import load_world
 
 OnPlug = Callable[[str, bool], None]
 

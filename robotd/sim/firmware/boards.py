@@ -7,7 +7,7 @@ from robotd.sim.boards.drive import signed16, signed32
 from robotd.sim.boards.pantilt import PER_RAD, limits_of, tenth_mrad
 from robotd.sim.firmware._native import ffi, lib
 from robotd.sim.firmware.hosted import FirmwareBoard, call_back
-from robotd.sim.plant import DrivePlant, HeadPlant, LaserPlant, ShotAnswer
+from robotd.sim.physics.plant import DrivePlant, HeadPlant, LaserPlant, ShotAnswer
 
 _U16_MAX = 0xFFFF
 _AT_REST = 0

@@ -9,9 +9,9 @@ from robotd.app.callbacks import stopping_on_errors
 from robotd.app.daemon import _halt
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm
+from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
-from robotd.sim.world import load_world
-from tests.integration.living import living
+from tests.support.living import living
 
 
 def _wrong() -> None:

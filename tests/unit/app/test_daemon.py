@@ -27,10 +27,10 @@ from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import read
 from robotd.server.lock import lock_directory
+from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.runtime import connectors
-from robotd.sim.world import load_world
-from tests.integration.living import until_ready
+from tests.support.living import until_ready
 
 
 @pytest.fixture(name="short")

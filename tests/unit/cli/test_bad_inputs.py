@@ -11,7 +11,7 @@ import pytest
 
 from robotd.cli.main import WORDS, main, verbs_of
 from robotd.cli.outputs import OutputPath
-from tests.unit.logs.room import flaser
+from tests.support.carmen_room import flaser
 
 NOBODY = 65534
 LINES_MAX = 3
@@ -61,8 +61,14 @@ OTHERS = {
     "demo building log": ["--out", "NEW"],
     "eval --config": ["LOG"],
     "map start --world": ["kitchen"],
+    "map import file": ["--resolution", "0.05"],
+    "map import --config": ["LOG"],
+    "map import --maps": ["MAPYAML"],
+    "map export --config": ["kitchen", "NEW"],
+    "map export --maps": ["kitchen", "NEW"],
 }
 """What else the command line needs for the verb to come as far as the bad file."""
+MAP_YAML = b"image: in.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
 ENDINGS = {"exact map": (".wkt", ".geojson", ".toml", "")}
 
 
@@ -88,8 +94,11 @@ def is_input(action: argparse.Action) -> bool:
 INPUTS = {name: option for name, option in inputs() if name != "record start file"}
 ENOUGH = ("missing", "a directory", "empty", "a link to itself")
 """What a directory of sockets is tried as."""
-GOOD = {("eval --config", "empty"), ("config check file", "empty"), ("config show file", "empty")}
-"""A configuration that leaves out everything is one."""
+GOOD = {
+    *((name, "empty") for name in ("eval --config", "config check file", "config show file")),
+    *(("map import --maps", kind) for kind in ("missing", "a directory", "a directory with something in it")),
+}
+"""A configuration that leaves out everything is one; and a store of maps is made where there is none."""
 CASES = [
     (name, kind)
     for name in INPUTS
@@ -105,10 +114,13 @@ def command(name: str, bad: Path, directory: Path) -> list[str]:
         "MAP": directory / "in.wkt",
         "LOG": directory / "in.log",
         "NEW": directory / "new",
+        "MAPYAML": directory / "in.yaml",
     }
     made["READINGS"].write_text("bearing_deg,range_m\n0,1\n")
     made["MAP"].write_text("POLYGON ((0 0, 1 0, 1 1, 0 0))")
     made["LOG"].write_text("\n".join(flaser()))
+    made["MAPYAML"].write_bytes(MAP_YAML)
+    (directory / "in.pgm").write_bytes(b"P5 2 1 255\n\0\xfe")
     others = [str(made.get(word, word)) for word in OTHERS.get(name, [])]
     if argument == "--runtime-dir":
         others += {"map start": ["x"], "map load": ["x"], "drive-to": ["0", "0"]}.get(verb, [])

@@ -8,7 +8,7 @@ from robotd.cli.demo.rig import FINISHED, UNFINISHED, explained
 from robotd.cli.demo.room import fresh
 from robotd.cli.outputs import DEMO_MARK
 from robotd.mission.safety.hold import TOO_BUSY
-from robotd.sim.pace import SLOWED
+from robotd.sim.hosting.pace import SLOWED
 
 
 def _left_behind(directory: Path, name: str, text: str) -> None:

@@ -15,7 +15,7 @@ from robotd.cli.main import main
 from robotd.evaluation.division import Query
 from robotd.evaluation.job import Job
 from robotd.evaluation.result import Result
-from tests.unit.cli.recorded_room import drive_lines
+from tests.support.recorded_room import drive_lines
 
 
 @pytest.fixture(scope="session")

@@ -16,7 +16,7 @@ from robotd.cli import outputs
 from robotd.cli.main import WORDS, build_parser, main, verbs_of
 from robotd.cli.outputs import DEMO_MARK, OutputPath, write
 from robotd.core.errors import RobotdError
-from tests.unit.logs.room import flaser
+from tests.support.carmen_room import flaser
 
 ROOT = Path(__file__).parents[3]
 LOG = "\n".join(flaser()) + "\n"

@@ -14,12 +14,12 @@ from robotd.hardware.link.tap import Direction
 from robotd.recording.comparison import Difference
 from robotd.recording.entries import BytesEntry, RecordingHeader
 from robotd.recording.recorder import Recorder
-from robotd.sim.building import load_recorded_building
+from robotd.sim.buildings.building import load_recorded_building
+from robotd.sim.buildings.world import WORLDS_DIR, load_world
 from robotd.sim.faults.catalogue import FAULTS, meaning_of
 from robotd.sim.faults.plan import PlannedFault
 from robotd.sim.load import load_robot
-from robotd.sim.world import WORLDS_DIR, load_world
-from tests.unit.logs.room import flaser
+from tests.support.carmen_room import flaser
 
 
 @pytest.fixture

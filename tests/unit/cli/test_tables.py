@@ -15,9 +15,9 @@ from robotd.cli.show.terminal import bold, plain_console, print_pairs, print_tab
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from tests.support.carmen_room import POSES
+from tests.support.recorded_room import drive_lines
 from tests.unit.cli.conftest import ESTIMATE
-from tests.unit.cli.recorded_room import drive_lines
-from tests.unit.logs.room import POSES
 
 ROOT = Path(__file__).parents[3]
 STRANGE = "[mm] [/red] [bold] :snake: \\[x]"

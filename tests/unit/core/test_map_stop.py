@@ -9,7 +9,7 @@ from robotd.core.map_stop import MapStop
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.readings import Readings
-from tests.unit.maps.made_maps import made_readings
+from tests.support.made_maps import made_readings
 
 sweeps = st.builds(
     lambda seed, count, number: Sweep(number, Pose2(1.0, -2.0, 0.5), made_readings(np.random.default_rng(seed), count)),

@@ -24,7 +24,7 @@ from robotd.localization.judge.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
 from robotd.logs.carmen import parse_carmen
 from robotd.logs.scan import RecordedLog
-from tests.unit.cli.recorded_room import drive_lines
+from tests.support.recorded_room import drive_lines
 
 REACH = Reach(range_max_m=4.0, clear_m=3.0)
 

@@ -19,7 +19,7 @@ from robotd.exact.rationals import rational
 from robotd.exact.readings import beams_of
 from robotd.exact.surds import sqrt
 from robotd.exact.sweep import arrange
-from robotd.sim.world import WORLDS_DIR, load_world, world_names
+from robotd.sim.buildings.world import WORLDS_DIR, load_world, world_names
 
 GEOJSON = """{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
 {"type": "MultiPolygon", "coordinates": [[[[0,0],[3,0],[3,3],[0,3],[0,0]],[[1,1],[1,2.1],[2,2.1],[2,1],[1,1]]],
@@ -93,7 +93,7 @@ def test_what_is_no_map_is_refused(read, text: str, message: str) -> None:  # ty
 
 
 def test_a_simulated_world_is_a_room_with_obstacles() -> None:
-    world = Path(__file__).parents[3] / "robotd/sim/worlds/laboratory.toml"
+    world = Path(__file__).parents[3] / "robotd/sim/buildings/worlds/laboratory.toml"
     obstacles = map_of_toml(world.read_text(encoding="utf-8"))
     assert not contains(obstacles, Point(rational("1.2"), rational("1.2")))
     assert contains(obstacles, Point(rational(-100), rational(3)))

@@ -1,4 +1,4 @@
-"""The C that is written from the declarations says what they say; tests/firmware compiles it and runs it."""
+"""The C that is written from the declarations says what they say; tests/studies/firmware compiles it and runs it."""
 
 import json
 import re

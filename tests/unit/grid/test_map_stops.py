@@ -12,7 +12,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.grid import map_stops
 from robotd.grid.arithmetic import arithmetic
 from robotd.grid.occupancy import BetweenBeams, GridSettings, OccupancyGrid, OverRange, UpdatePolicy
-from tests.unit.maps.made_maps import SPEC, made_stops
+from tests.support.made_maps import SPEC, made_stops
 
 SETTINGS = [
     GridSettings(raise_alpha=0.7, policy=policy, over_range=over_range)

@@ -10,7 +10,7 @@ from robotd.core.errors import RecordingError
 from robotd.core.pose import Pose2
 from robotd.logs.carmen import parse_carmen
 from robotd.logs.scan import RecordedLog
-from robotd.sim.log_file import read_log
+from robotd.sim.buildings.log_file import read_log
 
 BEARINGS = {4: (-90, -45, 0, 45), 5: (-90, -45, 0, 45, 90)}
 

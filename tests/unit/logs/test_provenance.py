@@ -12,7 +12,7 @@ from robotd.core.pose import Pose2
 from robotd.logs.carmen import parse_carmen
 from robotd.logs.provenance import fitting_shares
 from robotd.logs.scan import PoseSource
-from tests.unit.logs.room import angles_rad, ranges_m, text
+from tests.support.carmen_room import angles_rad, ranges_m, text
 
 LAPS = 3
 ROUND = 24

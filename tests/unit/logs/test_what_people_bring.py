@@ -10,7 +10,7 @@ from robotd.core.errors import RecordingError
 from robotd.core.pose import Pose2
 from robotd.logs.carmen import parse_carmen
 from robotd.logs.scan import PoseSource
-from tests.unit.logs.room import (
+from tests.support.carmen_room import (
     POSES,
     angles_rad,
     assert_the_room_is_seen,

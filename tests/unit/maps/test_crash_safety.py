@@ -15,7 +15,7 @@ from robotd.core.errors import MapError
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.maps import atomic
 from robotd.maps.store import MapStore
-from tests.unit.maps.made_maps import SPEC, made_stops
+from tests.support.made_maps import SPEC, made_stops
 
 CHANGING = ("open", "write", "fsync", "rename", "mkdir")
 

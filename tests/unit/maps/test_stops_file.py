@@ -20,7 +20,7 @@ from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import GridSettings, UpdatePolicy
 from robotd.maps.stops_file import READINGS_MAX, SETTINGS_SINCE, STOPS_MAX, decode_stops, encode_stops
-from tests.unit.maps.made_maps import made_stops
+from tests.support.made_maps import made_stops
 
 HEAD = b"robotd stops 1\n"
 finite = st.floats(-1e6, 1e6)

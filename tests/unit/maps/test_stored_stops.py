@@ -18,7 +18,7 @@ from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy
 from robotd.maps.manifest import FileSum, decode_manifest
 from robotd.maps.stops_file import encode_stops
 from robotd.maps.store import MapStore
-from tests.unit.maps.made_maps import SPEC, made_stops
+from tests.support.made_maps import SPEC, made_stops
 
 FARTHEST = RangeReading(0, 0.0, ReadingStatus.OK, 1e9)
 OTHER = GridSettings(raise_alpha=0.6, policy=UpdatePolicy.PER_READING)

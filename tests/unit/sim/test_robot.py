@@ -3,8 +3,8 @@ from dataclasses import replace
 import pytest
 
 from robotd.core.errors import ConfigError
+from robotd.sim.buildings.world import Start, load_world
 from robotd.sim.robot import DEVICES, SimulatedRobot
-from robotd.sim.world import Start, load_world
 
 
 def test_it_knows_its_world_and_has_a_board_and_a_clock_for_each_device() -> None:

@@ -25,10 +25,10 @@ from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.serial_port import open_serial
 from robotd.hardware.transport.transport import Connect, Transport
-from robotd.sim.noise import NOISELESS
+from robotd.sim.buildings.world import load_world
+from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import EmulatedRobot, SimSettings, SimulatedRobot, own_board
 from robotd.sim.runtime import connectors, run_on_ptys
-from robotd.sim.world import load_world
 
 
 def office_robot(seed: int = 1) -> SimulatedRobot:

@@ -20,12 +20,12 @@ from robotd.hardware.devices.device import Device
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Connect, Transport
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects, Firmware
-from robotd.sim.host import OwnBoard
-from robotd.sim.noise import NOISELESS
+from robotd.sim.hosting.host import OwnBoard
+from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings, SimulatedRobot, board_of
 from robotd.sim.runtime import connectors
-from robotd.sim.world import load_world
 from tests.unit.hardware.conftest import FaultyLine
 
 BOARDS = Firmware.PYTHON

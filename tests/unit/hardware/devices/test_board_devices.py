@@ -25,8 +25,8 @@ from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
-from robotd.sim.head import HeadSettings
-from robotd.sim.noise import NOISELESS
+from robotd.sim.physics.head import HeadSettings
+from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings
 from tests.unit.hardware.conftest import lose
 from tests.unit.hardware.devices.conftest import nowhere, rig

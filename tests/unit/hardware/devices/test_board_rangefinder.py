@@ -12,9 +12,9 @@ from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.wire.board import BoardWire
 from robotd.sim.faults.of_frames import frames_of
-from robotd.sim.laser import LaserSettings
-from robotd.sim.noise import NOISELESS
-from robotd.sim.plant import ShotAnswer
+from robotd.sim.physics.laser import LaserSettings
+from robotd.sim.physics.noise import NOISELESS
+from robotd.sim.physics.plant import ShotAnswer
 from robotd.sim.robot import SimSettings
 from tests.unit.hardware.devices.conftest import rig
 

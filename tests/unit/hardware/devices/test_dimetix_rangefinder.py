@@ -17,10 +17,10 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
-from robotd.sim.board_clock import BoardClock
 from robotd.sim.emulators.dimetix import DimetixEmulator
-from robotd.sim.host import serve
-from robotd.sim.plant import ShotAnswer
+from robotd.sim.hosting.board_clock import BoardClock
+from robotd.sim.hosting.host import serve
+from robotd.sim.physics.plant import ShotAnswer
 
 
 class Wall:

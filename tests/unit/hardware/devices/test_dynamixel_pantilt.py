@@ -15,13 +15,13 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.dynamixel import Instruction
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.emulators.dynamixel import DynamixelEmulator
 from robotd.sim.emulators.paced import Paced
-from robotd.sim.noise import NOISELESS
+from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
-from robotd.sim.world import load_world
 
 PAN, TILT = 1, 2
 OVERLOADED, OVERHEATED = 0x20, 0x04

@@ -23,7 +23,7 @@ from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire import tfmini
 from robotd.hardware.wire.tfmini import Model
-from robotd.sim.plant import ShotAnswer
+from robotd.sim.physics.plant import ShotAnswer
 from tests.unit.hardware.devices.conftest import nowhere, rig
 from tests.unit.hardware.devices.sensing import sensor
 

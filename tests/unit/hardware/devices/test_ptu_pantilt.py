@@ -17,13 +17,13 @@ from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Transport
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.ptu import PtuEmulator
-from robotd.sim.noise import NOISELESS
+from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
-from robotd.sim.world import load_world
 
 STEP_RAD = math.radians(185.142857 / 3600)
 

@@ -16,14 +16,14 @@ from robotd.hardware.devices.settings import DriveSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.transport import Transport
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators import rwi
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.rwi import RwiEmulator
-from robotd.sim.noise import NOISELESS
+from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
-from robotd.sim.world import load_world
 
 SETTINGS = DriveSettings(counts_per_m=rwi.COUNTS_PER_M, counts_per_rad=rwi.COUNTS_PER_RAD)
 TTL_S = 0.4

@@ -22,11 +22,11 @@ from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
-from robotd.sim.board_clock import BoardClock
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.scip import ScipEmulator
-from robotd.sim.host import serve
-from robotd.sim.plant import ShotAnswer
+from robotd.sim.hosting.board_clock import BoardClock
+from robotd.sim.hosting.host import serve
+from robotd.sim.physics.plant import ShotAnswer
 
 STEP_RAD = math.tau / 1440
 

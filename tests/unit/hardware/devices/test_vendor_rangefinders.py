@@ -13,7 +13,7 @@ from robotd.sim.emulators import lw20, lwnx
 from robotd.sim.emulators.catalogue import RANGEFINDERS
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.emulators.tfmini import TfminiEmulator
-from robotd.sim.plant import ShotAnswer
+from robotd.sim.physics.plant import ShotAnswer
 from tests.unit.hardware.devices.sensing import sensor
 
 LIGHTWARE = ("lw20", "lwnx")

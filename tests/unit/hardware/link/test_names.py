@@ -13,9 +13,9 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.address import connector
 from robotd.hardware.transport.line_format import LineFormat
+from robotd.sim.buildings.world import load_world
 from robotd.sim.faults.laid import cables_on_ptys
 from robotd.sim.robot import SimulatedRobot
-from robotd.sim.world import load_world
 
 
 async def until(device: BoardDrive, link: LinkState, detail: str = "") -> None:

@@ -33,9 +33,9 @@ from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES, BoardWire
 from robotd.sim.boards.board import Board
+from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.runtime import connectors
-from robotd.sim.world import load_world
 
 
 class Tape:

@@ -24,10 +24,10 @@ from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.wire.board import STOP_BYTES, BoardWire, Received
 from robotd.sim.boards.board import Board, Outcome
-from robotd.sim.laser import LaserSettings
+from robotd.sim.buildings.world import load_world
+from robotd.sim.physics.laser import LaserSettings
 from robotd.sim.robot import SimSettings, SimulatedRobot, own_board
 from robotd.sim.runtime import connectors
-from robotd.sim.world import load_world
 from tests.unit.hardware.conftest import FaultyLine, lose, never, once
 
 MS = 1_000_000

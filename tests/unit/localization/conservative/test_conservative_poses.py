@@ -18,8 +18,8 @@ from robotd.grid.ternary import TernaryMap
 from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles, conservative_poses
 from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
 from robotd.localization.count.rank_grid import even_headings
-from tests.conservative.cases import case_of
-from tests.conservative.run import is_lost, ranks_of
+from tests.studies.conservative.run import is_lost, ranks_of
+from tests.support.conservative_cases import case_of
 
 RESOLUTION_M = 0.25
 values = hnp.arrays(

@@ -19,7 +19,7 @@ from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.search.cell_disk import CellDisk
 from robotd.localization.settings import LocalizationSettings
-from tests.conservative.cases import Case, case_of
+from tests.support.conservative_cases import Case, case_of
 
 CASES = [case for case in map(case_of, range(160)) if case.slices <= 90 and len(case.readings) >= 6]
 """Few enough headings that what is left can be told."""

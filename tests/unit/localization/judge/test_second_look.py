@@ -21,7 +21,7 @@ from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
 from robotd.localization.judge.second_look import SecondLook, SecondLookSettings, _contrast, second_look, share_on_walls
 from robotd.localization.judge.shortlist import near
-from robotd.sim.walls import Walls, ray_cast
+from robotd.sim.physics.walls import Walls, ray_cast
 
 CUT_OFF_M = 6.0
 Box = tuple[float, float, float, float]

@@ -26,8 +26,8 @@ from robotd.localization.reference.separated_orientation import (
     readings_axis,
     separated_orientation,
 )
-from robotd.sim.walls import Point, Walls, ray_cast
-from robotd.sim.world import load_world
+from robotd.sim.buildings.world import load_world
+from robotd.sim.physics.walls import Point, Walls, ray_cast
 
 RESOLUTION_M = 0.05
 SETTINGS = OrientationSettings()

@@ -20,7 +20,7 @@ from robotd.localization.reference.rank import rank_of
 from robotd.localization.search import bounded_search as search
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk
-from tests.unit.grid.kernels.tables import both, using
+from tests.support.kernel_tables import both, using
 
 RESOLUTION_M = 0.5
 

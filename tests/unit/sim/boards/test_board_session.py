@@ -42,7 +42,7 @@ from robotd.sim.boards.board import Board
 from robotd.sim.boards.drive import DriveBoard
 from robotd.sim.boards.pantilt import PanTiltBoard
 from robotd.sim.boards.rangefinder import RangefinderBoard
-from robotd.sim.plant import ShotAnswer
+from robotd.sim.physics.plant import ShotAnswer
 
 
 class Still:

@@ -17,7 +17,7 @@ from firmware_proto.rangefinder import ShotStatus
 from firmware_proto.schema import Message
 from robotd.hardware.wire.board import KILL_BYTES, BoardWire, Received
 from robotd.sim.boards.rangefinder import RangefinderBoard
-from robotd.sim.plant import ShotAnswer
+from robotd.sim.physics.plant import ShotAnswer
 
 START_US = 1_000_000
 PERIOD_US = 50_000

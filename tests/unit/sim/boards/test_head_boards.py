@@ -27,7 +27,7 @@ from firmware_proto.schema import Message
 from robotd.hardware.wire.board import Received
 from robotd.sim.boards.pantilt import PanTiltBoard
 from robotd.sim.boards.rangefinder import RangefinderBoard
-from robotd.sim.plant import ShotAnswer
+from robotd.sim.physics.plant import ShotAnswer
 from tests.unit.sim.boards.conftest import START_US, Host
 
 # Pan/tilt

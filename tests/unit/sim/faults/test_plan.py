@@ -9,6 +9,7 @@ import pytest
 from robotd.core.errors import ConfigError, TransportError
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.serial_port import open_serial
+from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.cable import Cable
 from robotd.sim.faults.fault import Fault
@@ -16,7 +17,6 @@ from robotd.sim.faults.laid import cables, run_faulty_on_ptys
 from robotd.sim.faults.of_bytes import Garbage
 from robotd.sim.faults.plan import PlannedFault, carry_out, parse_plan
 from robotd.sim.robot import DEVICES, SimulatedRobot
-from robotd.sim.world import load_world
 
 LINE = LineFormat(115_200)
 

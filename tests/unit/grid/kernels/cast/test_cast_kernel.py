@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from robotd.grid.distance import distance_transform
 from robotd.grid.kernels.cast.cast_kernel import BLOCKS, DEPTH_CELLS, ENDS, REACH_CELLS, SKIP_MAX
 from robotd.grid.kernels.twins import TWINS
-from tests.unit.grid.kernels.tables import NATIVE
+from tests.support.kernel_tables import NATIVE
 
 Masks = tuple[NDArray[np.bool_], NDArray[np.bool_]]
 

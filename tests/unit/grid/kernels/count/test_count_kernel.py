@@ -23,7 +23,7 @@ from robotd.grid.kernels.twins import TWINS
 from robotd.grid.readings import Readings
 from robotd.localization.count.rank_grid import even_headings
 from robotd.localization.reference.probe import probe_of
-from tests.unit.grid.kernels.tables import NATIVE, both, needs_native, using
+from tests.support.kernel_tables import NATIVE, both, needs_native, using
 
 RADIUS = 1.5
 HOW = BeamSettings(resolution_m=0.5, error_radius_cells=RADIUS, reach_cells=70)

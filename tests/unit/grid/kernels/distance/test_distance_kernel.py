@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from robotd.grid.kernels import Kernels
 from robotd.grid.kernels.distance.distance_kernel import NOWHERE
 from robotd.grid.window import CellWindow
-from tests.unit.grid.kernels.tables import both
+from tests.support.kernel_tables import both
 
 
 def drawn_sources(seed: int, rows: int, cols: int, share: float) -> NDArray[np.bool_]:

@@ -10,7 +10,7 @@ from robotd.grid.kernels import AVAILABLE
 from robotd.grid.kernels.draw.draw_kernel import NO_HEAD
 from robotd.grid.kernels.error_radius.error_radius_kernel import Bodies
 from robotd.grid.kernels.shared.packed_map import PackedMap
-from tests.unit.grid.kernels.tables import needs_native
+from tests.support.kernel_tables import needs_native
 
 pytestmark = needs_native
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from robotd.grid.fans import FanBeams, direction_keys, draw_fans, start_keys
 from robotd.grid.kernels.shared.packed_map import PackedMap, pack
 from robotd.grid.kernels.twins import TWINS
-from tests.unit.grid.kernels.tables import NATIVE, needs_native
+from tests.support.kernel_tables import NATIVE, needs_native
 
 pytestmark = needs_native
 

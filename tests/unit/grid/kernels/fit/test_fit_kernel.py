@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from robotd.grid.kernels.fit.fit_kernel import Lattice
 from robotd.grid.kernels.twins import TWINS
-from tests.unit.grid.kernels.tables import NATIVE, needs_native
+from tests.support.kernel_tables import NATIVE, needs_native
 
 pytestmark = needs_native
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from robotd.grid.footprints import dilate, disk_footprint
 from robotd.grid.kernels import Kernels
 from robotd.grid.window import CellWindow
-from tests.unit.grid.kernels.tables import NATIVE, both, needs_native
+from tests.support.kernel_tables import NATIVE, both, needs_native
 
 
 @both

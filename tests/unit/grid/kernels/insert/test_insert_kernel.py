@@ -9,7 +9,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.grid.kernels.twins import TWINS
 from robotd.grid.tables import lower_table, raise_table
-from tests.unit.grid.kernels.tables import NATIVE, needs_native
+from tests.support.kernel_tables import NATIVE, needs_native
 
 pytestmark = needs_native
 

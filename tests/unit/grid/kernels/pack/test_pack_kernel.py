@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from robotd.grid.kernels import Kernels
 from robotd.grid.kernels.shared.packed_map import pack
 from robotd.grid.window import CellWindow
-from tests.unit.grid.kernels.tables import both
+from tests.support.kernel_tables import both
 
 
 @both

@@ -16,7 +16,7 @@ from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question
 from robotd.grid.kernels.twins import TWINS
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.window import CellWindow
-from tests.unit.grid.kernels.tables import NATIVE, both, needs_native
+from tests.support.kernel_tables import NATIVE, both, needs_native
 
 RADIUS = 1.5
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from robotd.grid.kernels.shared.packed_map import TILE_ROWS
-from tests.unit.grid.kernels.tables import needs_native
+from tests.support.kernel_tables import needs_native
 
 pytestmark = needs_native
 

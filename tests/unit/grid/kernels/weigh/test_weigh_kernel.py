@@ -10,7 +10,7 @@ from robotd.grid.kernels import Kernels, in_use
 from robotd.grid.kernels.twins import TWINS
 from robotd.grid.kernels.weigh.weigh_kernel import AS_MAPPED, IN_UNKNOWN, IN_VACANT, ChanceMap
 from robotd.localization.judge.likelihood import skips_of
-from tests.unit.grid.kernels.tables import NATIVE, both, needs_native
+from tests.support.kernel_tables import NATIVE, both, needs_native
 
 VALUES = np.array([0, 60, 127, 128, 129, 190, 255], np.uint8)
 STOPS = np.where(np.arange(256) > 128, np.minimum(np.arange(256) / 255, 0.9), 0.001)

@@ -1,0 +1,1 @@
+"""Where a simulated robot drives: rooms in files, maps, recorded buildings."""

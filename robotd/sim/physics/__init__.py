@@ -1,0 +1,1 @@
+"""The simulated hardware without its boards: body, head, laser, walls, noise."""

@@ -1,0 +1,130 @@
+"""A point laser on the head: one beam, through the room or down to its floor."""
+
+import math
+import random
+from dataclasses import dataclass
+
+from firmware_proto.rangefinder import ShotStatus
+from robotd.core.pose import Pose2
+from robotd.sim.physics.body import Body
+from robotd.sim.physics.head import Head
+from robotd.sim.physics.noise import NoiseSettings
+from robotd.sim.physics.plant import ShotAnswer
+from robotd.sim.physics.walls import Walls, ray_cast
+
+_STRENGTH_AT_1_M = 20_000
+_STRENGTH_MAX = 65_535
+
+
+@dataclass(frozen=True, slots=True)
+class LaserSettings:
+    """The instrument and how it is mounted."""
+
+    range_min_m: float = 0.3
+    """Nearer obstacles cannot be measured."""
+    reach_m: float = 10.0
+    """From farther ones nothing comes back."""
+    takes_us: int = 4_000
+    """Time of one measurement."""
+    range_bias_m: float = 0.0
+    """What it adds to every range."""
+    height_m: float = 0.55
+    """Of the beam's origin above the floor."""
+    mount_x_m: float = 0.0
+    """Of the beam's origin in the robot frame."""
+    mount_y_m: float = 0.0
+    pan_zero_rad: float = 0.0
+    """Where the beam points in the robot frame when the head reads pan 0."""
+    tilt_zero_rad: float = 0.0
+    """How far above level the beam points when the head reads tilt 0."""
+
+    def __post_init__(self) -> None:
+        """Refuse an instrument that cannot measure."""
+        if not 0.0 <= self.range_min_m < self.reach_m:
+            raise ValueError(f"range_min_m must lie in [0, reach_m), got {self.range_min_m}, {self.reach_m}")
+        if not self.height_m > 0.0:
+            raise ValueError(f"height_m must be positive, got {self.height_m}")
+        if self.takes_us < 1:
+            raise ValueError(f"takes_us must be at least 1, got {self.takes_us}")
+
+
+class Laser:
+    """The plant behind the rangefinder board; lives in true time [us]."""
+
+    def __init__(
+        self,
+        walls: Walls,
+        body: Body,
+        head: Head,
+        *,
+        settings: LaserSettings,
+        noise: NoiseSettings,
+        randomness: random.Random,
+    ) -> None:
+        self._walls = walls
+        self._body = body
+        self._head = head
+        self._settings = settings
+        self._noise = noise
+        self._random = randomness
+        self._on = False
+
+    def switch(self, *, on: bool) -> None:
+        """Switch the light."""
+        self._on = on
+
+    def shoot(self, at_us: int) -> ShotAnswer:
+        """Measure along the beam, from where body and head are at that moment."""
+        if not self._on:
+            return self._answer(ShotStatus.LASER_OFF)
+        self._head.advance(at_us)
+        return self._answer_along(at_us, *self._head.true_angles_rad)
+
+    def measure(self, at_us: int, pan_rad: float) -> ShotAnswer:
+        """Measure level in a direction, wherever the head points."""
+        if not self._on:
+            return self._answer(ShotStatus.LASER_OFF)
+        return self._answer_along(at_us, pan_rad, 0.0)
+
+    def _answer_along(self, at_us: int, pan_rad: float, tilt_rad: float) -> ShotAnswer:
+        self._body.advance(at_us)
+        range_m = self._measured_m(self._true_range_m(pan_rad, tilt_rad))
+        if range_m > self._settings.reach_m:
+            return self._answer(ShotStatus.OVER_RANGE)
+        if range_m < self._settings.range_min_m:
+            return self._answer(ShotStatus.TOO_NEAR)
+        return self._answer(ShotStatus.OK, range_m)
+
+    def true_range_m(self) -> float:
+        """Return the way of the light to the first wall or the floor; ``inf`` if there is neither."""
+        return self._true_range_m(*self._head.true_angles_rad)
+
+    def _true_range_m(self, pan_rad: float, tilt_rad: float) -> float:
+        settings = self._settings
+        tilt_rad += settings.tilt_zero_rad
+        world_from_beam = self._body.true_pose @ Pose2(
+            settings.mount_x_m, settings.mount_y_m, pan_rad + settings.pan_zero_rad
+        )
+        wall_m = ray_cast(
+            self._walls,
+            (world_from_beam.x_m, world_from_beam.y_m),
+            world_from_beam.heading_rad,
+            eye_height_m=settings.height_m,
+            climb=math.tan(tilt_rad),
+        )
+        floor_m = settings.height_m / math.tan(-tilt_rad) if tilt_rad < 0.0 else math.inf
+        return min(wall_m, floor_m) / math.cos(tilt_rad)
+
+    def _measured_m(self, true_m: float) -> float:
+        """Return what the instrument makes of it; every shot draws the same amount of randomness."""
+        settings = self._settings
+        lottery, place = self._random.random(), self._random.random()
+        error_m = self._random.gauss(0.0, self._noise.range_sigma_m)
+        if lottery < self._noise.outlier_share:
+            farthest_m = min(settings.reach_m, 2.0 * true_m)
+            return settings.range_min_m + place * max(0.0, farthest_m - settings.range_min_m)
+        return true_m + error_m + settings.range_bias_m
+
+    def _answer(self, status: ShotStatus, range_m: float = 0.0) -> ShotAnswer:
+        strength = min(_STRENGTH_MAX, round(_STRENGTH_AT_1_M / range_m**2)) if range_m else 0
+        return ShotAnswer(status, range_m, strength, self._settings.takes_us)

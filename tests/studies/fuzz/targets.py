@@ -1,0 +1,6 @@
+"""Every parser of the project that reads what others wrote."""
+
+from tests.studies.fuzz.documents import DOCUMENTS
+from tests.studies.fuzz.streams import STREAMS
+
+TARGETS = {target.name: target for target in (*STREAMS, *DOCUMENTS)}
