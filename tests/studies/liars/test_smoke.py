@@ -10,8 +10,8 @@ from tests.studies.liars.lies import TONGUES
 from tests.studies.liars.trial import STATES
 
 _WITHOUT_WORDS = {("pantilt", "fixed")}
-_LIKE_ANOTHER = {("rangefinder", "tfmini")}
-"""It says the data frames of the tfmini-s."""
+_LIKE_ANOTHER = {("rangefinder", name) for name in ("tfmini", "tfmini-plus", "tf-luna")}
+"""They say the data frames of the tfmini-s."""
 
 
 @pytest.mark.parametrize("state", STATES)
