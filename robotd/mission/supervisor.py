@@ -7,6 +7,7 @@ published.
 """
 
 import asyncio
+import logging
 from collections.abc import Callable
 
 from robotd.contract.events import Status
@@ -26,6 +27,8 @@ from robotd.mission.safety.modes import Occasion
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.telling import WhereaboutsTold
 from robotd.mission.whereabouts.tie import Tie
+
+log = logging.getLogger(__name__)
 
 
 class Supervisor:
@@ -55,6 +58,7 @@ class Supervisor:
         self.news = news
         self.whereabouts = context.whereabouts
         self._recording = recording
+        self._is_untold = False
         self.halts = 0
         """How often the robot was stopped."""
         self._current = CurrentMode(self.publish_status)
@@ -100,8 +104,15 @@ class Supervisor:
         )
 
     def publish_status(self) -> None:
-        """Tell everybody how the whole robot is."""
-        self.news.publish(self.status)
+        """Tell everybody how the whole robot is; where that fails nothing ends, and the next comes in a second."""
+        try:
+            self.news.publish(self.status)
+        except Exception:  # stopping, arming and watching go on, whatever keeps a status from being made
+            if not self._is_untold:
+                log.exception("the status could not be told")
+            self._is_untold = True
+        else:
+            self._is_untold = False
 
     async def run(self) -> None:
         """Watch the devices until cancelled; whatever ends it stops the robot."""

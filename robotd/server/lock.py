@@ -26,22 +26,35 @@ def lock_directory(directory: Path) -> Iterator[None]:
     try:
         directory.mkdir(mode=0o750, parents=True, exist_ok=True)
         descriptor = os.open(directory / _NAME, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, _MODE)
-        os.fchmod(descriptor, _MODE)  # one of an earlier version may be open to the group
     except OSError as error:
-        raise TransportError(f"runtime directory {directory}: {error.strerror}") from error
+        raise _unusable(directory, error) from error
     try:
         _lock(descriptor, directory)
         yield
     finally:
-        os.close(descriptor)
+        with contextlib.suppress(OSError):  # the descriptor is gone all the same, and the lock with it
+            os.close(descriptor)
+
+
+def _unusable(directory: Path, error: OSError) -> TransportError:
+    return TransportError(f"runtime directory {directory}: {error.strerror}")
 
 
 def _lock(descriptor: int, directory: Path) -> None:
     try:
+        os.fchmod(descriptor, _MODE)  # one of an earlier version may be open to the group
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        holder = os.pread(descriptor, 32, 0).decode(errors="replace").strip() or "unknown"
-        raise TransportError(f"another robotd (process {holder}) serves from {directory}") from None
+        raise TransportError(f"another robotd (process {_holder(descriptor)}) serves from {directory}") from None
+    except OSError as error:
+        raise _unusable(directory, error) from error
     with contextlib.suppress(OSError):  # a full disk: the lock holds all the same, only nobody learns whose it is
         os.ftruncate(descriptor, 0)
         os.pwrite(descriptor, f"{os.getpid()}\n".encode(), 0)
+
+
+def _holder(descriptor: int) -> str:
+    try:
+        return os.pread(descriptor, 32, 0).decode(errors="replace").strip() or "unknown"
+    except OSError:  # that somebody holds it is what matters
+        return "unknown"

@@ -11,24 +11,42 @@ from robotd.core.text import printable_lines
 
 _LONGEST_MESSAGE = 2000
 
+log = logging.getLogger(__name__)
+
 
 class _Relay(logging.Handler):
-    """Hands records, from whatever thread, to the loop."""
+    """Hands records, from whatever thread, to the loop.
+
+    What fails is said once, and not to clients: a line about lines that cannot be relayed would be the next of them.
+    """
 
     def __init__(self, deliver: Callable[[LogEntry], None]) -> None:
         super().__init__(logging.INFO)
         self._loop = asyncio.get_running_loop()
         self._deliver = deliver
+        self._is_failing = False
 
     def emit(self, record: logging.LogRecord) -> None:
+        if record.name == __name__:
+            return
         try:
             line = (record.levelname, record.name, _shown(record.getMessage()))
             self._loop.call_soon_threadsafe(self._on_loop, *line)
-        except Exception:  # a bad record, or a loop that has ended: the log's own way to take it
-            self.handleError(record)
+        except Exception as error:  # a bad record, or a loop that has ended
+            self._complain(record.name, error)
 
     def _on_loop(self, level: str, logger: str, message: str) -> None:
-        self._deliver(LogEntry(now_ns(), level, logger, message))
+        try:
+            self._deliver(LogEntry(now_ns(), level, logger, message))
+        except Exception as error:  # a callback of the loop that fails would stop the robot
+            self._complain(logger, error)
+        else:
+            self._is_failing = False
+
+    def _complain(self, logger: str, error: Exception) -> None:
+        if not self._is_failing:
+            self._is_failing = True
+            log.error("a line of %s did not reach the clients: %r", logger, error)
 
 
 def _shown(message: str) -> str:

@@ -66,10 +66,10 @@ class Outlet:
         while not topics:
             try:
                 topics |= _topics_of(await self._socket.recv())
-            except zmq.ZMQError as error:
+            except Exception as error:
                 self._complain("a subscription could not be received", error)
                 await asyncio.sleep(_AFTER_ERROR_S)
-        with contextlib.suppress(zmq.ZMQError):  # none waits, or the next wait will tell
+        with contextlib.suppress(Exception):  # none waits, or the next wait will tell
             for _ in range(_MOST_JOINS):
                 topics |= _topics_of(await self._socket.recv(zmq.NOBLOCK))
         return topics
@@ -77,13 +77,14 @@ class Outlet:
     async def _put(self, frame: bytes) -> None:
         try:
             await self._socket.send(frame)
-        except zmq.ZMQError as error:  # its readers see the gap
+        except Exception as error:  # its readers see the gap
             self._complain("a message could not be published", error)
 
-    def _complain(self, what: str, error: zmq.ZMQError) -> None:
+    def _complain(self, what: str, error: Exception) -> None:
         if self._socket.closed:
             raise error
-        if line := self._complaints.line(f"{what}: {error.strerror}"):
+        said = error.strerror if isinstance(error, zmq.ZMQError) else repr(error)
+        if line := self._complaints.line(f"{what}: {said}"):
             log.warning("%s", line)
 
 

@@ -50,8 +50,11 @@ class Publisher:
 
     async def _follow_events(self) -> NoReturn:
         decimator = Decimator(self._routine_hz)
-        status = await self._control.perform(GetStatus())
-        await self._publish(status)
+        try:
+            status = await self._control.perform(GetStatus())
+            await self._publish(status)
+        except Exception as error:  # the next one comes within a second
+            self._complain("the first status", error)
         while True:
             event = await self._events.get()
             if isinstance(event, MapChanged):
@@ -68,10 +71,10 @@ class Publisher:
             topic, fields = to_wire(event)
             await self._state.send(topic, fields)
         except Exception as error:  # one event that has no form on the wire must not end those that have one
-            self._complain(event, error)
+            self._complain(type(event).__name__, error)
 
-    def _complain(self, event: Published, error: Exception) -> None:
-        if line := self._complaints.line(f"{type(event).__name__} was not published: {error!r}"):
+    def _complain(self, what: str, error: Exception) -> None:
+        if line := self._complaints.line(f"{what} was not published: {error!r}"):
             log.error("%s", line)
 
     async def _greet_map_readers(self) -> NoReturn:
@@ -91,10 +94,13 @@ class Publisher:
         try:
             await self._maps.send_large(change)
         except Exception as error:  # no memory, no thread: the next one may have them
-            self._complain(change, error)
+            self._complain(type(change).__name__, error)
 
     async def _whole(self) -> MapChanged | None:
         try:
             return await self._control.perform(MapShow())
         except RobotdError:  # no map in use: whoever joined hears of the first one when it comes
+            return None
+        except Exception as error:  # whoever joins next asks again
+            self._complain("the map in use", error)
             return None

@@ -7,6 +7,7 @@ messages alone; timers only bound silence: of a request, and of the line.
 """
 
 import asyncio
+import logging
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -28,6 +29,8 @@ from robotd.hardware.wire.board import EMERGENCY_SEQ, STOP_BYTES, BoardWire, Rec
 TRIES = 3
 _PING_EVERY_S = 1.0
 _NS_PER_US = 1000
+
+log = logging.getLogger(__name__)
 
 Answer = TypeVar("Answer", bound=Message)
 TelemetryHandler = Callable[[Message], None]
@@ -81,6 +84,7 @@ class Session:
         self._serving = False
         self._stops = 0
         self._board_us = 0
+        self._is_unlearned = False
         self._lost: RobotdError | None = None
 
     async def __aenter__(self) -> Self:
@@ -234,7 +238,7 @@ class Session:
         self.heard_ns = time_ns
         message = received.message
         if isinstance(message, Pong):
-            self._counters.implausible += not self.clock.add(message.host_us, message.board_us, time_ns)
+            self._counters.implausible += not self._learn(message, time_ns)
         if not TELEMETRY_START <= received.type < TELEMETRY_END:
             self._settle(received)
             return not self._serving
@@ -242,6 +246,17 @@ class Session:
             self._check_ours(message)
             self._on_telemetry(message)
         return True
+
+    def _learn(self, pong: Pong, time_ns: int) -> bool:
+        try:
+            agrees = self.clock.add(pong.host_us, pong.board_us, time_ns)
+        except Exception:  # the clock goes on by what it learned before: no reason to lose the board
+            if not self._is_unlearned:
+                log.exception("%s: nothing was learned of its clock", self.device)
+            self._is_unlearned = True
+            return False
+        self._is_unlearned = False
+        return agrees
 
     def _settle(self, received: Received) -> None:
         if self._request is not None and self._request.is_answered_by(received):

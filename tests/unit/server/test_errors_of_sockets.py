@@ -2,6 +2,7 @@
 
 import asyncio
 import errno
+import os
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import Any
@@ -10,12 +11,19 @@ import pytest
 import zmq
 
 from robotd.contract.events import MapChanged
+from robotd.contract.request import Request
+from robotd.contract.requests import GetStatus, MapShow
 from robotd.contract.topics import Topic, decode_frame
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.server.outlet import Outlet
 from robotd.server.publisher import Publisher
 
-ERRORS = [errno.EAGAIN, errno.EMFILE, errno.ENOTSUP, errno.EHOSTUNREACH, errno.EINTR, errno.ENOMEM]
+NUMBERS = [errno.EAGAIN, errno.EMFILE, errno.ENOTSUP, errno.EHOSTUNREACH, errno.EINTR, errno.ENOMEM]
+ERRORS = [
+    *map(zmq.ZMQError, NUMBERS),
+    *(OSError(number, os.strerror(number)) for number in (errno.EMFILE, errno.ENOSPC, errno.EACCES)),
+    RuntimeError("a bug in the daemon"),
+]
 
 
 class Flaky:
@@ -23,11 +31,11 @@ class Flaky:
 
     closed = False
 
-    def __init__(self, number: int) -> None:
+    def __init__(self, error: Exception) -> None:
         self.sent: list[bytes] = []
         self.joins: asyncio.Queue[bytes] = asyncio.Queue()
         self.failures = {"send": 1, "recv": 1, "recv at once": 1}
-        self._error = zmq.ZMQError(number)
+        self._error = error
 
     async def send(self, frame: bytes) -> None:
         self._fail("send")
@@ -60,11 +68,11 @@ async def published(control: Any, state: Flaky, maps: Flaky) -> AsyncIterator[as
             await asyncio.gather(task, return_exceptions=True)
 
 
-@pytest.mark.parametrize("number", ERRORS)
+@pytest.mark.parametrize("error", ERRORS, ids=repr)
 async def test_no_error_of_a_socket_ends_what_publishes(
-    make_control: Any, make_map: Callable[..., MapChanged], number: int
+    make_control: Any, make_map: Callable[..., MapChanged], error: Exception
 ) -> None:
-    control, state, maps = make_control(), Flaky(number), Flaky(number)
+    control, state, maps = make_control(), Flaky(error), Flaky(error)
     control.map_in_use = make_map(1)
     async with published(control, state, maps) as task:
         for socket in (state, maps):
@@ -84,7 +92,7 @@ async def test_no_error_of_a_socket_ends_what_publishes(
 async def test_an_event_that_has_no_form_on_the_wire_is_dropped_and_logged(
     make_control: Any, make_map: Callable[..., MapChanged], caplog: pytest.LogCaptureFixture
 ) -> None:
-    control, state, maps = make_control(), Flaky(errno.EAGAIN), Flaky(errno.EAGAIN)
+    control, state, maps = make_control(), Flaky(ERRORS[0]), Flaky(ERRORS[0])
     state.failures = maps.failures = dict.fromkeys(state.failures, 0)
     broken = make_map(1)
     object.__setattr__(broken, "spec", None)
@@ -102,8 +110,42 @@ async def test_an_event_that_has_no_form_on_the_wire_is_dropped_and_logged(
     assert "MapChanged was not published" in caplog.text
 
 
+@pytest.mark.parametrize("error", ERRORS, ids=repr)
+@pytest.mark.parametrize("request_type", [GetStatus, MapShow])
+async def test_a_request_of_its_own_that_fails_does_not_end_what_publishes(
+    make_control: Any,
+    make_map: Callable[..., MapChanged],
+    caplog: pytest.LogCaptureFixture,
+    request_type: type[Request[Any]],
+    error: Exception,
+) -> None:
+    control, state, maps = make_control(), Flaky(error), Flaky(error)
+    state.failures = maps.failures = dict.fromkeys(state.failures, 0)
+    control.map_in_use = make_map(1)
+    answer = control.perform
+
+    async def fail(request: Request[Any]) -> Any:
+        if isinstance(request, request_type):
+            raise error
+        return await answer(request)
+
+    control.perform = fail
+    async with published(control, state, maps) as task:
+        maps.joins.put_nowait(b"\x01")
+        await asyncio.sleep(1)
+        control.events.publish(Odometry(1, IDENTITY, STANDSTILL))
+        await asyncio.sleep(1)
+        control.perform = answer
+        maps.joins.put_nowait(b"\x01")
+        await asyncio.sleep(1)
+        assert not task.done()
+    assert state.events(Topic.ODOMETRY)
+    assert maps.events(Topic.MAP)
+    assert len([line for line in caplog.messages if "was not published" in line]) == 1
+
+
 async def test_a_socket_that_was_closed_ends_what_uses_it() -> None:
-    socket = Flaky(errno.ENOTSOCK)
+    socket = Flaky(zmq.ZMQError(errno.ENOTSOCK))
     socket.closed = True
     with pytest.raises(zmq.ZMQError):
         await Outlet(socket, "session").joined()  # type: ignore[arg-type]  # what it uses of it
