@@ -7,11 +7,11 @@ from robotd.contract.topics import Published, Topic, decode_frame
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """Messages of a topic were missed: this reader was too slow, or the daemon started anew."""
+    """Messages of a topic were missed: this reader was too slow, or the daemon restarted."""
 
     topic: str
     missed: int | None
-    """How many; None if the daemon started anew and nobody knows."""
+    """How many; None if the daemon restarted, when it is not known."""
 
 
 @dataclass(slots=True)

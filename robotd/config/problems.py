@@ -72,7 +72,7 @@ class Problems:
 
 
 def unknown_name(kind: str, name: str, known: Iterable[str]) -> str:
-    """Return the complaint about a name nobody knows: its unit if that is all that is wrong, else the nearest name.
+    """Return the complaint about an unknown name: its unit if that is all that is wrong, else the nearest name.
 
     >>> unknown_name("key", "timeout_ms", ["timeout_s", "retries"])
     'wrong unit: expected timeout_s, in seconds'

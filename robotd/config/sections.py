@@ -34,7 +34,7 @@ class RecordingSettings:
     preroll_bytes: Annotated[int, Within(0, 2**32, "bytes")] = 16 * 1024 * 1024
     """What is remembered since the start, so that a recording begun later still begins there.
 
-    So much of each source: the lines' bytes, requests, maps taken into use, results. None uses up what is another's.
+    This much of each source: the lines' bytes, requests, maps taken into use, results. None uses up what is another's.
 
     The three boards at 40 ms say 17 KiB/s at rest and 53 KiB/s in a mission, so 16 MiB last for a quarter of an hour or
     five minutes of missions; after that no recording can begin. Where that is too short, set ``from_start``.

@@ -116,7 +116,7 @@ class PoseEstimate:
     regions_left_out: int = 0
     """Further regions, none better than those listed."""
     belief_aside: float = 0.0
-    """Share of what lies a little aside of the best place, where nothing holds the pose, as along a corridor."""
+    """Share of what lies a little to the side of the best place, where nothing holds the pose, as along a corridor."""
     belief_nowhere: float = 0.0
     """Share of being nowhere on this map."""
     contrast: float | None = None

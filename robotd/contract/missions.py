@@ -77,7 +77,7 @@ class Localize(MissionRequest, frozen=True):
     """The robot's heading in the map frame, if the client knows better than odometry."""
     lease_s: LeaseTime | None = None
     tie: bool = True
-    """Whether odometry is tied anew to the map where the robot is found; otherwise it is only said."""
+    """Whether odometry is tied again to the map where the robot is found; otherwise it is only said."""
     heading: PriorHeading = PriorHeading.ODOMETRY
     within: Area | None = None
     """Where on the map it is, if the client knows; no other place is then an answer."""

@@ -23,7 +23,7 @@ _NAMED = re.compile(rb"(?:cmd|command)[^a-z]{0,8}([a-z0-9_]+)")
 """Where unreadable bytes name a command: after the key, between whatever msgpack or JSON puts there."""
 _ALONE = re.compile(rb"(?<![a-z0-9_])(?:%s)(?![a-z0-9_])" % b"|".join(_WORDS))
 _LEAST_OF_A_WORD = 3
-"""So many letters of a word that was cut off are enough: no other command begins with them."""
+"""This many letters of a word that was cut off are enough: no other command begins with them."""
 
 
 class Pairs(list[tuple[Any, Any]]):

@@ -1,8 +1,8 @@
 """For how long this loop stood still, and whose silence it waits for.
 
-A loop that stood still finds timers due whose messages wait unread. So whoever bounds a silence asks here first
-(:mod:`robotd.core.silence`), and whoever reads asks before it takes what it read: then a stall is always noted before
-anything that happened after it, live and in a replay alike.
+A loop that stood still finds timers due whose messages wait unread. So anyone who bounds a silence asks here first
+(:mod:`robotd.core.silence`), and anyone who reads asks before it takes what it read: then a stall is always noted
+before anything that happened after it, live and in a replay alike.
 
 Whether a timer that is due or bytes that wait come first is up to the machine. So each silence that fell is told, for
 the journal, and a replay lets each fall where it fell.

@@ -1,7 +1,7 @@
 """What a setting may be: bounds that a robot can have, declared once, beside the field that they are about.
 
 A field says ``speed_mps: Annotated[float, Within(0.01, 5.0, "m/s")]``. Its dataclass calls :func:`refuse_outside` when
-it is made, and whoever reads a configuration asks :func:`bounds_of`.
+it is made, and anyone who reads a configuration asks :func:`bounds_of`.
 """
 
 import dataclasses

@@ -1,7 +1,7 @@
 """How a grid becomes bytes: the one place that says it, for digests, the store, the wire and the journal.
 
 The bytes of a grid are its cells, one byte each, row by row from row 0, which has the smallest y. *Packed* they are
-zlib of that. Whoever reads them knows the placement already, so nothing is ever unpacked beyond its cells.
+zlib of that. Anyone who reads them knows the placement already, so nothing is ever unpacked beyond its cells.
 """
 
 import hashlib

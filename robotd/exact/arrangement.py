@@ -16,7 +16,7 @@ Mask = int
 
 
 def at_least(depth: int) -> Callable[[Mask], bool]:
-    """Return the condition that so many sets contain a cell, or more."""
+    """Return the condition that this many sets contain a cell, or more."""
     return lambda mask: mask.bit_count() >= depth
 
 

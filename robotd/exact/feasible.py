@@ -80,5 +80,5 @@ def best_rank(arrangement: Arrangement) -> int:
 
 
 def of_rank(arrangement: Arrangement, least: int) -> PlanarSet:
-    """Return the poses that explain at least so many readings: loc(M, Z) for the best rank, FP(M, Z) for all."""
+    """Return the poses that explain at least this many readings: loc(M, Z) for the best rank, FP(M, Z) for all."""
     return arrangement.select(at_least(least))

@@ -5,7 +5,7 @@ line that leans a little sweeps from left to right and stops at events: ends of 
 holds the edges that it meets, lowest first.
 
 There are no special cases, because every event is treated alike: all edges through the point end there, whatever goes
-on from there is sorted anew by direction and curvature, and what lies on one support becomes one edge. That covers
+on from there is sorted again by direction and curvature, and what lies on one support becomes one edge. That covers
 crossings of any number, shared ends, overlaps, touching curves and vertical lines.
 """
 

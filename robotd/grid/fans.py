@@ -2,8 +2,8 @@
 
 A beam starts near the centre of the robot's cell and runs near its direction. Seen where it crosses the centre lines of
 the columns (of the rows, if its direction is nearer to them), it is met in one cell of each line; all beams of a fan
-are met in a window of cells, and from line to line no beam steps farther aside than the fan is steep. What this proves
-is told in :mod:`.conservative_poses`. Lengths and positions are in cells, as ``(row, col)``.
+are met in a window of cells, and from line to line no beam steps farther sideways than the fan is steep. What this
+proves is told in :mod:`.conservative_poses`. Lengths and positions are in cells, as ``(row, col)``.
 """
 
 import math

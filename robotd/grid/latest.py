@@ -1,6 +1,6 @@
 """What the latest sweep that met a cell said of it: that a beam ran through, or that one ended in it.
 
-An occupancy value weighs all that was ever said. Whoever is about to drive somewhere wants to know of what was seen
+An occupancy value weighs all that was ever said. Anyone who is about to drive somewhere wants to know of what was seen
 there last, too: a chair that was put where ten sweeps saw nothing.
 """
 

@@ -1,4 +1,4 @@
-"""A packed map after a change: only the words and tiles that the change can have touched are made anew."""
+"""A packed map after a change: only the words and tiles that the change can have touched are made again."""
 
 from dataclasses import replace
 

@@ -38,7 +38,7 @@ class PoseSet:
             rows: ``int32[n, 4]``, ``(heading, row, col, rank)``, ascending.
             best_rank: the greatest rank; 0 if it is less than what was asked for.
             least_rank: of all that are here.
-            slack: poses were asked for that explain up to so many readings fewer than the best.
+            slack: poses were asked for that explain up to this many readings fewer than the best.
         """
         is_all = least_rank <= max(1, best_rank - slack) or best_rank == 0
         return cls(rows[:, :3].astype(np.intp), rows[:, 3].astype(np.uint16), best_rank, least_rank, is_all)

@@ -45,7 +45,7 @@ class WallField:
     def updated(self, walls: NDArray[np.bool_], blocking: NDArray[np.bool_], changed: CellWindow) -> "WallField":
         """Return the field of a map that differs from this one's in a window alone; this one stays as it is.
 
-        The result is as if made anew. O(cells of the window, and of a rim of 30 cells round it), and a copy.
+        The result is as if made from nothing. O(cells of the window, and of a rim of 30 cells round it), and a copy.
         """
         if changed.is_empty:
             return self

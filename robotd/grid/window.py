@@ -46,7 +46,7 @@ class CellWindow:
         return CellWindow(0, 0, 0, 0) if inside.is_empty else inside
 
     def grown(self, by_cells: int, shape: tuple[int, ...]) -> "CellWindow":
-        """Return this window with so many cells more on every side, as far as the grid goes; empty stays empty.
+        """Return this window with this many cells more on every side, as far as the grid goes; empty stays empty.
 
         >>> CellWindow(2, 4, 0, 9).grown(3, (6, 20))
         CellWindow(first_row=0, end_row=6, first_col=0, end_col=12)
@@ -98,7 +98,7 @@ class CellWindow:
 
 
 def influence(changed: CellWindow, reach: int, shape: tuple[int, int]) -> tuple[CellWindow, CellWindow, CellWindow]:
-    """Return what must be made anew where each cell depends on those within reach of it, and of what.
+    """Return what must be made again where each cell depends on those within reach of it, and of what.
 
     Args:
         changed: the cells that changed.
@@ -106,7 +106,7 @@ def influence(changed: CellWindow, reach: int, shape: tuple[int, int]) -> tuple[
         shape: of the map.
 
     Returns:
-        The cells to make anew, in the map; the same in the part of the map that they depend on; and that part.
+        The cells to make again, in the map; the same in the part of the map that they depend on; and that part.
     """
     influenced = changed.grown(reach, shape)
     part = influenced.grown(reach, shape)

@@ -42,7 +42,7 @@ class LocalizationSettings:
     by no more than ``range_error_m``, the heading by no more than half a step from one that is tried, and cells that
     were seen are right. Slower, and more often ambiguous."""
     outlier_share: Annotated[float, Within(0.0, 0.99, "of 1")] = 0.1
-    """In the conservative mode, so many of the readings may err by more."""
+    """In the conservative mode, this many of the readings may err by more."""
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""

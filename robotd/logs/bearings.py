@@ -72,7 +72,7 @@ def _step_rad(count: int, fov_rad: float) -> float:
 
 
 def _spans(step_rad: float, count: int, fov_rad: float) -> bool:
-    """Whether so many steps are the field of view, to a step."""
+    """Whether this many steps are the field of view, to a step."""
     return abs(step_rad * count - fov_rad) <= 1.1 * step_rad or abs(step_rad * (count - 1) - fov_rad) <= 0.1 * step_rad
 
 

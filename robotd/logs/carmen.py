@@ -32,7 +32,7 @@ from robotd.logs.scan import PoseSource, Problem, RecordedLog, Scan
 
 _PROBLEMS_MAX = 100
 _NEAREST_M = 0.02
-"""No scanner measures less; Hokuyo's write what went wrong as so many millimetres."""
+"""No scanner measures less; Hokuyo's write what went wrong as this many millimetres."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

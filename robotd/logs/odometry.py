@@ -13,7 +13,7 @@ class OdometryTrack:
     """The ODOM lines in file order, and where in them the scans came.
 
     In corrected logs (GMapping) an ODOM after each scan copies the scan's pose, and the next ones are raw odometry of
-    the *laser*, begun anew there: the steps between the copies are chained back into one path.
+    the *laser*, begun again there: the steps between the copies are chained back into one path.
     """
 
     lines: list[Odom] = field(default_factory=list)

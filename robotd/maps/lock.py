@@ -20,7 +20,7 @@ WAIT_S = 20.0
 def sole_writer(root: Path, wait_s: float = WAIT_S) -> Iterator[None]:
     """Keep every other writer out of ``root``, which must exist, for the length of a ``with`` block.
 
-    The lock is the kernel's and ends with the process, however it ends; the file stays behind. Whoever may open the
+    The lock is the kernel's and ends with the process, however it ends; the file stays behind. Anyone who may open the
     file may hold it: so nobody may who could not write beside it anyway.
 
     Raises:

@@ -17,7 +17,7 @@ from robotd.grid.occupancy import OccupancyGrid
 
 _LEASE_MAX_S = 1e9
 _QUOTED = 80
-"""So many characters of what was wrong are told."""
+"""This many characters of what was wrong are told."""
 
 T = TypeVar("T")
 

@@ -52,7 +52,7 @@ class Supervisor:
             recording: says which file is being recorded to.
             battery_min_v: below it, stop and latch a fault.
             note_cause: told what stops the robot by a clock of the daemon, before it does.
-            make_lease: makes what calls a function once so many seconds have passed.
+            make_lease: makes what calls a function once this many seconds have passed.
         """
         self.robot = context.robot
         self.news = news

@@ -1,4 +1,4 @@
-"""How much of the journal may wait in memory: so many bytes for each source, so that none takes the place of another.
+"""How much of the journal may wait in memory: this many bytes for each source, so that none takes the place of another.
 
 A client that asks ten thousand times, or a map that hardly packs, must not cost the recording of the lines' bytes. So
 each source has its own budget. One entry alone is always taken, however large: it is in memory already, and a replay

@@ -100,7 +100,7 @@ class ResultEntry:
 
 @dataclass(frozen=True, slots=True)
 class TurnEntry:
-    """The next input came before the effects of the one before it were over, so many turns of the loop after it.
+    """The next input came before the effects of the one before it were over, this many turns of the loop after it.
 
     An input without this came when the loop was at rest.
     """

@@ -109,7 +109,7 @@ class Playback:
                 return
 
     def _play_after(self, turns: int, last: int) -> None:
-        """Play up to an entry, so many turns of the loop from now."""
+        """Play up to an entry, this many turns of the loop from now."""
         if turns > 0:
             asyncio.get_running_loop().call_soon(self._play_after, turns - 1, last)
             return
@@ -212,11 +212,11 @@ class ReplayTransport:
         return entry.data
 
     def write(self, data: bytes) -> None:
-        """Take bytes for a board that is not there; TransportError if the line is gone."""
+        """Take bytes for a board that is only played; TransportError if the line is gone."""
         self._check()
 
     def write_urgent(self, data: bytes) -> None:
-        """Take bytes for a board that is not there; TransportError if the line is gone."""
+        """Take bytes for a board that is only played; TransportError if the line is gone."""
         self._check()
 
     def write_past_loop(self, data: bytes) -> None:

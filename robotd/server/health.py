@@ -75,7 +75,7 @@ async def feed_watchdog(notifier: Notifier, within_s: float, is_healthy: Callabl
     """Feed the watchdog twice in its time, but only while the loop turns quickly and ``is_healthy`` says so.
 
     After a bad look it looks again soon, so that a daemon that recovers in time lives, and one that does not is
-    killed and started anew, which stops the robot.
+    killed and restarted, which stops the robot.
     """
     period_s = within_s / 2
     while True:

@@ -17,7 +17,7 @@ _MODE = 0o600
 def lock_directory(directory: Path) -> Iterator[None]:
     """Hold the runtime directory, made if need be, for the length of a ``with`` block.
 
-    The lock is the kernel's and ends with the process, however it ends; the file stays behind. Whoever may open the
+    The lock is the kernel's and ends with the process, however it ends; the file stays behind. Anyone who may open the
     file, if only to read it, may lock it and keep the daemon out: so nobody but the daemon's user may.
 
     Raises:

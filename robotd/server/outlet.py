@@ -49,7 +49,7 @@ class Outlet:
         await self._put(frame)
 
     async def greet(self) -> NoReturn:
-        """Tell whoever subscribes the last message of each topic, until cancelled.
+        """Tell every new subscriber the last message of each topic, until cancelled.
 
         XPUB cannot answer one subscriber alone: a repeat reaches all. So repeats are kept rare, and readers ignore
         a number they have seen. The status comes last: when it arrives, every subscription made before it is in force.

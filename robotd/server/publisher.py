@@ -1,4 +1,4 @@
-"""Everything that happens, to whoever listens; maps on a socket of their own, so that they never crowd out a pose."""
+"""Everything that happens, to all who listen; maps on a socket of their own, so that they never crowd out a pose."""
 
 import asyncio
 import logging
@@ -99,7 +99,7 @@ class Publisher:
     async def _whole(self) -> MapChanged | None:
         try:
             return await self._control.perform(MapShow())
-        except RobotdError:  # no map in use: whoever joined hears of the first one when it comes
+        except RobotdError:  # no map in use: anyone who joined hears of the first one when it comes
             return None
         except Exception as error:  # whoever joins next asks again
             self._complain("the map in use", error)

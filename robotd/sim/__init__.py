@@ -1,1 +1,1 @@
-"""A robot that is not there: world, body, boards that speak the real protocol."""
+"""The simulated robot: world, body, boards that speak the real protocol."""

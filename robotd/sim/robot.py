@@ -59,7 +59,7 @@ class SimSettings:
 
 
 class SimulatedRobot:
-    """Physics in a world. The same seed gives the same robot, noise and clocks, whoever asks what when.
+    """Physics in a world. The same seed gives the same robot, noise and clocks, no matter who asks what when.
 
     Raises:
         ConfigError: the robot does not fit where the world wants it to start.

@@ -51,7 +51,7 @@ def timed(name: str, function: Callable[[], object], repeats: int, *, goal_ms: f
 
 
 def yardstick() -> Timing:
-    """OR two arrays of 1 MiB, word by word: what all ratios are to, measured anew before each section."""
+    """OR two arrays of 1 MiB, word by word: what all ratios are to, measured again before each section."""
     words = np.random.default_rng(0).integers(0, 2**63, 1 << 17, np.uint64)
     return timed("yardstick: OR 1 MiB with 1 MiB", lambda: np.bitwise_or(words, words[::-1]), 50)
 

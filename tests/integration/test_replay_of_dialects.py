@@ -34,7 +34,7 @@ from robotd.sim.robot import DEVICES, SimulatedRobot
 pytestmark = pytest.mark.slow
 
 SAMPLED = 60
-"""About so many requests to each device are changed, from the first to the last."""
+"""About this many requests to each device are changed, from the first to the last."""
 ROBOTS = (
     Dialects("rwi-ascii", "ptu", "dimetix"),
     Dialects("rflex", "dynamixel", "tfmini-s"),

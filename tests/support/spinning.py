@@ -17,7 +17,7 @@ while os.getppid() == int(sys.argv[1]):
 
 @contextlib.contextmanager
 def spinning(count: int) -> Iterator[tuple[int, ...]]:
-    """Run so many of them at normal priority, and yield their numbers.
+    """Run this many of them at normal priority, and yield their numbers.
 
     Each has a session of its own. Most kernels share processors out among sessions first (autogroup), and the daemon
     and the simulated boards of a demonstration have a session each: programs that shared one would together get no more

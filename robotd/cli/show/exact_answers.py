@@ -103,7 +103,7 @@ def say_smallest_error(asked: Question, share: Rational, *, as_json: bool) -> No
     width = largest / 2**_HALVINGS
     bracket = smallest_error(asked.obstacles, asked.slices, share=share, largest=largest, width=width)
     if bracket is None:
-        raise RobotdError(f"no pose explains so many readings, even with an error radius of {_LARGEST_ERROR_M} m")
+        raise RobotdError(f"no pose explains this many readings, even with an error radius of {_LARGEST_ERROR_M} m")
     low, high = float(bracket.low), float(bracket.high)
     enough_deg = [asked.headings_deg[number] for number in bracket.slices]
     if as_json:
@@ -112,7 +112,7 @@ def say_smallest_error(asked: Question, share: Rational, *, as_json: bool) -> No
     exact = bracket.low == bracket.high
     lines = [
         ("readings needed", f"{bracket.needed} of {len(asked.slices[0])}"),
-        ("too small", "nothing is" if exact else f"{low:.10f} m, proved: nowhere do so many hold"),
+        ("too small", "nothing is" if exact else f"{low:.10f} m, proved: nowhere do this many hold"),
         ("enough", f"{high:.10f} m, proved: somewhere they do"),
         ("at headings", ", ".join(f"{heading:.3f} deg" for heading in enough_deg)),
     ]

@@ -1,6 +1,6 @@
 """The robot's state and counters in the text format of Prometheus, for a collector of files.
 
-The daemon has no network and serves no pages. Whoever watches many robots lets a timer run this into a file::
+The daemon has no network and serves no pages. Anyone who watches many robots lets a timer run this into a file::
 
     robotctl status --metrics > /var/lib/prometheus/node-exporter/robotd.prom
 """

@@ -122,7 +122,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         "--heading-deg", type=number, default=0.0, metavar="DEG", help="the robot's heading [deg] (default: 0)"
     )
     parser.add_argument(
-        "--headings", type=whole(1), default=1, metavar="N", help="look at so many headings evenly round (default: 1)"
+        "--headings", type=whole(1), default=1, metavar="N", help="look at this many headings evenly round (default: 1)"
     )
     parser.add_argument(
         "--within-deg",
@@ -134,7 +134,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         "--least-rank",
         type=whole(1),
         metavar="K",
-        help="show all poses that explain so many readings (default: the most)",
+        help="show all poses that explain this many readings (default: the most)",
     )
     output_argument(parser, "--out", PNG, "draw the answer to a PNG")
     parser.add_argument(

@@ -1,4 +1,4 @@
-"""``sim`` and ``fake``: boards that are not there, on pseudo-terminals that are."""
+"""``sim`` and ``fake``: simulated boards on pseudo-terminals."""
 
 import argparse
 import asyncio

@@ -34,7 +34,7 @@ def _known(parser: argparse.ArgumentParser) -> None:
         metavar="DEG",
         help="the robot's heading on the map, if you know it better than its odometry",
     )
-    headings.add_argument("--heading-unknown", action="store_true", help="try all headings: nobody knows it")
+    headings.add_argument("--heading-unknown", action="store_true", help="try all headings: it is not known")
     parser.add_argument(
         "--within",
         action=_AreaAction,
@@ -95,7 +95,7 @@ def _watch(arguments: argparse.Namespace) -> int:
 
 
 def _gap_in_words(gap: Gap) -> str:
-    return f"{gap.topic}: {'the daemon started anew' if gap.missed is None else f'{gap.missed} messages missed'}"
+    return f"{gap.topic}: {'the daemon restarted' if gap.missed is None else f'{gap.missed} messages missed'}"
 
 
 def _topics(parser: argparse.ArgumentParser) -> None:

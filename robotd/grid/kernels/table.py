@@ -1,4 +1,4 @@
-"""The table of kernels: what each must do, whoever does it.
+"""The table of kernels: what each must do, no matter in which language.
 
 A row stands for a shelf. It is filled by a module of that shelf, in C or in NumPy, or by anything else that gives the
 same answers: a processor of another kind needs only the rows that it does better,

@@ -27,7 +27,7 @@ _TTL_MARGIN_MS = 250
 """The board's deadman is for a host that is gone; a slow head is halted by us before."""
 _TTL_LIMIT_MS = 0xFFFF
 _QUIET_PERIODS = 3
-"""So many periods of telemetry without a report, and we ask."""
+"""This many periods of telemetry without a report, and we ask."""
 
 Report = proto.AimReport | proto.AimReadback
 
@@ -129,7 +129,7 @@ class BoardPanTilt(BoardDevice):
             super().telemetry(message)
 
     def link_lost(self, reason: str) -> None:
-        """Note it, and let whoever waits for the head know."""
+        """Note it, and let those who wait for the head know."""
         super().link_lost(reason)
         self._reports.publish(None)
 

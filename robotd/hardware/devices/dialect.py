@@ -36,4 +36,4 @@ class Dialect(Generic[S_co, D_co]):
     line: Line | None
     """None for a device without a line."""
     hazards: tuple[str, ...] = ()
-    """What whoever stands beside the robot must know, in sentences; ``docs/devices.md`` says them, too."""
+    """What anyone who stands beside the robot must know, in sentences; ``docs/devices.md`` says them, too."""

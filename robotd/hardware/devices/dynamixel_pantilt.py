@@ -30,7 +30,7 @@ _TRIES = 3
 _IDLE_POLL_S = 0.5
 _WATCHDOG_MAX = 127
 _SETTLED_COUNTS = 12
-"""A servo under load rests within so many counts of its goal: one degree."""
+"""A servo under load rests within this many counts of its goal: one degree."""
 _HARDWARE = "hardware"
 """What it latches when a servo has shut down."""
 _BOOTS_S = 0.3

@@ -47,7 +47,7 @@ class PanTilt(Device, Protocol):
         """
 
     async def reset(self) -> None:
-        """Find out anew where it points, after it lost steps; it may turn to its stops, and take half a minute.
+        """Find out again where it points, after it lost steps; it may turn to its stops, and take half a minute.
 
         A head that cannot lose steps does nothing. Same errors as :meth:`aim`.
         """

@@ -204,7 +204,7 @@ class PtuPanTilt(VendorDevice[Message]):
             self._dialogue.stop_now(STOP_BYTES)  # it is halted, not disarmed: a mission may reset it
             self._health.change(detail=self._lost_steps)
         elif isinstance(message, Banner) and "PAN-TILT" in message.text.upper() and self._dialogue is not None:
-            self._latch("restarted", "the unit was switched off and on, and found its stops anew")
+            self._latch("restarted", "the unit was switched off and on, and found its stops again")
 
     async def _order(self, dialogue: Dialogue[Message], data: bytes) -> Heard[Message]:
         heard = await dialogue.ask(data, is_a(Done, Refused), timeout_s=_ANSWER_S, tries=_TRIES)

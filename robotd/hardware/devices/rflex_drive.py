@@ -3,8 +3,8 @@
 **The controller has no watchdog of its own.** A set-point holds until another comes: if this program is killed, or the
 cable comes out while the base drives, the base goes on. What can be done here is done: a timer ends each set-point
 after its time to live, a thread sends the stop when the event loop stands still, a lost line is opened and stopped
-anew, and the warning below is logged at every connection. None of that helps against a cut cable: such a robot needs an
-emergency stop that a person can reach, or a relay that drops with the host.
+again, and the warning below is logged at every connection. None of that helps against a cut cable: such a robot needs
+an emergency stop that a person can reach, or a relay that drops with the host.
 """
 
 import asyncio
@@ -184,7 +184,7 @@ class RflexDrive(VendorDevice[Message]):
         self._standing.clear()
         for order in _halts():
             await asyncio.sleep(_SPACING_S)
-            if self._standing >= {_TRANSLATION, _ROTATION} or self._may_move:  # armed anew: it has been told
+            if self._standing >= {_TRANSLATION, _ROTATION} or self._may_move:  # armed again: it has been told
                 return
             dialogue.post(order)
 

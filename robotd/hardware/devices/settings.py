@@ -23,7 +23,7 @@ from robotd.hardware.transport.line_format import LineFormat
 
 U16_MAX = 0xFFFF
 _REPORTS_MISSED = 3
-"""So many in a row may be lost before a device is."""
+"""This many in a row may be lost before a device is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

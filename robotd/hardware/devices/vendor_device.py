@@ -113,7 +113,7 @@ class VendorDevice(WithHealth, ABC, Generic[M]):
     # What the line tells
 
     async def talk(self, line: TappedLine) -> NoReturn:
-        """Greet whoever is there and serve until lost; see :class:`robotd.hardware.link.keep_up.Talker`."""
+        """Greet the device that is there and serve until lost; see :class:`robotd.hardware.link.keep_up.Talker`."""
         self._health.change(link=LinkState.CONNECTING, armed=False, detail=_WAITING)
         dialogue = Dialogue(
             self.NAME, line, self._wire, counters=self._counters, on_report=self._report, quiet_s=self._quiet_s

@@ -13,7 +13,7 @@ class Wiring:
     """The same for hardware, tests and replay; only its parts differ."""
 
     connect: Connect
-    """Opens the line to the device, anew after each loss."""
+    """Opens the line to the device, again after each loss."""
     tap: Tap
     """Sees every byte."""
     rng: random.Random

@@ -254,7 +254,7 @@ class Dialogue(Generic[M]):
 
     @property
     def _is_never_quiet(self) -> bool:
-        """Whether so many pieces came since something was given up that there is no waiting for an end.
+        """Whether this many pieces came since something was given up that there is no waiting for an end.
 
         Counted by their times: a replay may find out later than the living loop that something was given up.
         """

@@ -18,7 +18,7 @@ class Talker(Protocol):
 
     @property
     def sessions(self) -> int:
-        """How often the right device was found at the other end; the back-off begins anew with each."""
+        """How often the right device was found at the other end; the back-off begins again with each."""
 
     def talk(self, line: TappedLine) -> Awaitable[NoReturn]:
         """Talk until the line is lost; raise why. The line is closed by the caller."""
@@ -32,7 +32,7 @@ async def keep_up(device: str, connect: Connect, tap: Tap, talker: Talker) -> No
 
     Args:
         device: what the tap calls the line.
-        connect: opens it; a name under ``/dev`` is resolved anew each time.
+        connect: opens it; a name under ``/dev`` is resolved again each time.
         tap: sees every byte.
         talker: who uses it.
     """

@@ -13,7 +13,7 @@ from robotd.hardware.transport.transport import Transport
 class Chunk:
     """Bytes as they came, and when.
 
-    Whoever needs the time of a message takes it from here, never from the clock: it is the time that the
+    Anyone who needs the time of a message takes it from here, never from the clock: it is the time that the
     tap saw, so a recording gives the same times back.
     """
 

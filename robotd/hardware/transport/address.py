@@ -12,7 +12,7 @@ from robotd.hardware.transport.transport import Connect
 
 
 def connector(address: str, line_format: LineFormat) -> Connect:
-    """Return what opens the line at an address; a name under ``/dev`` is resolved anew each time.
+    """Return what opens the line at an address; a name under ``/dev`` is resolved again each time.
 
     Args:
         address: ``/dev/serial/by-id/...`` or another absolute path, or ``tcp://host:port``.

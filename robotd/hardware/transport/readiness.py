@@ -1,8 +1,8 @@
 """When a descriptor can be read or written: told by the event loop, or by a thread of its own.
 
-The kernel takes what a serial port receives through a worker thread, and whoever asks a terminal whether there is
-something to read waits for that worker, even in ``epoll_ctl``. The worker has no precedence: on a busy machine such a
-wait was seen to take more than 0.2 s, and the event loop, which holds the leases and the stops, stood still for so
+The kernel takes what a serial port receives through a worker thread, and a program that asks a terminal whether there
+is something to read waits for that worker, even in ``epoll_ctl``. The worker has no precedence: on a busy machine such
+a wait was seen to take more than 0.2 s, and the event loop, which holds the leases and the stops, stood still for so
 long. So nobody asks on the loop: a thread does, and what waits in the kernel by then is read without waiting.
 """
 

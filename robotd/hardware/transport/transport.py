@@ -43,4 +43,4 @@ class Transport(Protocol):
 
 
 Connect = Callable[[], Awaitable[Transport]]
-"""Opens the line anew, each time it is called; raises TransportError when that fails."""
+"""Opens the line again, each time it is called; raises TransportError when that fails."""

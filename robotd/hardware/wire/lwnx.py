@@ -61,7 +61,7 @@ def read(number: int) -> bytes:
 
 
 def write(number: int, value: int, size: int) -> bytes:
-    """Return the request that writes a value of so many bytes."""
+    """Return the request that writes a value of this many bytes."""
     return encoded(Packet(number, value.to_bytes(size, "little"), writes=True))
 
 

@@ -32,7 +32,7 @@ cuts the whole fan. The true cell is not one of them.
 
 All is widened by a ten-thousandth of a cell, more than floating point errs and directions and starts are rounded by.
 
-**Three-valued maps.** Nobody knows whether a cell is an obstacle that nobody has seen: it may end beams, and blocks
+**Three-valued maps.** Whether a cell that was never seen is an obstacle is not known: it may end beams, and blocks
 none. The promise holds if the cells that were seen are right and the robot stands in one that was seen vacant.
 
 How large the regions are: docs/decisions/0012-conservative.md.
@@ -163,7 +163,7 @@ def head_radius_steps(
 
 
 def grown_ending(obstacles: SureObstacles, radius_steps: int) -> NDArray[np.bool_]:
-    """Return what may end a beam, ``bool[rows, cols]``, grown by so many quarters of a cell and what the proof adds."""
+    """Return what may end a beam, ``bool[rows, cols]``, grown by quarters of a cell and what the proof adds."""
     radius, ending = radius_steps / _RADIUS_STEPS_PER_CELL, obstacles.ending
     # Grown by as many cells as it has, with obstacles all round, a map is full.
     full = radius >= max(ending.shape)

@@ -26,7 +26,7 @@ from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.prepared_map import PreparedMap
 
 _WINDOWS_AT_ONCE = 1 << 20
-"""Fans are drawn in blocks of so many windows: 100 MB at most while they are."""
+"""Fans are drawn in blocks of this many windows: 100 MB at most while they are."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,7 +59,7 @@ class ConservativeMap:
         return self.prepared.spec
 
     def grown(self, radius_steps: int) -> Words:
-        """Return what may end a beam, grown by a radius of so many quarter cells, packed."""
+        """Return what may end a beam, grown by a radius of this many quarter cells, packed."""
         if radius_steps not in self._grown:
             plane = grown_ending(self.obstacles, radius_steps)
             self._grown[radius_steps] = pack(plane, self.prepared.packed.origin, outside=True)

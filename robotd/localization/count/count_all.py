@@ -34,7 +34,7 @@ def count_all(
         the_map: the map.
         readings: hits and misses.
         headings_rad: the headings to try, map frame.
-        slack: poses that explain so many readings fewer than the best are wanted, too.
+        slack: poses that explain this many readings fewer than the best are wanted, too.
         threads: how many threads may share the counting; the answer does not depend on it.
         memory_bytes: how much the counters may take; they take no less than one heading needs.
 
@@ -59,7 +59,7 @@ def count_all(
 def heading_batches(
     the_map: PreparedMap, readings: int, headings_rad: Sequence[float], memory_bytes: int
 ) -> Iterator[tuple[int, Sequence[float]]]:
-    """Yield headings in batches whose counters take no more than so much memory, each after its first one's number.
+    """Yield headings in batches whose counters take no more than this much memory, each after its first one's number.
 
     A batch has one heading at least, whatever that takes.
     """

@@ -70,7 +70,7 @@ class RankGrid:
 
         Raises:
             ValueError: there are more than 65535; then none was counted.
-            TooLarge: the counts of so many readings would take more than 1 GiB; then none was counted.
+            TooLarge: the counts of this many readings would take more than 1 GiB; then none was counted.
         """
         if self.readings + len(readings) > _READINGS_MAX:
             raise ValueError(f"a rank grid counts {_READINGS_MAX} readings")
@@ -107,7 +107,7 @@ class RankGrid:
         return self._threads if beams >= _WORTH_THREADS else 1
 
     def _make_room(self, bits: int) -> None:
-        """Widen the counters so that they hold numbers of so many bits."""
+        """Widen the counters so that they hold numbers of this many bits."""
         missing = bits - self._counters.shape[2]
         if missing > 0:
             self._refuse_if_too_large(bits)
@@ -141,7 +141,9 @@ class RankGrid:
         return kernels.in_use().count.greatest(self._counters)
 
     def cells_of_rank(self, least: int) -> NDArray[np.intp]:
-        """Return the poses that explain at least so many readings, ``intp[n, 3]`` as ``(heading, row, col)``, in order.
+        """Return the poses that explain at least this many readings, in order.
+
+        They are ``intp[n, 3]`` as ``(heading, row, col)``.
 
         Only free cells are poses, even for a rank of 0.
         """
@@ -155,7 +157,7 @@ class RankGrid:
         return poses
 
     def count_of_rank(self, least: int) -> int:
-        """Return how many poses explain at least so many readings, one or more."""
+        """Return how many poses explain at least this many readings, one or more."""
         reached = kernels.in_use().count.at_least(self._counters, self._map, max(least, 1))
         return int(np.unpackbits(reached[reached != 0].view(np.uint8)).sum())
 
@@ -175,8 +177,8 @@ class RankGrid:
         """Return the poses of greatest rank (the paper's loc), and those that come near them.
 
         Args:
-            slack: poses that explain so many readings fewer than the best are wanted, too.
-            least_rank: if no pose explains so many readings, none is returned.
+            slack: poses that explain this many readings fewer than the best are wanted, too.
+            least_rank: if no pose explains this many readings, none is returned.
         """
         best_rank = self.best_rank
         if best_rank < max(1, least_rank):
@@ -192,7 +194,7 @@ class RankGrid:
 
 
 def bits_of(readings: int) -> int:
-    """Return how many binary digits the counts of so many readings have."""
+    """Return how many binary digits the counts of this many readings have."""
     return max(_BITS_AT_FIRST, readings.bit_length())
 
 

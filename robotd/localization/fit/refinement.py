@@ -133,7 +133,7 @@ class ExpectedRanges:
     ranges_m: NDArray[np.float64]
     """``float64[n, m]``: from the beam's start to the side of the cell that stops it."""
     ends: NDArray[np.bool_]
-    """``bool[n, m]``: whether that is a wall; else nobody knows what is there, or the map ends."""
+    """``bool[n, m]``: whether that is a wall; else what is there is unknown, or the map ends."""
 
 
 def refine(

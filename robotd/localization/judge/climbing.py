@@ -13,7 +13,7 @@ from robotd.localization.judge.likelihood import Likelihood, Sight
 
 _NEIGHBOURS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float64)
 _BETTER = 1e-3
-"""A step must gain so much."""
+"""A step must gain this much."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

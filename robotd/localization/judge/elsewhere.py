@@ -18,7 +18,7 @@ _GOES_ON = 0.6
 _ROUGHNESS_M = 0.02
 """How far walls are from straight."""
 _FARTHEST = 4.0
-"""A wall goes on no farther than so many times the distance between its two heads."""
+"""A wall goes on no farther than this many times the distance between its two heads."""
 _SINE_MIN = 0.05
 """Walls that are met more aslant than this are met anywhere."""
 _PEAK = 0.36755259694786135

@@ -52,7 +52,7 @@ class Likelihood:
     model: ErrorModel
     chances: ChanceMap
     vacant_cells: int
-    """In so many the robot may be."""
+    """In this many the robot may be."""
 
     @classmethod
     def of(cls, spec: GridSpec, cells: NDArray[np.uint8], model: ErrorModel) -> "Likelihood":
@@ -64,7 +64,7 @@ class Likelihood:
     def updated(self, cells: NDArray[np.uint8], changed: CellWindow) -> "Likelihood":
         """Return the likelihood on a map that differs from this one's in a window alone; this one stays as it is.
 
-        The result is as if made anew. O(cells of the window, and of a rim round it), and a copy.
+        The result is as if made from nothing. O(cells of the window, and of a rim round it), and a copy.
         """
         if changed.is_empty:
             return self

@@ -1,7 +1,7 @@
 """How much readings say together: twenty beams on one near wall say one thing twenty times.
 
-What makes a reading err, an object moved or a wall that the map has a little aside, makes its neighbours err alike.
-Readings whose heads lie near to each other therefore share one weight, and some of them can be left out.
+What makes a reading err, an object moved or a wall that the map has a little to the side, makes its neighbours err
+alike. Readings whose heads lie near to each other therefore share one weight, and some of them can be left out.
 """
 
 import math

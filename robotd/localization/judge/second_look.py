@@ -5,7 +5,7 @@ answer). How well they explain them, by :mod:`.likelihood`, decides most such ca
 be known as undecided, so every answer is weighed against all others there can be:
 
 - every other place, moved uphill from the shortlist: rivals;
-- the poses a little aside of the best one: where nothing holds it, as along a corridor, one of them is as good;
+- the poses a little to the side of the best one: where nothing holds it, as along a corridor, one of them is as good;
 - nowhere: the robot is not on the map, or the map is no longer true, and readings are what they are in any building.
 
 What is compared is evidence in the sense of Bayes. Readings that say the same count once (:mod:`.patches`), else
@@ -37,17 +37,17 @@ from robotd.localization.judge.shortlist import near, shortlist
 _GLANCE_STEPS = ((0.06, 0.026), (0.03, 0.012))
 _GLANCE_MOVES = 2
 _CLIMBERS_PER_PLACE = 3
-"""So many of the starts, for each place that will be looked at, are moved uphill: several may end on the same hill."""
+"""Starts that are moved uphill, for each place that will be looked at: several may end on the same hill."""
 _LOOK_STEPS = ((0.04, 0.012), (0.02, 0.006), (0.01, 0.003))
 _ASIDE_STEPS = ((0.02, 0.006),)
 _ASIDE_MOVES = 4
 _ASIDE = 1.2
-"""What lies aside begins so much farther away than the same place ends: by the moves that it is then given."""
+"""What lies beside the best place begins farther away than the place ends, by this factor: by the moves it is given."""
 _DIRECTIONS = 16
 _TOGETHER_M, _TOGETHER_RAD = 0.1, 0.03
 """Starts that end so near to each other climbed the same hill."""
 _ELSEWHERE_M, _ELSEWHERE_RAD = 1.0, 0.35
-"""So far away, or turned by so much, a place has the readings on other walls."""
+"""This far away, or turned by this much, a place has the readings on other walls."""
 _HOPELESS_SHARE, _HOPELESS = 0.5, 10.0
 """A place so far behind at a glance, for each independent reading and altogether, is not looked at: a glance errs by
 far less."""
@@ -58,9 +58,9 @@ class SecondLookSettings:
     """What counts as one place, and how sure is sure."""
 
     patch_m: Annotated[float, Within(0.001, 5.0, "m")] = 0.2
-    """Readings that end nearer to each other than this say, by so much, the same."""
+    """Readings that end nearer to each other than this say partly the same."""
     readings_max: Annotated[int, Within(1, 10_000)] = 120
-    """Of more readings than this so many are looked at, those that end farthest apart."""
+    """Of more readings only this many are looked at, those that end farthest apart."""
     glance_readings_max: Annotated[int, Within(1, 10_000)] = 40
     """The same for the first glance, at all places of the shortlist."""
     starts_max: Annotated[int, Within(1, 100_000)] = 200
@@ -76,7 +76,7 @@ class SecondLookSettings:
     doubt_max: Annotated[float, Within(1e-6, 0.49, "of 1")] = 0.05
     """All that is not the best place may have this share of the belief if the robot is to be called localized."""
     contrast_min: Annotated[float, Within(0.0, 100.0)] = 1.28
-    """And so many standard errors must what the readings say for the best place, rather than any other, be above 0: by
+    """What the readings say for the best place, rather than any other, must be this many standard errors above 0: by
     chance the wrong one of two places that are alike in truth reaches that once in ten times."""
     on_walls_min: Annotated[float, Within(0.0, 1.0, "of 1")] = 0.9
     """Where fewer of the hits end on walls, the robot may look at ground that nobody has mapped, which resembles some
@@ -101,9 +101,9 @@ class SecondLook:
     evidence: NDArray[np.float64]
     """``float64[k]``: how much likelier each place is than being elsewhere, logarithm of the ratio of beliefs."""
     beliefs: NDArray[np.float64]
-    """``float64[k]``: share of each place, out of all places, what lies aside of the best, and nowhere."""
+    """``float64[k]``: share of each place, out of all places, what lies beside the best, and nowhere."""
     aside: float
-    """Share of what lies aside of the best place: near to 0.5 and above where nothing holds it."""
+    """Share of what lies beside the best place: near to 0.5 and above where nothing holds it."""
     nowhere: float
     """Share of being nowhere on the map."""
     contrast: float
@@ -239,7 +239,7 @@ def _weigh(
     contrasts: tuple[float, float],
     settings: SecondLookSettings,
 ) -> SecondLook:
-    """Share the belief among the places, what lies aside of the best, and nowhere, whose evidence is 0.
+    """Share the belief among the places, what lies beside the best, and nowhere, whose evidence is 0.
 
     ``contrasts`` are what the best place has, and the least that it must have.
     """

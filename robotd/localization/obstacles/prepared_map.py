@@ -17,7 +17,7 @@ class PreparedMap:
     spec: GridSpec
     obstacles: Obstacles
     error_radius_cells: float
-    """The paper's eps: bodies of readings end so much before their heads. The obstacles were grown by it."""
+    """The paper's eps: bodies of readings end this much before their heads. The obstacles were grown by it."""
     packed: PackedMap
     """The obstacles as the kernels need them."""
 

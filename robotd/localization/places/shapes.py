@@ -22,7 +22,7 @@ def best_pose(piece: PoseSet) -> tuple[int, int, int]:
 
 
 def cover_of(cells: NDArray[np.intp], runs_max: int) -> Cover:
-    """Return cells ``intp[n, 2]``, ascending, as runs of the smallest blocks of which so many runs are enough."""
+    """Return cells ``intp[n, 2]``, ascending, as runs of the smallest blocks of which this many runs are enough."""
     block = 1
     while True:
         blocks = np.unique(cells // block, axis=0)

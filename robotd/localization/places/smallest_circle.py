@@ -15,7 +15,7 @@ def smallest_circle(points: Points) -> tuple[float, float, float]:
     """Return ``(x, y, radius)`` of the smallest circle that holds all points ``float64[n, 2]``, at least one.
 
     Two or three of the points decide it. They are found by taking in whichever point lies farthest outside, and then
-    choosing anew among the deciding ones: the radius grows with every step. O(n) a step; few steps in practice.
+    choosing again among the deciding ones: the radius grows with every step. O(n) a step; few steps in practice.
     """
     deciding = points[:1]
     circle = (float(points[0, 0]), float(points[0, 1]), 0.0)

@@ -6,9 +6,9 @@ they must go on. The paper's remedy is a *look-ahead*: from a cell numbered ``i`
 chain that a copy of the chain, translated by one pixel in the dominant direction, does not cover.
 
 **That is not enough.** It is right for sources in line along the dominant axis, hence for the solid obstacles of
-fig. 16. But a nearer source may as well lie a row aside, and then its chain parts from the farther one's elsewhere.
-Two sources that touch at a corner, as in every wall at a slant, are enough (``#``; the flood runs to the left along
-the offsets (0, 0) (0, 1) (1, 2) (1, 3) (1, 4) (1, 5), taken off; ``x`` is what the look-ahead misses)::
+fig. 16. But a nearer source may as well lie a row to the side, and then its chain parts from the farther one's
+elsewhere. Two sources that touch at a corner, as in every wall at a slant, are enough (``#``; the flood runs to the
+left along the offsets (0, 0) (0, 1) (1, 2) (1, 3) (1, 4) (1, 5), taken off; ``x`` is what the look-ahead misses)::
 
     . . . . . o #
     . x x x o # .
@@ -60,7 +60,7 @@ def directional_flood(
     Args:
         sources: ``bool[rows, cols]``.
         chain: ``intp[n, 2]``, a pixelized vector as ``(row, col)`` offsets, from (0, 0) on; every offset is one cell
-            farther along the dominant axis than the one before and at most one cell aside, as
+            farther along the dominant axis than the one before and at most one cell sideways, as
             :func:`robotd.grid.ray.ray_offsets` returns them.
         outside: whether what lies beyond the grid is a source.
 
@@ -68,7 +68,7 @@ def directional_flood(
         ValueError: the chain is none, or the grid has more than 4096 cells along its dominant axis.
     """
     if not _is_chain(chain):
-        raise ValueError("a chain begins at (0, 0), goes on by one cell along one axis, and by at most one aside")
+        raise ValueError("a chain begins at (0, 0), goes on by one cell along one axis, and by at most one sideways")
     # Seen so that the chain runs along +col.
     along = _dominant_axis(chain)
     forward = int(chain[1, along]) if len(chain) > 1 else 1

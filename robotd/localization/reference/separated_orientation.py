@@ -58,7 +58,7 @@ class OrientationSettings:
     window_m: float = 0.3
     """Radius of the surroundings of a point that a line is fitted to."""
     tolerance_rad: float = 0.0873
-    """Walls within so much of an axis belong to it."""
+    """Walls within this much of an axis belong to it."""
     share_min: float = 0.45
     """Share of all walls, by length and straightness, that the dominant axis must hold; evenly spread walls give an
     axis ``2 tolerance_rad`` in a quarter turn, 0.11."""
@@ -140,7 +140,7 @@ def headings_from_walls(
     """Return the headings to search instead of all, ``[-pi, pi)`` ascending; none where walls do not tell.
 
     Round each of the four headings found as many as its error allows: at a step of a third of a degree 76 instead of
-    1080. They may be wrong (see above), so whoever finds no good pose among them must search all headings.
+    1080. They may be wrong (see above), so anyone who finds no good pose among them must search all headings.
 
     Args:
         readings: of one stop, in the robot's frame; only hits count.

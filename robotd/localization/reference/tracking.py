@@ -49,7 +49,7 @@ class TrackingSettings:
     step_rad: float = 0.044
     """Step of its headings."""
     heads: int = 50
-    """About so many readings, evenly chosen, decide on the lattice."""
+    """About this many readings, evenly chosen, decide on the lattice."""
     explained_within_m: float = 0.1
     """A reading is explained only if a wall is so near to its head..."""
     unblocked_within_m: float = 0.2
@@ -63,7 +63,7 @@ class TrackingSettings:
     settled_residual_m: float = 0.03
     """...and leaves no greater residual has no rival..."""
     rivals: int = 6
-    """...else so many more are tried."""
+    """...else this many more are tried."""
     here_share: float = 0.6
     """Share of the readings that must be explained; else the robot is not here."""
     readings_min: int = 12

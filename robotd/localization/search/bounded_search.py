@@ -35,7 +35,7 @@ class SearchMap:
 
     @classmethod
     def of(cls, obstacles: Obstacles, spec: GridSpec, error_radius_cells: float) -> "SearchMap":
-        """Prepare a map whose obstacles were grown by so much; O(cells)."""
+        """Prepare a map whose obstacles were grown by this much; O(cells)."""
         return cls(spec, kernels.in_use().search.make_planes(_ground(obstacles, error_radius_cells)))
 
     def updated(self, obstacles: Obstacles, window: CellWindow) -> "SearchMap":
@@ -64,8 +64,8 @@ def best_poses(
         search_map: the map.
         readings: hits and misses.
         headings_rad: ``float64[headings]``, the headings to try, map frame.
-        slack: poses that explain so many readings fewer than the best are wanted, too.
-        least_rank: if no pose explains so many readings, none is returned.
+        slack: poses that explain this many readings fewer than the best are wanted, too.
+        least_rank: if no pose explains this many readings, none is returned.
         prior: where poses are wanted; None is everywhere.
         limit: how many poses are returned at most: of more, those above the least rank that leaves few enough.
         threads: how many threads may share the work.

@@ -19,7 +19,7 @@ async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: fl
     """Drive to a point in the map frame and return odometry there; after each hold, from where the robot is then.
 
     Raises:
-        MissionError: nobody knows where the robot is on the map, or the point cannot be reached.
+        MissionError: the robot is not localized on the map, or the point cannot be reached.
         DeviceError, LinkTimeout, TransportError: the base failed on the way.
     """
     return await context.hold.through(lambda: _drive_to(context, place, x_m, y_m, legs))

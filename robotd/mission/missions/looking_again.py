@@ -14,7 +14,7 @@ T = TypeVar("T")
 async def looking_again(context: MissionContext, report: Reporter, look: Callable[[], Awaitable[T]]) -> T:
     """Return what came of a look round; after lost steps, reset the head and look again, as often as is set.
 
-    What was read before the steps were lost is thrown away: nobody knows since when the head pointed elsewhere.
+    What was read before the steps were lost is thrown away: it is not known since when the head pointed elsewhere.
 
     Raises:
         DeviceError: as ``look`` does, and of code ``lost_steps`` when it was tried often enough.

@@ -48,7 +48,7 @@ class MissionUnderWay:
             current: the mode, which a mission changes by its beginning and its end.
             arming: knows which devices are armed for it.
             holding: knows what stall of ours may have led to a failure.
-            make_lease: makes what calls a function once so many seconds have passed.
+            make_lease: makes what calls a function once this many seconds have passed.
             note_cause: told that a lease ran out, before anything comes of it.
         """
         self._stopper = stopper

@@ -1,7 +1,7 @@
 """Turning, driving and standing still, advanced by each odometry message and by nothing else.
 
 A set-point goes out for every odometry message that comes in, so a line that falls silent takes the
-set-points with it and the base's own deadman does the rest. Whoever calls these must stop the robot when they raise
+set-points with it and the base's own deadman does the rest. Anyone who calls these must stop the robot when they raise
 or are cancelled: a stop is the supervisor's, and the last word. Because no timer decides anything but how long
 silence may last, the same bytes always lead to the same motion: replay depends on it.
 """

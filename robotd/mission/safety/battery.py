@@ -6,7 +6,7 @@ from robotd.mission.robot import Robot
 
 
 def low_battery(drive: Drive, least_v: float) -> str | None:
-    """Say so if the base's battery is below ``least_v`` [V], None if it is not, or if nobody knows.
+    """Say so if the base's battery is below ``least_v`` [V], None if it is not, or not known.
 
     A base that has not measured its battery yet says zero.
     """

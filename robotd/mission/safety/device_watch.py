@@ -73,7 +73,7 @@ class DeviceWatch:
         elif status.link is not LinkState.READY and not is_left_out:
             self._fail(f"{status.name} is gone: {status.detail}", Occasion.DEVICE_LOST)
         elif status.link is LinkState.READY and not status.armed:
-            why = "there again: arm anew" if is_left_out else "no longer armed"
+            why = "there again: arm again" if is_left_out else "no longer armed"
             self._stopper.halt(Occasion.STOP, f"{status.name} is {why}")
         else:
             self._stopper.publish_status()

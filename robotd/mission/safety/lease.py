@@ -19,7 +19,7 @@ class EndlessLease(Lease):
         """Take no time."""
 
     def renew(self) -> None:
-        """Do nothing: there is no time to start anew."""
+        """Do nothing: there is no time to start again."""
 
     def end(self) -> None:
         """Do nothing: there is nothing to give back."""

@@ -20,8 +20,8 @@ from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.whereabouts import Whereabouts
 
 EVERY_STOPS = 5
-"""A map that grows is kept each time so many sweeps are in it that are in memory alone: more than that, not even a kill
-costs."""
+"""A map that grows is kept each time this many sweeps are in it that are in memory alone: more than that, not even a
+kill costs."""
 _LAST_S = 20.0
 """How long the end of the daemon waits for the disk; the service manager must wait longer (``TimeoutStopSec``)."""
 

@@ -23,7 +23,7 @@ _LARGEST_BYTES = 256 << 20
 """A building of a hundred thousand beams a stop would be smaller."""
 
 _NEAR_STEPS = 0.75
-"""A beam is near a direction within half a step between beams; seen from a little aside, steps look wider."""
+"""A beam is near a direction within half a step between beams; seen from a little to the side, steps look wider."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ def view_from(stop: Stop, in_stop: Pose2) -> View:
     """Return what the scan of a stop shows to a robot at pose ``in_stop`` in the frame of the recorded robot.
 
     Exact for each beam: its end point is carried over, and seen from the centre of the robot that is there now.
-    That takes in both that the scanner did not sit on the robot's axis, and that the robot stands a little aside.
+    That takes in both that the scanner did not sit on the robot's axis, and that the robot stands a little to the side.
     """
     ranges_m = np.array([math.nan if range_m is None else range_m for range_m in stop.ranges_m], dtype=np.float64)
     angles_rad = stop.first_rad + stop.step_rad * np.arange(len(ranges_m), dtype=np.float64) + stop.laser.heading_rad
@@ -124,8 +124,8 @@ def select_stops(
     Args:
         log: the log.
         spacing_m: way between two stops.
-        keep_out_every: every so many stops one is kept out of the map, at least 2; 0 keeps none out.
-        limit: end the walk after so many stops, at least 1.
+        keep_out_every: one stop in this many is kept out of the map, at least 2; 0 keeps none out.
+        limit: end the walk after this many stops, at least 1.
     """
     if keep_out_every == 1:
         raise ValueError("keep_out_every 1 keeps every stop out of the map: there would be no map")

@@ -113,7 +113,7 @@ def parse_world(text: str, *, file: str) -> World:
     """Return the world described by a TOML text.
 
     Raises:
-        ConfigError: with ``file``, line and key, and the nearest name for a key that nobody knows.
+        ConfigError: with ``file``, line and key, and the nearest name for an unknown key.
     """
     try:
         table = tomllib.loads(text)

@@ -1,4 +1,4 @@
-"""What a device says takes time on the line: so many bits a byte, at the speed of the line."""
+"""What a device says takes time on the line: this many bits a byte, at the speed of the line."""
 
 from collections import deque
 

@@ -213,7 +213,7 @@ class FakeBoard:
         self._improvised = None
         if isinstance(request, Aim):
             self._aim_seqs[meeting.asked.seq] = seq
-            # Until the next report, whoever asks must not hear what became of the Aim before.
+            # Until the next report, anyone who asks must not hear what became of the Aim before.
             self._last[AimReport] = aimed(request, seq, self._now_us, Motion.TURNING)
         if meeting.asked.answered and not isinstance(request, _MADE_LIVE):
             self._open[meeting.place] = (request, seq, self._now_us)

@@ -51,7 +51,7 @@ class FakeRobot:
 
     @property
     def at_rest(self) -> bool:
-        """Never, so that nobody notes the truth that nobody knows."""
+        """Never, so that nothing notes a truth that is not known."""
         return False
 
 

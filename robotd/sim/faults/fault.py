@@ -17,7 +17,7 @@ class Line(Protocol):
     """The part of a cable that a fault may lay hands on."""
 
     def unplug(self) -> None:
-        """Pull the plug at the host's side; whoever opens the port finds none."""
+        """Pull the plug at the host's side; anyone who opens the port finds none."""
 
     def plug(self) -> None:
         """Put it back, under another name of the system's; a name of ours leads there again."""

@@ -17,7 +17,7 @@ LATE_NS = 50_000_000
 """So late a beat is time lost; less is what every process waits now and then."""
 BEAT_NS = 20_000_000
 CATCHING_UP = 1.5
-"""So many simulated seconds pass in one while time is made up for; set-points still last until they are renewed."""
+"""This many simulated seconds pass in one while time is made up for; set-points still last until they are renewed."""
 MOST_BEHIND_NS = 300_000_000
 """No further: a daemon takes a clock that stays half a second behind for a liar."""
 PATIENCE_S = 10.0

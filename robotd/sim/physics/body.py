@@ -86,7 +86,7 @@ class Body:
         self, walls: Walls, start: Pose2, settings: BodySettings, noise: NoiseSettings, randomness: random.Random
     ) -> None:
         self.broken = Fault.NONE
-        """What is wrong with it, for whoever wants to see what comes of that."""
+        """What is wrong with it, for those who want to see what comes of that."""
         self._walls = walls
         self._settings = settings
         self._noise = noise

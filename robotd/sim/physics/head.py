@@ -41,7 +41,7 @@ class Head:
 
     def __init__(self, settings: HeadSettings) -> None:
         self.broken = Fault.NONE
-        """What is wrong with it, for whoever wants to see what comes of that."""
+        """What is wrong with it, for those who want to see what comes of that."""
         self._settings = settings
         pan_limit_rad = min(settings.pan_limit_rad, math.pi)
         self.limits_rad = (-pan_limit_rad, pan_limit_rad, settings.tilt_min_rad, settings.tilt_max_rad)

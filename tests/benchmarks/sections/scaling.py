@@ -100,7 +100,7 @@ def timings() -> Iterator[Timing]:
 
 
 def site_of(side: int, sweeps: int) -> Site:
-    """Return a map of so many cells a side, and sweeps at random places."""
+    """Return a map of this many cells a side, and sweeps at random places."""
     return _site(_ground(side), sweeps)
 
 

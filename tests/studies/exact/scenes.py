@@ -47,7 +47,7 @@ _SHAPES: tuple[list[tuple[int, int]], ...] = (
 
 
 def scattered(edges: int, seed: int) -> tuple[PlanarSet, Point]:
-    """Return a room with about so many edges, one quadrangle a square metre; and a free point in its middle."""
+    """Return a room with about this many edges, one quadrangle a square metre; and a free point in its middle."""
     rng = random.Random(seed)
     side = math.ceil(math.sqrt((edges - 4) / 4 + 1))
     places = [(x, y) for x in range(side) for y in range(side) if (x, y) != (side // 2, side // 2)]
@@ -63,7 +63,7 @@ def _placed(shape: list[tuple[int, int]], x: int, y: int) -> Ring:
 
 
 def crossed_bars(bars: int) -> tuple[PlanarSet, Beam]:
-    """Return fig. 12: so many bars each way, n = 8 bars edges, whose gaps all hold a piece of FP of one reading.
+    """Return fig. 12: this many bars each way, n = 8 bars edges, whose gaps all hold a piece of FP of one reading.
 
     The bars are as wide as the gaps. A reading that ends on a wall from within a gap does so in every one.
     """

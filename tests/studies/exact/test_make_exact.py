@@ -62,7 +62,7 @@ def test_a_sweep_asks_of_the_order_of_n_plus_s_times_log_n_predicates(eps: str) 
 
 
 def crossed(count: int) -> list[PlanarSet]:
-    """Return so many segments from west to east and from south to north, every two of which cross apart from others."""
+    """Return segments from west to east and from south to north, every two of which cross apart from others."""
     sets = []
     for number in range(count):
         low, high = rational(number), count - 1 - number + rational(number) / 97

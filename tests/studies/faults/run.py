@@ -37,7 +37,7 @@ def main() -> None:
     failed = [outcome for outcome in outcomes if outcome.failures]
     for outcome in failed:
         print(f"FAILED {outcome.fault}, {outcome.state}, {outcome.device}: {'; '.join(outcome.failures)}")
-    print(f"{len(outcomes) - len(failed)} of {len(outcomes)} cells passed: it rests, and moves only when armed anew")
+    print(f"{len(outcomes) - len(failed)} of {len(outcomes)} cells passed: it rests, and moves only when armed again")
     if not failed:
         print("nothing lost: each recording is read back whole, each map saved and loaded, cell by cell")
     sys.exit(bool(failed))

@@ -59,7 +59,7 @@ def _boards(directory: Path, seed: int, frames: int) -> int:
 
 
 def _lives(program: Path, kind: BoardKind, seed: int, count: int) -> int:
-    """Let boards of one kind live so many lives; return how many differ."""
+    """Let boards of one kind live this many lives; return how many differ."""
     told: list[Told] = []
     different = 0
     for life in range(seed, seed + count):

@@ -79,7 +79,7 @@ _OF_KIND: dict[BoardKind, tuple[tuple[int, Maker], ...]] = {
 
 
 def random_script(kind: BoardKind, seed: int, frames: int) -> str:
-    """Return a script with so many frames."""
+    """Return a script with this many frames."""
     return "\n".join(_Life(kind, seed).lines(frames)) + "\n"
 
 

@@ -55,7 +55,7 @@ def noise(dice: random.Random) -> bytes:
 
 
 def random_stream(seed: int, frames: int) -> bytes:
-    """Return a stream of so many frames, a third of them damaged."""
+    """Return a stream of this many frames, a third of them damaged."""
     dice = random.Random(seed)
     wires = (random_frame(dice) for _ in range(frames))
     return b"".join(damaged(dice, wire) if dice.random() < 1 / 3 else wire for wire in wires)

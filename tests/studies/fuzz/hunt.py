@@ -14,7 +14,7 @@ from tests.studies.fuzz.target import KIB, Target
 _FLOOD_BYTES = 256 * KIB
 _PIECE_BYTES = 4 * KIB
 KEPT_MAX = 32 * KIB
-"""So much may a parser of a stream keep of a flood: a buffer, and the integers that count."""
+"""This much may a parser of a stream keep of a flood: a buffer, and the integers that count."""
 _MEASURED = 60
 
 

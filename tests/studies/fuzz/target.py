@@ -37,7 +37,7 @@ class Target:
     size_max: int = 1024
     """Inputs are not longer."""
     peak_max: int = 2 * MIB
-    """So much memory may one input take."""
+    """This much memory may one input take."""
     proves: Callable[[bytes], None] | None = None
     """Asserts what must hold besides, without being watched, which takes time."""
     stream: Callable[[], Feedable] | None = None

@@ -58,7 +58,7 @@ async def save(rig: Rig, client: AsyncClient) -> None:
 
 
 async def carried_out(client: AsyncClient, mission: Mission) -> None:
-    """Carry out a mission; one that a stall ended is begun anew, twice at most."""
+    """Carry out a mission; one that a stall ended is begun again, twice at most."""
     for _ in range(3):
         await armed(client)
         progress = [one async for one in client.run_mission(mission, LEASE_S) if isinstance(one, MissionProgress)]

@@ -35,7 +35,7 @@ FROZEN_S = 15.0
 """A mission under way must have advanced, or ended, within this: a sweep tells of ten readings at a time, each of which
 may wait a second for its rangefinder; turning the head may take 5 s, a stalled base 3 s."""
 RESETS_S = 45.0
-"""The same of a head that finds its stops anew, which its mission says."""
+"""The same of a head that finds its stops again, which its mission says."""
 TOLD_WITHIN_S = 4.0
 
 

@@ -75,7 +75,7 @@ async def _mission(world: World, stops_m: tuple[Point, ...], seed: int, director
 
 
 def probes_at(world: World, pose: Pose2, count: int, seed: int) -> tuple[RangeReading, ...]:
-    """Return so many readings evenly round a robot that stands at a pose, whatever became of them."""
+    """Return this many readings evenly round a robot that stands at a pose, whatever became of them."""
     noise = NoiseSettings()
     body = Body(world.walls, pose, BodySettings(), noise, stream(seed, "drive"))
     head = Head(HeadSettings(pan_limit_rad=math.pi))
@@ -101,6 +101,6 @@ def _shot(answer: ShotAnswer) -> Shot:
 
 
 def true_ranges_m(world: World, pose: Pose2, count: int) -> tuple[float, ...]:
-    """Return how far the walls really are along so many probes, evenly round."""
+    """Return how far the walls really are along this many probes, evenly round."""
     headings = (pose.heading_rad + math.tau * number / count for number in range(count))
     return tuple(ray_cast(world.walls, (pose.x_m, pose.y_m), heading_rad) for heading_rad in headings)

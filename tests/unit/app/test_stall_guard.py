@@ -56,7 +56,7 @@ async def test_a_loop_that_turns_is_left_alone_and_each_stall_is_told_once() -> 
             assert (len(stops), len(stalls)) == (count, count)
     assert all(stood_still_s > STALL_S and "time.sleep" in where for stood_still_s, _, where in stalls)
     assert [was_stopped for _, was_stopped, _ in stalls] == [True, False]
-    assert attention().missed_s == 0.0  # for whoever is told to add up
+    assert attention().missed_s == 0.0  # for those who are told to add up
 
 
 @pytest.mark.real_clock

@@ -1,4 +1,4 @@
-"""A daemon that is not there, as far as the command line can see."""
+"""A daemon that is only played, as far as the command line can see."""
 
 from collections.abc import Iterator
 from dataclasses import replace

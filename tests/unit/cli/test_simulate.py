@@ -1,4 +1,4 @@
-"""Robots that are not there: where their devices are, and a configuration to run a daemon on them."""
+"""Simulated robots: where their devices are, and a configuration to run a daemon on them."""
 
 import json
 import sys

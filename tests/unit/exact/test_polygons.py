@@ -1,4 +1,4 @@
-"""What is solid is what lies in one of the polygons: counted anew here, with nothing but fractions."""
+"""What is solid is what lies in one of the polygons: counted again here, with nothing but fractions."""
 
 from collections.abc import Sequence
 from fractions import Fraction

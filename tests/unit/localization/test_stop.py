@@ -84,8 +84,8 @@ def test_a_map_that_was_updated_stays_as_it_is(cells: NDArray[np.uint8], seed: i
     grid = OccupancyGrid(SPEC, np.choose(cells, (np.uint8(0), np.uint8(255), np.uint8(128))))
     grid.cells[changed.slices] = random.choice(np.array([0, 255, 128], np.uint8), changed.shape)
     after = before.updated(grid, changed)
-    for the_map, anew in ((before, ready(cells)), (after, ReadyMap.of(grid, before.settings))):
-        stop, expected = the_map.stop(even_headings(99)), anew.stop(even_headings(99))
+    for the_map, fresh in ((before, ready(cells)), (after, ReadyMap.of(grid, before.settings))):
+        stop, expected = the_map.stop(even_headings(99)), fresh.stop(even_headings(99))
         for one in (stop, expected):
             one.add(Readings.of(taken))
         assert stop.best_poses().poses.tolist() == expected.best_poses().poses.tolist()

@@ -350,7 +350,7 @@ async def test_a_base_that_comes_back_stops_what_went_on_without_it() -> None:
         await r.supervisor.arming.arm()
         r.drive.change(link=LinkState.READY, armed=False, detail="")
         await turns()
-        assert (r.mode, r.reason) == (Mode.DISARMED, "drive is there again: arm anew")
+        assert (r.mode, r.reason) == (Mode.DISARMED, "drive is there again: arm again")
         await r.supervisor.arming.arm()
         assert all(device.status.armed for device in r.devices)
 

@@ -35,7 +35,7 @@ async def serve(device: str, connect: Connect, journal: Journal, seen: list[str]
 
 
 def live(order: str, turns: int, apart_ns: int) -> tuple[list[Entry], list[str]]:
-    """Give bytes to two lines, so many turns apart, and return what was noted and in which order it had its effects."""
+    """Give bytes to two lines, some turns apart, and return what was noted and in which order it had its effects."""
 
     async def main() -> tuple[list[Entry], list[str]]:
         journal, seen = MemoryJournal(), list[str]()

@@ -17,7 +17,7 @@
 
 #define FEW 7
 #define FOUND_MAX 112 /* sixteen sevens */
-#define RUN 8         /* so many cells of a chain are walked before it is asked what is left */
+#define RUN 8         /* this many cells of a chain are walked before it is asked what is left */
 
 /* What one thread keeps of the bodies of a batch in one tile: the free cells that each leaves open. Bodies of one chain
  * that leave the same cells share a plane. */

@@ -16,7 +16,7 @@ typedef struct {
     uint64_t *scratch;    /* count_scratch_words() of it */
 } count_job;
 
-/* How much scratch so many threads need. */
+/* How much scratch this many threads need. */
 int64_t count_scratch_words(const count_job *job);
 
 /* Count every beam at every cell from which it is feasible, or take it back. Returns 0, having done nothing, if the

@@ -13,7 +13,7 @@ typedef struct {
     int32_t rows;
     int32_t cols;
     int32_t outside;   /* whether what lies beyond the grid is a source */
-    int32_t limit;     /* farther than so many cells is nowhere; its square must fit */
+    int32_t limit;     /* farther than this many cells is nowhere; its square must fit */
     int32_t first_row; /* the window of cells whose distance is wanted, not empty */
     int32_t end_row;
     int32_t first_col;

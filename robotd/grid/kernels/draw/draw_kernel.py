@@ -19,7 +19,7 @@ class BeamSettings:
     resolution_m: float
     """Side of one cell."""
     error_radius_cells: float
-    """The paper's eps: bodies end so much before their heads."""
+    """The paper's eps: bodies end this much before their heads."""
     reach_cells: int
     """Where bodies end at the latest; more than the grid is wide and high changes nothing."""
 
@@ -85,7 +85,7 @@ class Beams:
 
     @property
     def slots(self) -> int:
-        """No batch has more than so many."""
+        """No batch has more than this many."""
         return int(self.drawn.slots)
 
     @property

@@ -37,7 +37,7 @@ def draw_beams(readings: NDArray[np.float64], headings: NDArray[np.float64], how
 
 
 def drawn_of(beams: Beams) -> Any:
-    """Return the C struct of beams, ``drawn_beams``, whoever drew them; it does not keep the arrays alive."""
+    """Return the C struct of beams, ``drawn_beams``, no matter who drew them; it does not keep the arrays alive."""
     if isinstance(beams.drawn, ffi.CData):
         return beams.drawn[0]
     found, sizes = ffi.new("drawn_beams *"), beams.drawn

@@ -40,7 +40,7 @@ static inline int32_t cell_at(double cells)
     return whole((cells < -FAR_CELLS ? -FAR_CELLS : cells > FAR_CELLS ? FAR_CELLS : cells) + 0.5);
 }
 
-/* Cells from sample to sample of a body of so many cells of length; the one that it starts in is always there. */
+/* Cells from sample to sample of a body of this many cells of length; the one that it starts in is always there. */
 static inline int32_t body_cells(double length_cells, double dominant)
 {
     const int32_t cells = length_cells > 0.0 ? -whole(-(length_cells * dominant)) : 1;

@@ -24,7 +24,7 @@ typedef struct {
     int32_t threads;  /* at most THREADS_MAX */
 } errors_job;
 
-/* Find, for every free cell, the smallest error with which so many readings are feasible; 65535 if none is. */
+/* Find, for every free cell, the smallest error with which this many readings are feasible; 65535 if none is. */
 void share_errors(errors_job *job);
 
 #endif

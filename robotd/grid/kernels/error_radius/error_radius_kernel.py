@@ -16,7 +16,7 @@ class Bodies:
     chains: NDArray[np.int32]
     """``int32[cells, 2]``: ``(row, col)`` offsets from the robot's cell, body after body."""
     lengths: NDArray[np.uint16]
-    """``uint16[cells]``: the error radius that shortens the body so much that this cell is not in it; 65535 if none
+    """``uint16[cells]``: the error radius that shortens the body until this cell is not in it; 65535 if none
     does."""
     readings: NDArray[np.int32]
     """``int32[readings, 4]``: first cell of the body and end; ``(row, col)`` of the head, ``NO_HEAD`` twice for a
@@ -36,7 +36,7 @@ class ErrorRadiusKernel(Protocol):
         *,
         threads: int = 1,
     ) -> NDArray[np.uint16]:
-        """Return the smallest whole error radius with which so many readings are feasible, for every cell.
+        """Return the smallest whole error radius with which this many readings are feasible, for every cell.
 
         Args:
             the_map: where the robot may stand, and what stops a beam; what is grown is not used.

@@ -36,7 +36,7 @@ static void look(const place *at, const int32_t *fan, int32_t along, int32_t fir
     }
 }
 
-/* Lead the paths that end in one cell on to one of the next line. Whoever steps aside leaves the cell by its side or by
+/* Lead the paths that end in one cell on to one of the next line. A path that steps sideways leaves the cell by its side or by
  * its front: one of these two neighbours is open. */
 static void step(const line *from, const line *to, int32_t before, int32_t aside, uint64_t *path)
 {

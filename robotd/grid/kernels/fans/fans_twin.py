@@ -56,7 +56,7 @@ def _arriving(
 ) -> Words:
     """Return which paths can step to a cell; from nowhere, they begin there.
 
-    Whoever steps aside leaves a cell by its side or by its front: one of these two neighbours is open.
+    A path that steps sideways leaves a cell by its side or by its front: one of these two neighbours is open.
     """
     if paths is None:
         return np.full_like(here[aside], ~np.uint64(0))

@@ -88,7 +88,7 @@ static void solve(double matrix[3][3], double *right, int size)
     }
 }
 
-/* Newton's step; the unknown that would leave its bounds by most stops there, and the others go anew. */
+/* Newton's step; the unknown that would leave its bounds by most stops there, and the others go again. */
 static void bounded_step(double normal[3][3], const double *gradient, const double *low, const double *high,
                          double *step)
 {

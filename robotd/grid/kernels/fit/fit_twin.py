@@ -141,7 +141,7 @@ def _fit(
 def _bounded_step(
     normal: NDArray[np.float64], gradient: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return Newton's step; the unknown that would leave its bounds by most stops there, and the others go anew."""
+    """Return Newton's step; the unknown that would leave its bounds by most stops there, and the others go again."""
     step, free = np.zeros(3), [0, 1, 2]
     while free:
         rest = [-gradient[i] - sum((normal[i, j] * step[j] for j in range(3) if j not in free), 0.0) for i in free]

@@ -13,7 +13,7 @@ class PackKernel(Protocol):
     """Packing cells into words."""
 
     def pack_cells(self, words: Words, mask: NDArray[np.bool_], origin: tuple[int, int], window: CellWindow) -> None:
-        """Pack the cells of a window anew; cells that share a word with them, too.
+        """Pack the cells of a window again; cells that share a word with them, too.
 
         Args:
             words: ``uint64[words + 4, rows + padding]``, from

@@ -15,7 +15,7 @@
 #include "shared/arena.h"
 #include "shared/threads.h"
 
-#define HOPES 64 /* so many bounds are made finer before the search, and so many windows of them tried */
+#define HOPES 64 /* this many bounds are made finer before the search, and this many windows of them tried */
 #define SEEDS 16
 #define STEPS 12
 #define FEW_WINDOWS 1 /* as many windows are looked at sooner than the blocks in them are bounded */
@@ -291,7 +291,7 @@ static void from_the_middle(search *s)
 }
 
 /* Find the best rank, if it may be far from what was seen: ask for high ranks first, then for lower ones, since that is
- * so much faster than asking for all that lie above a low one. */
+ * much faster than asking for all that lie above a low one. */
 static void rank(search *s, int32_t bound)
 {
     search_job *job = s->job;

@@ -51,7 +51,7 @@ class Question:
     headings_rad: NDArray[np.float64]
     resolution_m: float
     slack: int
-    """Poses are wanted that explain so many readings fewer than the best."""
+    """Poses are wanted that explain this many readings fewer than the best."""
     least_rank: int
     """Nothing is wanted if the best explains fewer."""
     limit: int

@@ -36,7 +36,7 @@ static void reach(const uint64_t *counter, int32_t bits, int32_t least, uint64_t
         mask[i] |= equal[i];
 }
 
-/* Which columns of a row of blocks have one in them that is set, for blocks so many times as large. */
+/* Which columns of a row of blocks have one in them that is set, for blocks this many times as large. */
 static uint64_t joined(uint64_t row, int32_t times)
 {
     static const uint64_t firsts[] = {~UINT64_C(0), UINT64_C(0x5555555555555555), UINT64_C(0x1111111111111111),

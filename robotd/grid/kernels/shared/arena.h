@@ -18,7 +18,7 @@ static inline void *take_bytes(arena *from, size_t bytes)
     return taken;
 }
 
-/* An array of so many of what a pointer points to. */
+/* An array of this many of what a pointer points to. */
 #define TAKE(from, pointer, count) ((pointer) = take_bytes(from, (size_t)(count) * sizeof *(pointer)))
 
 #endif

@@ -37,7 +37,7 @@ typedef struct {
     int32_t *batches; /* [batch_count + 1]: first group of each batch */
     int32_t *lists;   /* [batch_count * heading_count + 1]: first beam of each batch and heading */
     int32_t cell_count, group_count, beam_count, batch_count, heading_count;
-    int32_t slots; /* no batch has more than so many */
+    int32_t slots; /* no batch has more than this many */
 } drawn_beams;
 
 /* Sets of instructions that kernels are compiled for, each after those that it outdoes. */

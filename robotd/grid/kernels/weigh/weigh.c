@@ -25,7 +25,7 @@ typedef struct {
     double range, spread, end;
     int64_t last; /* the sample that is nearest to the range */
     int is_miss;
-    double faded[SKIP_MAX + 1]; /* what is left of a beam after so many unknown cells */
+    double faded[SKIP_MAX + 1]; /* what is left of a beam after this many unknown cells */
 } ray;
 
 static inline double density(double off, double spread)

@@ -13,7 +13,7 @@ MODEL = ErrorModel()
 
 
 def along_a_wall(*off_m: float) -> NDArray[np.float64]:
-    """Return readings of a wall 2 m ahead, each off by so much."""
+    """Return readings of a wall 2 m ahead, each off by this much."""
     bearings_rad = -0.4 + 0.08 * np.arange(len(off_m))
     zeros = np.zeros(len(off_m))
     return np.column_stack((bearings_rad, 2.0 / np.cos(bearings_rad) + off_m, zeros, zeros, zeros))

@@ -33,7 +33,7 @@ def see(here: MapInUse, seen: Sweep) -> None:
 
 
 def sweep(leg_beams: int = 0) -> Sweep:
-    """A round room, and a thin leg ahead that so many beams meet."""
+    """A round room, and a thin leg ahead that this many beams meet."""
     middle = leg_beams // 2
     met = {(number - middle) % 300 for number in range(leg_beams)}
     ranges_m = [LEG_M if number in met else WALLS_M for number in range(300)]

@@ -57,7 +57,7 @@ def expected(status: DeviceStatus, mode: Mode, *, is_explained: bool, is_left_ou
         gone = (Occasion.DEVICE_LOST, f"{status.name} is gone: {status.detail} (blamed)")
         return [*doubts, "status" if is_left_out else gone]
     if not status.armed:
-        why = "there again: arm anew" if is_left_out else "no longer armed"
+        why = "there again: arm again" if is_left_out else "no longer armed"
         return [*doubts, (Occasion.STOP, f"{status.name} is {why}")]
     return [*doubts, "status"]
 

@@ -1,4 +1,4 @@
-"""The map in use is replaced, never changed under whoever holds it; what is saved of it, and what is at risk."""
+"""The map in use is replaced, never changed under those who hold it; what is saved of it, and what is at risk."""
 
 import numpy as np
 

@@ -22,7 +22,7 @@ LINE = LineFormat(115_200)
 
 
 def ignore(_: str) -> None:
-    """Whoever looks at the links need not be told."""
+    """Anyone who looks at the links need not be told."""
 
 
 def robot(dialects: Dialects | None = None) -> SimulatedRobot:

@@ -1,4 +1,4 @@
-"""Packing a window anew leaves what packing all of it would."""
+"""Packing a window again leaves what packing all of it would."""
 
 import numpy as np
 from hypothesis import given, settings

@@ -1,4 +1,4 @@
-"""The search kernels: planes renewed in a window are planes made anew; every way to search gives the same poses."""
+"""The search kernels: planes renewed in a window are planes made again; every way to search gives the same poses."""
 
 import functools
 import math
