@@ -17,6 +17,8 @@ APART_MAX_RAD = math.radians(2.5)
 """Beams farther apart than this say nothing of what lies between them: a chair fits in at 10 m."""
 MARGIN_CELLS = 2.0
 """How far before the nearer end the ground is taken as seen: a wall that is hit in spots must not get gaps."""
+_FULL = 0.5
+"""Share of the way to there from which on the ground is filled: cells are square, and beams are not where cells are."""
 _BEAMS_PER_CELL = 2.0
 """As close together as this, no cell between two beams is missed, however they lie to the axes."""
 
@@ -31,18 +33,25 @@ def between(readings: Readings, resolution_m: float) -> Readings:
     one = readings[np.argsort(readings.bearing_rad, kind="stable")].rows
     other = np.roll(one, -1, axis=0)
     apart_rad = np.mod(other[:, 0] - one[:, 0], 2 * math.pi)
-    reach_m = np.minimum(one[:, 1], other[:, 1]) - MARGIN_CELLS * resolution_m
-    together = (apart_rad > 0.0) & (apart_rad <= APART_MAX_RAD) & (reach_m > 0.0)
-    one, other, apart_rad, reach_m = one[together], other[together], apart_rad[together], reach_m[together]
-    parts = np.ceil(_BEAMS_PER_CELL * apart_rad * reach_m / resolution_m).astype(int)
-    pair = np.repeat(np.arange(len(one)), np.maximum(parts - 1, 0))
+    # Nearer than where they are a cell apart, the beams themselves have crossed every cell between them.
+    begin_m = resolution_m / np.maximum(apart_rad, 1e-9)
+    end_m = np.minimum(one[:, 1], other[:, 1]) - MARGIN_CELLS * resolution_m
+    together = (apart_rad > 0.0) & (apart_rad <= APART_MAX_RAD) & (end_m > begin_m)
+    one, other, apart_rad, begin_m, end_m = (
+        column[together] for column in (one, other, apart_rad, _FULL * begin_m, end_m)
+    )
+    parts = np.ceil(_BEAMS_PER_CELL * apart_rad * end_m / resolution_m).astype(int)  # 3 or more: they are cells apart
+    pair = np.repeat(np.arange(len(one)), parts - 1)
     if not len(pair):
         return Readings.none()
-    first = np.concatenate(([0], np.cumsum(np.maximum(parts - 1, 0))[:-1]))
+    first = np.concatenate(([0], np.cumsum(parts - 1)[:-1]))
     share = (np.arange(len(pair)) - first[pair] + 1) / parts[pair]
+    bearing_rad, begin_m = one[pair, 0] + share * apart_rad[pair], begin_m[pair]
     filled = np.empty((len(pair), 5))
-    filled[:, 0] = one[pair, 0] + share * apart_rad[pair]
-    filled[:, 1] = reach_m[pair]
-    filled[:, 2:4] = one[pair, 2:4] + share[:, None] * (other[pair, 2:4] - one[pair, 2:4])
+    filled[:, 0] = bearing_rad
+    filled[:, 1] = end_m[pair] - begin_m
+    start_m = one[pair, 2:4] + share[:, None] * (other[pair, 2:4] - one[pair, 2:4])
+    filled[:, 2] = start_m[:, 0] + begin_m * np.cos(bearing_rad)
+    filled[:, 3] = start_m[:, 1] + begin_m * np.sin(bearing_rad)
     filled[:, 4] = 1.0
     return Readings(filled)

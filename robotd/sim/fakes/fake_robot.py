@@ -46,7 +46,7 @@ class FakeRobot:
 
     @property
     def truth(self) -> Pose2:
-        """Nobody knows: the origin."""
+        """It is not known: the origin."""
         return IDENTITY
 
     @property

@@ -80,7 +80,7 @@ def test_the_arithmetic_is_told_by_the_last_place(monkeypatch: pytest.MonkeyPatc
 
 FINE = GridSpec(0.02, -1.5, -1.0, (100, 150))
 CLOSE = {
-    BetweenBeams.SEEN: "d4924035c611995ea5dc7e45854ecadd616b8078cdcefe02e8259ebc988dae75",
+    BetweenBeams.SEEN: "9e2a82c8637cdbd290f4bbce01d199bd8896f6b74bc338d9f9d5eb4f32f51e31",
     BetweenBeams.UNSEEN: "4e707b38ad5db30ad104689177abef5115f44f110474747e04e3bdbf6df09dec",
 }
 
