@@ -26,7 +26,7 @@ from robotd.logs.mount import mount_of
 from robotd.logs.no_returns import code_from_m, named_limit_m
 from robotd.logs.numbers import DamagedLineError
 from robotd.logs.odometry import OdometryTrack, pose_between
-from robotd.logs.provenance import Fit, fit_of, lie_on_odometry
+from robotd.logs.provenance import Fit, fit_of, lie_on_odometry, moved_to_odometry
 from robotd.logs.records import KINDS, RAW_KINDS, LaserRecord, Odom, Parameter, parse_line
 from robotd.logs.scan import PoseSource, Problem, RecordedLog, Scan
 
@@ -142,7 +142,7 @@ def _log(reader: _Reader, placed: list[_Placed], file: str, fov_rad: float | Non
     scanner = "rear" if kind in {"RLASER", "ROBOTLASER2", "RAWLASER2"} else "front"
     frame = _Frame(
         mount=mount_of(records, reader.params, scanner),
-        is_corrected=reader.track.copies >= len(placed) - 1 > 0,
+        is_corrected=reader.track.copies >= len(placed) - 1 > 0 and bool(reader.track.lines),
         is_raw=kind in RAW_KINDS,
     )
     robots = [_robot_pose(reader, one, frame, file) for one in placed]
@@ -219,11 +219,20 @@ def _provenance(
         return PoseSource.LOG, "where the robot came by again, its scans fit each other"
     if fit is Fit.BAD:
         return PoseSource.RAW_ODOMETRY, "where the robot came by again, its scans do not fit each other"
-    robots = [scan.robot_pose for scan in scans]
-    places = [one.odom_lines for one in placed]
-    if lie_on_odometry(robots, places, [one.record.time_s for one in placed], reader.track.lines):
+    if _is_odometry(reader.track, placed, scans):
         return PoseSource.RAW_ODOMETRY, "they are those of the ODOM lines around them"
     return PoseSource.LOG, ""
+
+
+def _is_odometry(track: OdometryTrack, placed: list[_Placed], scans: tuple[Scan, ...]) -> bool:
+    if not track.lines:  # all that it has are copies of the poses: without another odometry nothing was corrected
+        return track.copies >= len(placed) - 1 > 0
+    places, times_s = [one.odom_lines for one in placed], [one.record.time_s for one in placed]
+    robots, lasers = [scan.robot_pose for scan in scans], [scan.laser_pose for scan in scans]
+    return any(
+        lie_on_odometry(poses, places, times_s, track.lines)
+        for poses in (robots, moved_to_odometry(lasers, places, times_s, track.lines))
+    )
 
 
 def _assumed(bearings: Iterable[Bearings]) -> tuple[str, ...]:

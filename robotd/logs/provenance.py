@@ -20,6 +20,7 @@ from robotd.logs.scan import Scan
 _ON_TRACK_M = 0.02
 _ON_TRACK_RAD = 0.02
 _ON_TRACK_SHARE = 0.9
+_MOUNT_MAX_M = 1.0
 _SCANS_MAX = 800
 """Scans that are compared; of longer logs as many, evenly."""
 _NEAR_M = 1.5
@@ -52,6 +53,22 @@ def lie_on_odometry(
         _is_near(pose, lines, place, time_s) for pose, place, time_s in zip(poses, places, times_s, strict=True)
     )
     return on_track >= _ON_TRACK_SHARE * len(poses)
+
+
+def moved_to_odometry(
+    lasers: Sequence[Pose2], places: Sequence[int], times_s: Sequence[float | None], lines: Sequence[Odom]
+) -> Sequence[Pose2]:
+    """Return where the robot was if its scanner sits where it did at the middle scan, seen from the odometry there.
+
+    A PARAM may tell another mount than the one that made the log; odometry is what moves with the scanner all the
+    same. The arguments are as for :func:`lie_on_odometry`; nothing is returned where no scanner sits so far away.
+    """
+    middle = len(lasers) // 2
+    odometry = pose_between(lines, places[middle], times_s[middle])
+    if odometry is None or odometry.distance_m(lasers[middle]) > _MOUNT_MAX_M:
+        return ()
+    laser_from_robot = (odometry.inverse() @ lasers[middle]).inverse()
+    return [laser @ laser_from_robot for laser in lasers]
 
 
 def _is_near(pose: Pose2, lines: Sequence[Odom], place: int, time_s: float | None) -> bool:
