@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from robotd import __version__
+from robotd.app.as_recorded import recorded_config
 from robotd.app.compose import Daemon, compose
-from robotd.config import Config, loads
+from robotd.config import Config
 from robotd.core.attention import attention
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RecordingError, RobotdError
@@ -65,7 +66,7 @@ def replay_recording(path: Path) -> ReplayReport:
     """
     recording = read(path)
     check_recorded(recording)
-    config = loads(recording.header.config_text, file="the recording's configuration")
+    config = recorded_config(recording.header.config_text)
     journal = PrerollJournal(recording.header, _NO_LIMIT)
     replayed = run_recorded(_play(recording, config, journal), start_ns=recording.header.started_ns)
     return ReplayReport(

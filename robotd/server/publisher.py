@@ -101,6 +101,6 @@ class Publisher:
             return await self._control.perform(MapShow())
         except RobotdError:  # no map in use: anyone who joined hears of the first one when it comes
             return None
-        except Exception as error:  # whoever joins next asks again
+        except Exception as error:  # the next who joins asks again
             self._complain("the map in use", error)
             return None

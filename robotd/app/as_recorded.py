@@ -1,0 +1,38 @@
+"""A recording's configuration, with settings that it lacks as things were before these settings existed.
+
+A recording holds the effective configuration: every key that its daemon knew. So a key that is missing was not known,
+and its default of today would be another behaviour than the recorded one. Each stands here with what was done then.
+"""
+
+import tomllib
+from dataclasses import replace
+from typing import Any
+
+from robotd.config import Config, loads
+from robotd.grid.occupancy import BetweenBeams
+
+SINCE: dict[str, dict[str, Any]] = {
+    "grid": {"between_beams": BetweenBeams.UNSEEN},
+    "second_look": {"on_walls_min": 0.0},
+}
+"""By section and key; a section that is missing was not recorded, and says nothing."""
+
+
+def recorded_config(text: str) -> Config:
+    """Return the configuration that a recording was made with.
+
+    Raises:
+        ConfigError: it is not one of this version.
+    """
+    config = loads(text, file="the recording's configuration")
+    written = tomllib.loads(text)
+    return replace(
+        config,
+        grid=replace(config.grid, **_missing("grid", written)),
+        second_look=replace(config.second_look, **_missing("second_look", written)),
+    )
+
+
+def _missing(section: str, written: dict[str, Any]) -> dict[str, Any]:
+    there = written.get(section)
+    return {} if there is None else {key: was for key, was in SINCE[section].items() if key not in there}
