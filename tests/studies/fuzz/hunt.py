@@ -15,7 +15,6 @@ _FLOOD_BYTES = 256 * KIB
 _PIECE_BYTES = 4 * KIB
 KEPT_MAX = 32 * KIB
 """This much may a parser of a stream keep of a flood: a buffer, and the integers that count."""
-_MEASURED = 60
 
 
 @dataclass(slots=True)
@@ -105,11 +104,11 @@ def _measure(target: Target, rng: random.Random, found: Findings) -> None:
     """Run some inputs again and see how much memory they take: tracing it would slow down all of them."""
     pool = found.corpus or [b""]
     inputs = [
-        mutated(rng, rng.choice(pool), rng.choice(pool), target.tokens, target.size_max) for _ in range(_MEASURED)
+        mutated(rng, rng.choice(pool), rng.choice(pool), target.tokens, target.size_max) for _ in range(target.measured)
     ]
     tracemalloc.start()
     try:
-        for data in (*pool, *inputs):
+        for data in (*pool[: target.measured], *inputs):
             tracemalloc.reset_peak()
             before, _ = tracemalloc.get_traced_memory()
             failure_of(target, data)

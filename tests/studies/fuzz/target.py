@@ -38,6 +38,10 @@ class Target:
     """Inputs are not longer."""
     peak_max: int = 2 * MIB
     """This much memory may one input take."""
+    executions: int = 150
+    """How often it is run in the tests."""
+    measured: int = 60
+    """For how many inputs its memory is measured."""
     proves: Callable[[bytes], None] | None = None
     """Asserts what must hold besides, without being watched, which takes time."""
     stream: Callable[[], Feedable] | None = None

@@ -8,15 +8,13 @@ from tests.studies.fuzz.hunt import KEPT_MAX, failure_of, hunt, smallest_set
 from tests.studies.fuzz.target import Target
 from tests.studies.fuzz.targets import TARGETS
 
-EXECUTIONS = 150
-
 
 @pytest.mark.parametrize("name", TARGETS)
 def test_nothing_but_typed_errors_leaves_a_parser_and_its_memory_is_bounded(name: str) -> None:
     target = TARGETS[name]
-    found = hunt(target, corpus.load(name), executions=EXECUTIONS)
+    found = hunt(target, corpus.load(name), executions=target.executions)
     assert found.broken is None, f"{found.broken[0].hex()}\n{found.broken[1]}"
-    assert found.executions > EXECUTIONS
+    assert found.executions > target.executions
     assert found.peak_bytes < target.peak_max
     assert found.kept_bytes < KEPT_MAX
 
