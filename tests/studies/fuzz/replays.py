@@ -115,7 +115,7 @@ REPLAYS = Target(
             b"1e308",
         ),
         *(b'"board"', b'"rflex"', b'"rwi-ascii"', b'"ptu"', b'"dynamixel"', b'"fixed"', b'"scip"', b'"lw20"'),
-        *(b"stall", b"silence", b"line_broke", b"go_on", b"give_up", b"lease", b"begun", b"\xed\xa0\x80", b"\\ud800"),
+        *(b"stall", b"silence", b"line_broke", b"go_on", b"give_up", b"lease", b"begun", b"\xed\xa0\x80", b'"\\ud800"'),
         *(b"serial/drive/to_board", b"line/pantilt", b"insert", b"prepare", b"narrow", b"begin map", b"use_map"),
     ),
     size_max=256,

@@ -68,3 +68,15 @@ def test_bytes_that_are_no_message_are_refused(topic: str, data: bytes) -> None:
 def test_a_time_that_no_clock_shows_is_refused() -> None:
     with pytest.raises(RecordingError, match="clock"):
         decode("serial/drive/from_board", 2**64 - 1, b"")
+
+
+@pytest.mark.parametrize("half", [b"\\ud800", b"\\uD800", b"\xed\xa0\x80"])
+def test_half_a_letter_is_refused_wherever_it_is_and_a_whole_one_is_not(half: bytes) -> None:
+    with pytest.raises(RecordingError, match="result"):
+        decode("result", 0, b'{"kind":"map","content":{},"digest":"' + half + b'"}')
+    with pytest.raises(RecordingError, match="command"):
+        decode("command", 0, b'{"name":"stop","arguments":{"' + half + b'":1}}')
+    with pytest.raises(RecordingError, match="header"):
+        decode_header(json.dumps(HEADER).encode().replace(b'"config_text": ""', b'"config_text": "' + half + b'"'))
+    whole = decode("command", 0, json.dumps({"name": "stop", "arguments": {"reason": "\N{ROBOT FACE}"}}).encode())
+    assert getattr(whole, "arguments", None) == {"reason": "\N{ROBOT FACE}"}
