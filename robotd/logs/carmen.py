@@ -29,8 +29,11 @@ from robotd.logs.odometry import OdometryTrack, pose_between
 from robotd.logs.provenance import Fit, fit_of, lie_on_odometry, moved_to_odometry
 from robotd.logs.records import KINDS, RAW_KINDS, LaserRecord, Odom, Parameter, parse_line
 from robotd.logs.scan import PoseSource, Problem, RecordedLog, Scan
+from robotd.logs.units import refuse_other_units
 
 _PROBLEMS_MAX = 100
+_FARTHEST_M = 1e4
+"""No scanner measures more: such a number says that nothing came back."""
 _NEAREST_M = 0.02
 """No scanner measures less; Hokuyo's write what went wrong as this many millimetres."""
 
@@ -117,7 +120,8 @@ def parse_carmen(lines: Iterable[str], *, file: str = "log", fov_rad: float | No
         fov_rad: what the scanner sees, from its first beam to its last; where None the log says it, or it is assumed.
 
     Raises:
-        RecordingError: there is no whole scan in it; names the first line that is damaged, if one is.
+        RecordingError: there is no whole scan in it; names the first line that is damaged, if one is. Or its ranges or
+            poses cannot be metres; names the likely unit.
     """
     reader = _Reader()
     for number, line in enumerate(lines, start=1):
@@ -146,6 +150,9 @@ def _log(reader: _Reader, placed: list[_Placed], file: str, fov_rad: float | Non
         is_raw=kind in RAW_KINDS,
     )
     robots = [_robot_pose(reader, one, frame, file) for one in placed]
+    refuse_other_units(file, records, robots)
+    for record in records:
+        record.ranges_m[record.ranges_m > _FARTHEST_M] = math.inf
     limits_m = _limits_m(reader, records, scanner)
     code_m = code_from_m(records, robots, limits_m)
     bearings = _bearings(reader, records, scanner, fov_rad)

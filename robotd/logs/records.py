@@ -25,8 +25,7 @@ _ROBOT_TAIL = 14
 _RAW_TAIL = 3
 """Fields after the ranges of RAWLASER1: time, host, time."""
 _ROUND_RAD = math.tau + 0.01
-_FARTHEST_M = 1e4
-"""No scanner measures more: such a number says that nothing came back."""
+_ROUND_DEG = 360.5
 _FINEST_RAD = 1e-5
 """No scanner has its beams nearer to each other."""
 
@@ -176,7 +175,9 @@ class _Angles:
         if step_assumed:
             step_rad = fov_rad / (count - count % 2)
         if not (abs(first_rad) <= _ROUND_RAD and _FINEST_RAD <= abs(step_rad) <= _ROUND_RAD / (count - 1)):
-            raise DamagedLineError(f"no scanner has {count} beams from {first_rad:g} rad on, {step_rad:g} rad apart")
+            hint = "; degrees? they must be radians" if _are_degrees(first_rad, step_rad, count) else ""
+            beams = f"{count} beams from {first_rad:g} rad on, {step_rad:g} rad apart"
+            raise DamagedLineError(f"no scanner has {beams}{hint}")
         if step_rad < 0.0:  # clockwise: the same scan, told from its other end
             first_rad, step_rad, ranges_m = first_rad + step_rad * (count - 1), -step_rad, ranges_m[::-1]
         return cls(ranges_m, first_rad, step_rad, max_range_m if max_range_m > 0.0 else math.inf, step_assumed)
@@ -198,10 +199,13 @@ class _Angles:
         )
 
 
+def _are_degrees(first: float, step: float, count: int) -> bool:
+    return abs(first) <= _ROUND_DEG and abs(step) * (count - 1) <= _ROUND_DEG
+
+
 def _several(ranges_m: NDArray[np.float64]) -> NDArray[np.float64]:
     if len(ranges_m) < 2:
         raise DamagedLineError(f"a scan of {len(ranges_m)} beams")
-    ranges_m[ranges_m > _FARTHEST_M] = math.inf
     return ranges_m
 
 
