@@ -40,6 +40,7 @@ class ThreadCompute:
 def _give_way() -> None:
     """Let this thread, and those that it starts, have no precedence; on Linux niceness is a thread's own."""
     thread = threading.get_native_id()
+    # Only precedence is given up: a daemon that was started nicer than others stays so.
     if os.getpriority(os.PRIO_PROCESS, thread) < 0:
         with contextlib.suppress(OSError):  # where that is forbidden it stays as it is
             os.setpriority(os.PRIO_PROCESS, thread, 0)
@@ -47,6 +48,7 @@ def _give_way() -> None:
 
 def cores() -> int:
     """Return how many processor cores this process may use."""
+    # Not os.cpu_count(): a service may be confined to some of them.
     return len(os.sched_getaffinity(0))
 
 

@@ -87,6 +87,7 @@ class Control:
             MissionError: not now, says why; also what was stopped while it waited.
             RobotdError: as the request's row says.
         """
+        # Here and not in its row: a replay keeps nothing, and asks by the rows (map_load makes way by itself).
         if isinstance(request, MapStart):
             await self._make_way()
         return await self._carry_out(request)
@@ -109,7 +110,9 @@ class Control:
 
     def halt(self, request: Stop | Disarm) -> None:
         """Stop everything and disarm, at once; valid at any time."""
+        # Supervisor.halt says it again; but the note comes before that, and a stop waits for no note.
         self._supervisor.robot.stop_now()
+        # A disarm is noted as the stop that it is: then there is one way to repeat both.
         self._note(Stop(request.reason), now_ns())
         self._supervisor.halt(Occasion.STOP, request.reason)
 
@@ -157,6 +160,7 @@ class Control:
         return Done()
 
     async def _start(self, mission: Mission) -> MissionStarted:
+        # The server fills in its own where a client names none; without any nothing may move.
         if mission.lease_s is None:
             raise MissionError(f"{mission.cmd} needs a lease")
         return MissionStarted(self.start(mission, mission.lease_s), mission.lease_s)
@@ -164,6 +168,7 @@ class Control:
     async def _make_way(self) -> None:
         halts = self._supervisor.halts
         await self.keeping.make_way()
+        # The disk takes its time: a stop that came meanwhile counts, even if the robot was armed again since.
         if self._supervisor.halts != halts:
             raise MissionError("stopped while the map in use was being kept")
 
@@ -189,6 +194,7 @@ class Control:
         path = self._journal.path
         if path is None:
             return RecordingFile(None)
+        # From here no entry is taken, so the status is true already; only the file waits for the disk.
         finish = self._journal.stop()
         self._supervisor.publish_status()
         await self._compute.run("end recording", finish)

@@ -83,6 +83,7 @@ class MapRequests:
         return entry_info(entry)
 
     async def _saved(self, place: MapInUse, name: str) -> MapEntry:
+        # As of now: the map may grow while the disk writes, and what comes later is not saved by this.
         generation = place.generation
         metadata: dict[str, Any] = {"generation": generation, "map_id": place.map_id}
         created_ns = now_ns() + wall_offset_ns()
@@ -114,6 +115,7 @@ class MapRequests:
         """
         self._supervisor.require_replaceable_map()
         stored = await self._compute.run("read map", self._store.load, request.name, request.version)
+        # Refused before the disk was read; _use asks again, for a mission may have begun by now.
         entry, place = stored.entry, _place_of(stored)
         pose = None if request.robot_in_map is None else msgspec.to_builtins(request.robot_in_map)
         arguments = {"map_id": entry.digest, "name": request.name, "robot_in_map": pose}
@@ -135,6 +137,7 @@ class MapRequests:
                 raise MissionError("there is no odometry yet to tie to the map")
             tie = Tie.between(msgspec.convert(arguments["robot_in_map"], Pose2), here.in_odom)
         self._supervisor.require_replaceable_map()
+        # It was encoded long before, on the worker; its time is when it takes effect.
         self._journal.asked(replace(command, time_ns=now_ns()))
         self._supervisor.use(place, tie)
 

@@ -16,6 +16,7 @@ from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 
 _LEASE_MAX_S = 1e9
+"""Far above what a client may ask for (:data:`.LeaseTime`); beyond it is what no daemon noted."""
 _QUOTED = 80
 """This many characters of what was wrong are told."""
 
@@ -53,6 +54,7 @@ def noted(request: Request[Any]) -> tuple[str, dict[str, Any]]:
     """Return the name and the arguments that a request is noted by."""
     if isinstance(request, MissionRequest):
         fields = msgspec.to_builtins(request)
+        # Recordings have the lease beside the mission, requests have it within: the format of recordings stays.
         return _START, {"kind": request.noted, "mission": fields, "lease_s": fields.pop("lease_s")}
     return request.cmd, msgspec.to_builtins(request)
 
@@ -125,6 +127,8 @@ def _converted(kind: type[T], name: str, value: object) -> T:
 
 def _require_finite(name: str, arguments: dict[str, Any]) -> None:
     try:
+        # JSON as Python reads it has NaN and Infinity. The grid is left out: it may have megabytes, and GridSpec
+        # looks at its own numbers.
         json.dumps({key: value for key, value in arguments.items() if key != "grid"}, allow_nan=False)
     except (ValueError, TypeError, RecursionError) as error:
         raise RecordingError(f"request {name!r}: expected finite numbers and texts: {str(error)[:_QUOTED]}") from error

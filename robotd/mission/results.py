@@ -43,6 +43,7 @@ def result_of(event: Event) -> ResultEntry | None:
 
 
 def _result(time_ns: int, kind: str, content: dict[str, Any]) -> ResultEntry:
+    # Sorted, so that the order in which a class declares its fields is in no digest.
     text = json.dumps(content, sort_keys=True)
     return encoded(ResultEntry(time_ns, kind, content, hashlib.sha256(text.encode()).hexdigest()))
 

@@ -59,8 +59,9 @@ class Supervisor:
         self.whereabouts = context.whereabouts
         self._recording = recording
         self._is_untold = False
+        """Whether the last status could not be told: the log has it once, not each second."""
         self.halts = 0
-        """How often the robot was stopped."""
+        """How often the robot was stopped: who waited for something compares, and sees whether a stop came between."""
         self._current = CurrentMode(self.publish_status)
         self._told = WhereaboutsTold(context.whereabouts, news.publish, self.publish_status)
         self.arming = Arming(self, self._current, lambda: faults_of(self.robot, battery_min_v))

@@ -19,6 +19,7 @@ from robotd.mission.whereabouts.whereabouts import Whereabouts
 
 _PROGRESS_EVERY = 10
 _LONGEST_MESSAGE = 500
+"""Letters: it may quote what a device said, and that has no end of its own."""
 
 
 @dataclass(slots=True)

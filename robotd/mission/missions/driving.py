@@ -26,12 +26,14 @@ async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: fl
 
 
 async def _drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: float, legs: Legs) -> Odometry:
+    # Not the latest, which may be from before a hold: the next.
     here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
     tie = context.whereabouts.believed
     if tie is None:
         raise MissionError("cannot drive on this map: the robot is not localized on it")
     start = tie.in_map(here.in_odom)
     waypoints_m = ((x_m, y_m),) if legs is Legs.STRAIGHT else await _planned(context, place, start, (x_m, y_m))
+    # One tie for all legs: nothing looks round on the way, and what makes it doubted ends the mission.
     odom_from_map = tie.map_from_odom.inverse()
     for waypoint_m in waypoints_m:
         point_m = odom_from_map.transform(*waypoint_m)
@@ -55,6 +57,7 @@ def _plan(
     goal_m: tuple[float, float],
     settings: PlanningSettings,
 ) -> Path | Unreachable:
+    # What was hit last is an obstacle whatever the cell's value: one beam is enough (decision 20).
     return plan(grid, start, goal_m, settings, latest == HIT)
 
 

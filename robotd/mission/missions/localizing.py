@@ -47,8 +47,10 @@ async def run_localizing(
         narrowing.end(sweep.in_odom)
         estimate = await narrowed
     finally:
+        # Whatever ended the sweep: a task is not left behind by its owner.
         narrowed.cancel()
         await asyncio.wait((narrowed,))
+    # Without a base there is no odometry that a tie could be made with.
     if mission.tie and context.robot.has_base:
         _learn(context, sweep.in_odom, estimate)
     return estimate
@@ -67,6 +69,7 @@ def _headings(context: MissionContext, mission: Localize, here: Odometry) -> tup
     if mission.heading is PriorHeading.UNKNOWN:
         return settings.headings_all_round()
     if mission.heading_rad is not None:
+        # Clients may count from 0 to 2 pi as well as from -pi to pi.
         return settings.headings_near(wrap_rad(mission.heading_rad))
     heading_rad = context.whereabouts.heading_of(here)
     if heading_rad is None:
@@ -102,6 +105,7 @@ class Narrowing:
             ready, place.map_id, headings_rad, mission.within, judgement=judgement, threads=cores()
         )
         is_searched = mission.heading is PriorHeading.UNKNOWN
+        # Rounded up: down would add an estimate for the few readings that are left over.
         return cls(context, estimator, -(-settings.sweep.readings // _ESTIMATES) if is_searched else _BATCH)
 
     def offer(self, reading: RangeReading) -> None:
@@ -129,7 +133,9 @@ class Narrowing:
             estimate, made = await self._context.compute.run(
                 "narrow", _narrow, self._estimator, batch or (), now_ns(), final
             )
+            # On the loop: the worker sees nothing of the whereabouts (decision 30).
             told = self._weighed(estimate)
+            # The journal has what was told, so the entry that the worker made will not do.
             if told is not estimate:
                 estimate, made = told, result_of(told)
             self._context.whereabouts.said(estimate)

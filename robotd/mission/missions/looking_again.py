@@ -28,6 +28,8 @@ async def looking_again(context: MissionContext, report: Reporter, look: Callabl
                 raise
             message = f"{error}; it is reset and the sweep taken again ({number} of {resets})"
         report.at(MissionPhase.SWEEPING, message=message)
+        # The sweep ended halfway, with the laser on, and a reset may take half a minute.
         await context.robot.rangefinder.switch_laser(on=False)
         await context.robot.pantilt.reset()
+    # Outside of the loop: after the last reset lost steps end the mission like any other failure.
     return await look()

@@ -41,10 +41,12 @@ async def run_mapping(context: MissionContext, place: MapInUse, mission: MapStar
     unreachable: list[str] = []
     faulty: list[str] = []
     for stop, (x_m, y_m) in enumerate(((mission.start.x_m, mission.start.y_m), *mission.stops_m)):
+        # At stop 0 the robot stands already: the map begins there.
         if stop:
             report.at(MissionPhase.DRIVING, stop)
             try:
                 await drive_to(context, place, x_m, y_m, mission.legs)
+            # No way is an answer; a base that fails raises another error, which ends the mission.
             except MissionError as error:
                 unreachable.append(f"stop {stop}: {error}")
                 report.at(MissionPhase.DRIVING, message=unreachable[-1])

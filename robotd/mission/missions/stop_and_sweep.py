@@ -91,6 +91,7 @@ class Sweeper:
         for part in parts:
             here = await self._turn_base(start, part)
             await self.robot.rangefinder.switch_laser(on=True)
+            # By odometry, not by plan: the base turns only roughly as far as it should.
             turned_rad = wrap_rad(here.in_odom.heading_rad - start.in_odom.heading_rad)
             for bearing_rad in part.bearings_rad:
                 reading = await self._read_through_holds(bearing_rad - turned_rad, start, here)
@@ -113,6 +114,7 @@ class Sweeper:
 
     async def _check_enough(self, readings: list[RangeReading]) -> None:
         failed = sum(reading.status in FAILED for reading in readings)
+        # Against the whole sweep, not the readings so far: a bad beginning may still come to a good sweep.
         if self.settings.readings - failed >= self.settings.readings_min_share * self.settings.readings:
             return
         await self.robot.rangefinder.switch_laser(on=False)
@@ -142,6 +144,7 @@ class Sweeper:
     async def _read(self, pan_rad: float, start: Odometry, here: Odometry) -> RangeReading:
         aim = await self.robot.pantilt.aim(pan_rad, self.settings.tilt_rad, timeout_s=self.settings.aim_timeout_s)
         shot = await self.robot.rangefinder.shoot(timeout_s=self.settings.shot_timeout_s)
+        # The last argument is where the robot stands now, seen from where it stood first.
         return reading_in_robot(self.mount, self.calibration, aim, shot, start.in_odom.inverse() @ here.in_odom)
 
 

@@ -42,6 +42,7 @@ def plan_sweep(
         start_rad = pan_min_rad + first * step_rad
         end_rad = pan_min_rad + (readings - 1) * step_rad
         if first:
+            # If the rest is within reach, just far enough for its last bearing: turns cost odometry (decision 8).
             turn_rad = end_rad - pan_max_rad if end_rad - start_rad <= reach_rad else start_rad - pan_min_rad
         count = min(readings - first, math.floor((pan_max_rad + turn_rad - start_rad) / step_rad + _EDGE_RAD) + 1)
         bearings = tuple(start_rad + index * step_rad for index in range(count))

@@ -89,6 +89,7 @@ class MissionUnderWay:
             MissionError: not armed, or another mission is under way.
         """
         row = MISSION_ROWS[type(mission)]
+        # The table refuses it as well, but does not know the next step.
         if self._current.mode is Mode.DISARMED:
             raise MissionError(f"cannot {mission.kind}: the robot is disarmed; arm it first")
         self._current.require(Occasion.START, f"start {mission.doing}")
@@ -114,6 +115,7 @@ class MissionUnderWay:
     def lease_expired(self, mission_id: int) -> None:
         """Stop the mission whose client fell silent; nothing happens if it has ended."""
         if self.is_busy and mission_id == self._number:
+            # Before the note: a stop waits for no note.
             self._stopper.robot.stop_now()
             self._note_cause("lease", {"mission_id": mission_id})
             self._fail(f"the lease of mission {mission_id} expired: its client fell silent")
@@ -141,6 +143,7 @@ class MissionUnderWay:
         except RobotdError as error:
             report.at(MissionPhase.FAILED, message=self._fail(str(error)))
         except Exception as error:
+            # A mistake of ours, after which nothing is known of the robot: the stop first, then the traceback.
             self._stopper.halt(Occasion.STOP, f"internal error: {error!r}")
             log.exception("mission %d", report.mission_id)
             report.at(MissionPhase.FAILED, message=self._current.reason)

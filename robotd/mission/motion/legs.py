@@ -58,6 +58,7 @@ async def translate_to(
         settings,
         hold,
         what="drive",
+        # Past the end it is over, however far: no set-point drives backwards.
         left=lambda now: max(0.0, distance_left_m(now.in_odom, x_m, y_m)),
         tolerance=settings.position_tolerance_m,
         twist=lambda now: leg_twist(now.in_odom, x_m, y_m, settings),
@@ -69,6 +70,7 @@ async def drive_leg(
 ) -> Odometry:
     """Drive one leg: rotate towards its end in the ``odom`` frame, then translate to it."""
     here = await next_odometry(drive, settings.silence_s)
+    # From so near the bearing to the end points anywhere, and the robot would turn for nothing.
     if math.hypot(x_m - here.in_odom.x_m, y_m - here.in_odom.y_m) <= settings.position_tolerance_m:
         return here
     await rotate_to(drive, math.atan2(y_m - here.in_odom.y_m, x_m - here.in_odom.x_m), settings, hold)
@@ -121,12 +123,14 @@ async def _approach(
     holds = hold.count if hold is not None else 0
     with drive.odometry.subscribe() as stream:
         async for now in _within(stream, settings.silence_s):
+            # Before anything is said to the base: it was stopped for the hold, and stays so.
             if hold is not None and hold.count != holds:
                 raise Interrupted
             remaining = left(now)
             if remaining <= tolerance:
                 drive.set_velocity(STANDSTILL, settings.setpoint_ttl_s)
                 return now
+            # Less than that is no progress: a base that creeps by ever smaller steps would put the stall off for ever.
             if remaining < nearest - tolerance / 4.0:
                 nearest, nearest_ns = remaining, now.time_ns
             elif now.time_ns - nearest_ns > settings.stall_s * NS_PER_S:

@@ -43,6 +43,8 @@ class DrivingSettings:
 
 def turn_rate_radps(error_rad: float, settings: DrivingSettings) -> float:
     """Return how fast to turn with ``error_rad`` still to go; fades out towards the goal."""
+    # The root is braking at constant deceleration, v^2 = 2 a s. Its slope has no end at the goal, so the last piece is
+    # proportional to what is left.
     remaining = abs(error_rad)
     rate = min(
         settings.turn_radps,

@@ -11,6 +11,7 @@ from robotd.mission.safety.modes import Occasion
 from robotd.mission.safety.stopper import Stopper
 
 _DEVICE_TIMEOUT_S = 5.0
+"""For all devices together; the client waits 10 s for its answer."""
 
 
 class Arming:
@@ -43,6 +44,7 @@ class Arming:
         except TimeoutError:
             self._stopper.halt(Occasion.STOP, "arming took too long")
             raise LinkTimeout(f"arming took longer than {_DEVICE_TIMEOUT_S:g} s") from None
+        # Cancellation, too: that is how a stop overtakes an arm, and some devices may be armed by then.
         except BaseException as error:
             self._stopper.halt(Occasion.STOP, f"arming failed: {str(error) or 'given up'}")
             raise
@@ -58,6 +60,7 @@ class Arming:
         """
         self._current.require(Occasion.ARM)
         absent = self._robot.absent
+        # The base is the first of them.
         devices = self._robot.devices if self._robot.has_base else self._robot.devices[1:]
         if any(device.name in absent for device in devices):
             raise MissionError(f"cannot arm: {', '.join(absent)} absent")
@@ -76,6 +79,7 @@ class Arming:
         halts = self._stopper.halts
         for device in devices:
             await device.arm()
+            # A stop came while this device answered: arming the next one would undo it.
             if self._stopper.halts != halts:
                 raise MissionError(f"stopped while arming: {self._current.reason}")
         if not all(device.status.armed for device in devices):

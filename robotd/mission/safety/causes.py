@@ -49,6 +49,7 @@ class Causes:
 
     def stalled(self, stall: Stall) -> None:
         """Take up that the event loop stood still; see :meth:`robotd.mission.safety.holding.Holding.stalled`."""
+        # In a replay no guard has stopped the base past the loop: there, this is the stop.
         if stall.was_stopped:
             self._stopper.robot.stop_now()
         self._journal.cause(now_ns(), STALL, msgspec.to_builtins(stall))

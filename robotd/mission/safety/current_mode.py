@@ -10,6 +10,7 @@ from robotd.core.text import printable
 from robotd.mission.safety.modes import Occasion, next_mode
 
 _LONGEST_REASON = 500
+"""Letters: reasons quote devices and clients, and stand in every status."""
 
 log = logging.getLogger(__name__)
 

@@ -65,6 +65,7 @@ class DeviceWatch:
         mode = self._stopper.mode
         if is_explained and not is_left_out:
             self._stopper.publish_status()
+        # Also while disarmed, where nothing is to be stopped: `arm` is refused until the fault is cleared.
         elif status.faults and mode is not Mode.FAULT:
             why = f": {status.detail}" if IMPLAUSIBLE in status.faults else ""
             self._fail(f"{status.name}: {', '.join(status.faults)}{why}", Occasion.FAULT)

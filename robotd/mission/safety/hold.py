@@ -19,10 +19,13 @@ T = TypeVar("T")
 
 TOO_BUSY = "this machine was too busy"
 HOLDS_A_MINUTE = 6
+"""One more within a minute ends the mission: what happens so often is no longer a moment's interruption."""
 WELL_S = 1.0
-"""A held mission goes on once the loop has turned for so long without a stall."""
+"""A held mission goes on once the loop has turned for so long without a stall: a machine that was too busy once is
+likely to be so again within the second (decision 22)."""
 _MINUTE_NS = 60 * NS_PER_S
 _LATELY_NS = 2 * NS_PER_S
+"""What goes wrong this soon after a stall is put down to it: some things show late, as that a deadman ran out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +80,7 @@ class Hold:
 
     def begin(self, cause: str, time_ns: int) -> bool:
         """Hold the mission; False if that happened too often within a minute, and it must end."""
+        # Only beginnings count: a stall within a hold prolongs it, and is not another.
         if self.cause is None and len(self._begun_ns) == HOLDS_A_MINUTE and time_ns - self._begun_ns[0] < _MINUTE_NS:
             return False
         if self.cause is None:
@@ -109,6 +113,7 @@ class Hold:
             try:
                 return await step()
             except FellSilent as error:
+                # Had a hold begun meanwhile, the silence would be of its stop, and the step only be taken again.
                 if self.count == count:
                     self.wait_for_base(error)
             except (Interrupted, RobotdError):

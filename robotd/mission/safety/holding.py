@@ -19,9 +19,11 @@ from robotd.mission.safety.modes import Occasion
 from robotd.mission.safety.stopper import Stopper
 
 _ARM_TIMEOUT_S = 5.0
+"""For all devices together, as for an arm that a client asks for."""
 _WAITED_FOR_S = 10.0
 """So long a base that is on the line but tells no odometry is waited for."""
 _DEADMAN = ("deadman",)
+"""The one fault that a hold forgives: our set-points stayed away, so the base stopped as it should."""
 _NEXT_STEP = "continue with: robotctl arm (after a fault robotctl clear first), then the mission again"
 
 _TOO_OFTEN = f"for the {HOLDS_A_MINUTE + 1}th time within a minute"
@@ -84,6 +86,7 @@ class Holding:
 
     def has_waited_enough(self) -> bool:
         """Whether the base has been silent for too long to be waited for, though its line is not lost."""
+        # Both: a hold may last long for another reason, and silence from before the hold is not waiting.
         return min(self.hold.lasted_s(now_ns()), self.base_silent_s()) > _WAITED_FOR_S
 
     def give_up(self) -> None:
@@ -138,6 +141,7 @@ class Holding:
 
     def _begin(self, cause: str, time_ns: int) -> bool:
         """Stop and hold; False if that was so too often, and the mission must end."""
+        # Before the stop: that disarms the devices, and what they say of it must find its explanation (`explains`).
         if not self.hold.begin(f"{cause}; it goes on by itself", time_ns):
             return False
         log.warning("held: %s", cause)

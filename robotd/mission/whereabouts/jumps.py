@@ -15,6 +15,7 @@ from robotd.mission.whereabouts.tie import Tie
 _ERROR_SHARE = 0.1
 """Of the way: wheels of a synchro-drive slip by a few per cent, on carpet by more."""
 _ERROR_RAD = 0.35
+"""20 degrees, whatever the way: a fix turned by more is another place."""
 
 
 class Jumps:
@@ -46,6 +47,7 @@ class Jumps:
         """
         if estimate.best is None or not estimate.final:
             return estimate
+        # After a jump the look that jumped is what the next must agree with, not the odometry that it contradicts.
         expected = self._found or believed
         if expected is None:
             return estimate

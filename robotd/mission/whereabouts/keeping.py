@@ -63,11 +63,13 @@ class Keeping:
                     await self.keep()
 
     def _is_due(self, place: MapInUse) -> bool:
+        # Not after each stop while it grows: the largest map takes a second of the disk each time (decision 25).
         return place.at_risk >= (EVERY_STOPS if self._host.mode is Mode.UNDER_WAY else 1)
 
     async def keep(self) -> str | None:
         """Bring what nobody saved of the map in use to the store; return why that cannot be done, None if it was."""
         async with self.turn:
+            # Again if the map grew while the disk was busy, or another one is in use by now.
             while (place := self._host.whereabouts.map_in_use) is not None and self._is_due(place):
                 self._tried = _state_of(place)
                 try:

@@ -74,6 +74,7 @@ class MapInUse:
 
     def saved(self, generation: int) -> None:
         """Take note that somebody saved it as it was after that change."""
+        # It may have been given up, as it was later still, while the disk wrote.
         self.settled_generation = max(self.settled_generation, generation)
         self.kept_version = None  # what is saved took its place
 

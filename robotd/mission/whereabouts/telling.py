@@ -32,6 +32,7 @@ class WhereaboutsTold:
         log.info("map %s (%s) is in use%s", place.name, place.map_id, in_place_of(self._whereabouts.map_in_use))
         self._whereabouts.adopt(place, tie)
         whole = place.whole(now_ns())
+        # The journal has the digest alone; the cells may be megabytes.
         self._publish(whole, map_result(whole, place.digest))
         if tie is None:
             self._publish(unlocalized(now_ns(), place.map_id))

@@ -20,6 +20,7 @@ from robotd.mission.whereabouts.tie import Tie
 
 _MOVED_M = 0.02
 _TURNED_RAD = 0.02
+"""Nearer than both to what was said last, a prediction is no news."""
 
 
 class Whereabouts:
