@@ -71,7 +71,7 @@ class ReadyMap:
     ) -> "ReadyMap":
         """Make a map ready. O(cells)."""
         ternary = TernaryMap.from_grid(grid)
-        unknown, error_radius_cells = settings.unknown, settings.range_error_m / ternary.spec.resolution_m
+        unknown, error_radius_cells = settings.unknown, settings.error_radius_cells(ternary.spec.resolution_m)
         obstacles = Obstacles.of_map(ternary, unknown, error_radius_cells, blocked_by=settings.blocked_by)
         prepared = PreparedMap.of(obstacles, ternary.spec, error_radius_cells)
         searched = SearchMap.of(obstacles, ternary.spec, error_radius_cells)

@@ -50,6 +50,16 @@ class LocalizationSettings:
         if self.conservative and self.heading_step_rad > math.pi / 4:
             raise ValueError(f"heading_step_rad must be at most pi / 4 where conservative, got {self.heading_step_rad}")
 
+    def error_radius_cells(self, resolution_m: float) -> float:
+        """Return the error radius in cells, as it was meant: 0.15 m on cells of 0.05 m is 3, not 2.9999999999999996.
+
+        A disk of three cells has 29, one of a hair less 25.
+
+        >>> LocalizationSettings(range_error_m=0.15).error_radius_cells(0.05)
+        3.0
+        """
+        return round(self.range_error_m / resolution_m, 9)
+
     def headings_near(self, heading_rad: float) -> tuple[float, ...]:
         """Return the headings to try when odometry says ``heading_rad``, in ascending order.
 

@@ -22,6 +22,8 @@ from robotd.localization.search.cell_disk import CellDisk
 
 _FEW_CELLS = 48 * 48
 """A window so small is looked at cell by cell."""
+_BLOCKS_REACH_CELLS = 8.0
+"""Farther outside the map the bounds of blocks tell no head from another (``BEYOND`` in ``planes_layout.h``)."""
 POSES_MAX = 1 << 18
 READINGS_MAX = int(np.iinfo(np.uint16).max)
 
@@ -32,6 +34,15 @@ class SearchMap:
 
     spec: GridSpec
     planes: Planes
+
+    @property
+    def has_bounds(self) -> bool:
+        """Whether the bounds of blocks hold: not where a head may be met farther outside than they reach.
+
+        Its body ends an error radius before it, so inside the map, and is not blocked by what lies outside.
+        """
+        ground = self.planes.ground
+        return not ground.outside_ends or ground.error_radius_cells <= _BLOCKS_REACH_CELLS
 
     @classmethod
     def of(cls, obstacles: Obstacles, spec: GridSpec, error_radius_cells: float) -> "SearchMap":
@@ -88,7 +99,7 @@ def best_poses(
         least_rank=least_rank,
         limit=limit,
         window=window,
-        by_blocks=window.size > _FEW_CELLS,
+        by_blocks=search_map.has_bounds and window.size > _FEW_CELLS,
         spans=spans,
         reach_cells=2 * (max(shape) + farthest_m / search_map.spec.resolution_m),
     )

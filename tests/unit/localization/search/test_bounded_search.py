@@ -126,3 +126,16 @@ def test_the_answer_is_that_of_counting_everything(
     ranks = counted(obstacles, radius, sweep, headings_rad)
     ranks[:, ~asked_for(prior, spec.shape)] = -1
     assert_is(found, ranks, slack, least_rank)
+
+
+@both
+def test_heads_farther_outside_than_blocks_see_are_found(kernels: Kernels) -> None:
+    """Where the outside ends beams, and they may end nine cells outside: no wall, a beam of 20 cells, ten poses."""
+    free = np.ones((10, 17), np.bool_)
+    obstacles = Obstacles(free, ~free, free, outside_blocks=True, outside_ends=True)
+    sweep = [RangeReading(0, 3.9375, ReadingStatus.OK, 10.0, origin_y_m=-1.2)]
+    with using(kernels), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(search, "_FEW_CELLS", 0)
+        ready = SearchMap.of(obstacles, GridSpec(RESOLUTION_M, 0.0, 0.0, free.shape), 9.0)
+        found = best_poses(ready, Readings.of(sweep), np.array([0.0]), slack=0)
+    assert (found.best_rank, len(found.poses)) == (1, 10)
