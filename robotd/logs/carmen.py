@@ -22,7 +22,7 @@ import numpy as np
 from robotd.core.errors import RecordingError
 from robotd.core.pose import Pose2
 from robotd.logs.bearings import Bearings, bearings_of
-from robotd.logs.mount import mount_of
+from robotd.logs.mount import is_upside_down, mount_of
 from robotd.logs.no_returns import code_from_m, named_limit_m
 from robotd.logs.numbers import DamagedLineError
 from robotd.logs.odometry import OdometryTrack, pose_between
@@ -161,7 +161,13 @@ def _log(reader: _Reader, placed: list[_Placed], file: str, fov_rad: float | Non
         for one, robot, limit_m in zip(placed, robots, limits_m, strict=True)
     )
     poses, why = _provenance(reader, placed, scans, frame)
-    assumed = (*_assumed(bearings.values()), *_steps(records), *_code(code_m), *_flat(records))
+    assumed = (
+        *_assumed(bearings.values()),
+        *_steps(records),
+        *_code(code_m),
+        *_flat(records),
+        *_flipped(reader, scanner),
+    )
     problems = tuple(sorted(reader.problems, key=lambda problem: problem.line))
     return RecordedLog(scans, min(code_m, *limits_m), poses, why, problems, reader.damaged_lines, assumed)
 
@@ -264,3 +270,10 @@ def _code(code_m: float) -> tuple[str, ...]:
 def _flat(records: list[LaserRecord]) -> tuple[str, ...]:
     nothing = all(not ((record.ranges_m > 0.0) & np.isfinite(record.ranges_m)).any() for record in records)
     return ("not one range in it is a distance",) if nothing else ()
+
+
+def _flipped(reader: _Reader, scanner: str) -> tuple[str, ...]:
+    words = (
+        "PARAM says that the scanner hangs upside down: its ranges are taken to be turned round already, as CARMEN does"
+    )
+    return (words,) if is_upside_down(reader.params, scanner) else ()

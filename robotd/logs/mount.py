@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 
 from robotd.core.angles import wrap_rad
 from robotd.core.pose import IDENTITY, Pose2
+from robotd.logs.bearings import names
 from robotd.logs.records import LaserRecord
 
 _SAME_M = 0.005
@@ -49,3 +50,13 @@ def _told(scans: Sequence[LaserRecord]) -> Pose2 | None:
 
 def _same(one: Pose2, other: Pose2) -> bool:
     return one.distance_m(other) <= _SAME_M and abs(wrap_rad(one.heading_rad - other.heading_rad)) <= _SAME_RAD
+
+
+def is_upside_down(params: Mapping[str, str], scanner: str) -> bool:
+    """Say whether a PARAM says that the scanner hangs upside down.
+
+    CARMEN's driver turns the ranges of such a scanner round before it publishes them. So they are those of any
+    other, and to turn them once more would mirror the building.
+    """
+    said = {params.get(name, "0").lower() for name in names(scanner, "flipped")}
+    return not said <= {"0", "off", "no", "false"}
