@@ -22,8 +22,6 @@ from robotd.localization.search.cell_disk import CellDisk
 
 _FEW_CELLS = 48 * 48
 """A window so small is looked at cell by cell."""
-_BLOCKS_REACH_CELLS = 8.0
-"""Farther outside the map the bounds of blocks tell no head from another (``BEYOND`` in ``planes_layout.h``)."""
 POSES_MAX = 1 << 18
 READINGS_MAX = int(np.iinfo(np.uint16).max)
 
@@ -37,12 +35,14 @@ class SearchMap:
 
     @property
     def has_bounds(self) -> bool:
-        """Whether the bounds of blocks hold: not where a head may be met farther outside than they reach.
+        """Whether the bounds of blocks hold: not where what lies outside both blocks and ends beams.
 
-        Its body ends an error radius before it, so inside the map, and is not blocked by what lies outside.
+        Then a head outside the map can be met as long as its body ends inside, an error radius before it. The planes of
+        blocks in C say of some such heads that they cannot (one single reading in a hundred, by trial), and a pose
+        would be lost; so that map, which is the paper's, is searched cell by cell.
         """
         ground = self.planes.ground
-        return not ground.outside_ends or ground.error_radius_cells <= _BLOCKS_REACH_CELLS
+        return not (ground.outside_ends and ground.outside_blocks)
 
     @classmethod
     def of(cls, obstacles: Obstacles, spec: GridSpec, error_radius_cells: float) -> "SearchMap":

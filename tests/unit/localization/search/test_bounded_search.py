@@ -130,12 +130,13 @@ def test_the_answer_is_that_of_counting_everything(
 
 @both
 def test_heads_farther_outside_than_blocks_see_are_found(kernels: Kernels) -> None:
-    """Where the outside ends beams, and they may end nine cells outside: no wall, a beam of 20 cells, ten poses."""
+    """Where the outside ends beams: no wall, a beam of 20 cells, and few poses from which it ends near the map."""
     free = np.ones((10, 17), np.bool_)
     obstacles = Obstacles(free, ~free, free, outside_blocks=True, outside_ends=True)
     sweep = [RangeReading(0, 3.9375, ReadingStatus.OK, 10.0, origin_y_m=-1.2)]
     with using(kernels), pytest.MonkeyPatch.context() as patch:
         patch.setattr(search, "_FEW_CELLS", 0)
-        ready = SearchMap.of(obstacles, GridSpec(RESOLUTION_M, 0.0, 0.0, free.shape), 9.0)
-        found = best_poses(ready, Readings.of(sweep), np.array([0.0]), slack=0)
-    assert (found.best_rank, len(found.poses)) == (1, 10)
+        for radius, poses in ((9.0, 10), (3.0, 0)):
+            ready = SearchMap.of(obstacles, GridSpec(RESOLUTION_M, 0.0, 0.0, free.shape), radius)
+            found = best_poses(ready, Readings.of(sweep), np.array([0.0]), slack=0)
+            assert (found.best_rank, len(found.poses)) == (min(1, poses), poses)
