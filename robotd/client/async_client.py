@@ -54,6 +54,7 @@ class AsyncSubscription:
         deadline_s = None if timeout_s is None else _now_s() + timeout_s
         while not self._items:
             left_s = None if deadline_s is None else max(0.0, deadline_s - _now_s())
+            # Rounded up: waits of 0 ms would spin through the last millisecond.
             if not await self._socket.poll(None if left_s is None else int(left_s * 1000) + 1):
                 return None
             self._items.extend(self._feed.accept(await self._socket.recv()))
@@ -127,7 +128,7 @@ class AsyncClient(Methods, Awaiting):
                     if concerned is not None:
                         yield concerned
                     elif lease.done():
-                        lease.result()
+                        lease.result()  # raises why it could be kept no longer
             finally:
                 lease.cancel()
                 await asyncio.gather(lease, return_exceptions=True)
@@ -194,6 +195,7 @@ class AsyncClient(Methods, Awaiting):
         """Subscribe, and go on only when it is certain that nothing published from now on is missed."""
         with self.subscribe(*topics, Topic.STATUS) as events:
             deadline_s = _now_s() + self._patience_s
+            # The daemon greets with the status last: when it is here, the subscriptions before it are in force.
             while not isinstance(event := await events.next(deadline_s - _now_s()), Status):
                 if event is None:
                     raise RequestTimeout(f"no status from {self._endpoints}")
@@ -202,7 +204,7 @@ class AsyncClient(Methods, Awaiting):
     async def _start_or_stop(self, mission: Mission, lease_s: float | None) -> MissionStarted:
         try:
             return await self.start(mission, lease_s)
-        except Exception:
+        except Exception:  # it was refused, or nobody answered: then the lease ends what may have begun
             raise
         except BaseException:  # interrupted: the mission may be under way though nobody heard its number
             await self._abandon()

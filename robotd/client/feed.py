@@ -33,12 +33,13 @@ class Feed:
             RemoteProtocolError: the frame is no message of ours.
         """
         message = decode_frame(frame)
+        # What was said before this reader came is no gap: the first message is the next one, whatever its number.
         place = self._places.setdefault(message.topic, _Place(message.session, message.seq - 1))
         items: list[Published | Gap] = []
         if place.session != message.session:
             items.append(Gap(message.topic, None))
         elif message.seq <= place.seq:
-            return []
+            return []  # a greeting for somebody who joined later, which reaches all
         elif message.seq > place.seq + 1:
             items.append(Gap(message.topic, message.seq - place.seq - 1))
         self._places[message.topic] = _Place(message.session, message.seq)

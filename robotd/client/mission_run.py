@@ -17,6 +17,7 @@ MissionEvent = MissionProgress | SweepProgress | SweepDone | PoseEstimate | Stat
 """What a mission's client is told; a status when the mission is held, and when it goes on."""
 
 _RENEWALS_PER_LEASE = 4
+"""Two in a row may be lost, and the third still comes in time."""
 _GRACE_S = 0.2
 """How long published messages may lag behind the reply that the mission is over."""
 

@@ -17,8 +17,9 @@ def connect_dealer(socket: "zmq.Socket[Any]", endpoints: Endpoints, *, retry_s: 
     """
     socket.setsockopt(zmq.IDENTITY, secrets.token_bytes(16))
     socket.setsockopt(zmq.IMMEDIATE, 1)
+    # With IMMEDIATE a send waits for a connection: no longer than until its repeat is due.
     socket.setsockopt(zmq.SNDTIMEO, max(1, int(retry_s * 1000)))
-    socket.setsockopt(zmq.LINGER, 0)
+    socket.setsockopt(zmq.LINGER, 0)  # a program that ends must not wait for a daemon that is gone
     socket.connect(endpoints.commands)
 
 

@@ -173,6 +173,7 @@ class Client(Methods, Blocking):
         """Subscribe, and go on only when it is certain that nothing published from now on is missed."""
         with self.subscribe(*topics, Topic.STATUS) as events:
             deadline_s = _now_s() + self._patience_s
+            # The daemon greets with the status last: when it is here, the subscriptions before it are in force.
             while not isinstance(event := events.next(deadline_s - _now_s()), Status):
                 if event is None:
                     raise RequestTimeout(f"no status from {self._endpoints}")
@@ -181,7 +182,7 @@ class Client(Methods, Blocking):
     def _start_or_stop(self, mission: Mission, lease_s: float | None) -> MissionStarted:
         try:
             return self.start(mission, lease_s)
-        except Exception:
+        except Exception:  # it was refused, or nobody answered: then the lease ends what may have begun
             raise
         except BaseException:  # interrupted: the mission may be under way though nobody heard its number
             self._abandon()
@@ -194,4 +195,5 @@ class Client(Methods, Blocking):
 
 
 def _ms(seconds: float) -> int:
+    # Rounded up: waits of 0 ms would spin through the last millisecond.
     return int(seconds * 1000) + 1

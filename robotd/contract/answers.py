@@ -19,7 +19,9 @@ class ErrorCode(enum.StrEnum):
     REFUSED = "refused"
     NOT_FOUND = "not_found"
     BUSY = "busy"
+    """Too much is under way; nothing was done, and a repeat may find room."""
     INTERNAL = "internal"
+    """A mistake of ours; the log has its traceback."""
 
 
 @dataclass(frozen=True, slots=True)

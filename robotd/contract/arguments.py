@@ -10,9 +10,12 @@ from robotd.core.pose import Pose2
 
 Coordinate = Annotated[float, Meta(ge=-100_000.0, le=100_000.0)]
 Heading = Annotated[float, Meta(ge=-2.0 * math.pi, le=2.0 * math.pi)]
+"""A whole turn either way: clients count from -pi to pi or from 0 to 2 pi, and who takes it wraps it."""
 LeaseTime = Annotated[float, Meta(ge=0.1, le=10.0)]
+# \A and \Z: with ^ and $ a newline at the end would pass, and a name becomes a directory.
 MapName = Annotated[str, Meta(pattern=r"\A[A-Za-z0-9][A-Za-z0-9._-]{0,63}\Z")]
 Number = Annotated[int, Meta(ge=0, le=2**53)]
+"""Up to which whole numbers are exact in languages that have doubles alone."""
 Stops = Annotated[tuple[tuple[Coordinate, Coordinate], ...], Meta(max_length=1000)]
 
 

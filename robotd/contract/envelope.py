@@ -24,6 +24,7 @@ from robotd.core.text import printable
 
 _MAX_DEPTH = 6
 _MAX_ITEMS = 2048
+"""Of a list; the longest that a request needs are the 1000 stops of a map."""
 _MAX_KEYS = 64
 _MAX_ID = 2**63 - 1
 _LONGEST_MESSAGE = 1000
@@ -64,6 +65,7 @@ def decode_request(data: bytes, max_bytes: int) -> NumberedRequest | BadRequest:
     try:
         fields = _unpack(data, max_bytes)
         request_id = _id_of(fields)
+        # After the number: so what is refused from here on names the request that it answers.
         _check(fields, _MAX_DEPTH)
         request = _request_of(fields)
     except ServerError as error:
@@ -147,6 +149,7 @@ def _unpack(data: bytes, max_bytes: int) -> dict[str, Any]:
             data,
             object_pairs_hook=_without_duplicates,
             max_str_len=max_bytes,
+            # No argument is of these two types. A stop whose reason is bytes is recognized elsewhere.
             max_bin_len=0,
             max_ext_len=0,
             max_array_len=_MAX_ITEMS,
@@ -179,6 +182,7 @@ def _check(value: object, depth: int) -> None:
 
 def _id_of(fields: dict[str, Any]) -> int | None:
     request_id = fields.get("id")
+    # Not isinstance: to Python True is a whole number, on the wire it is none.
     return request_id if type(request_id) is int and 0 <= request_id <= _MAX_ID else None
 
 

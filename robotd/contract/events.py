@@ -24,8 +24,11 @@ class Status:
     """Why it is in this mode, for people."""
     devices: tuple[DeviceStatus, ...]
     battery_v: float | None
+    """Of the base; None if there is none to talk to, or it has not told yet."""
     bumpers_rad: tuple[float, ...]
+    """Directions of the pressed bumpers, robot frame."""
     mission_id: int | None
+    """Of the mission under way; None between missions, so a client sees that its own is over."""
     map_id: str | None
     map_name: str | None
     recording: str | None
@@ -49,6 +52,7 @@ class SweepProgress:
     hits: int
     misses: int
     rejected: int
+    """Neither: too near, weak, saturated, silent and the like."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.grid_spec import GridSpec
 
 _INDEX = np.dtype("<u4")
+"""Wide enough: the largest map has 2^26 cells."""
 
 
 class MapPayload(msgspec.Struct, frozen=True):

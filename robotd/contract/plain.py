@@ -20,6 +20,7 @@ def to_plain(value: object) -> Any:
     A whole map is compressed, which takes milliseconds: do it off the loop.
     """
     shown = pack_map(value) if isinstance(value, MapChanged) else value
+    # msgspec would write bytes as base64, for JSON's sake; msgpack has a type for them.
     return msgspec.to_builtins(shown, builtin_types=(bytes,), enc_hook=_number)
 
 

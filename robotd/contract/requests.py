@@ -70,6 +70,7 @@ class Stop(Request[Done], frozen=True):
         text = (
             printable_bytes(reason) if isinstance(reason, bytes) else printable("" if reason is None else str(reason))
         )
+        # No reason is no reason to refuse: a stop is obeyed, whatever it says for itself.
         return cls(text) if text.strip() else cls()
 
 
@@ -89,6 +90,7 @@ class Renew(Request[Renewed], frozen=True):
 class MapSave(Request[MapEntryInfo], frozen=True):
     """Store the map in use, under its own name or another."""
 
+    # Longer than a writer waits for its turn (maps/lock.py) and the disk takes after that.
     cmd, result, deadline_s = "map_save", MapEntryInfo, 60.0
     name: MapName | None = None
 

@@ -86,6 +86,7 @@ def _is_almost_a_word(name: bytes) -> bool:
     """Return whether a command is a stop, or does not exist and has one letter wrong or other words around."""
     if name in _OTHERS:
         return False
+    # With `record` in it, it is `record_stop` written wrongly, which ends no motion.
     return any(word in name or _one_letter_off(name, word) for word in _WORDS) and b"record" not in name
 
 

@@ -17,6 +17,7 @@ from robotd.contract.plain import VERSION, from_plain, to_plain
 from robotd.core.errors import RemoteProtocolError
 from robotd.core.pose import Odometry
 
+# Ends the prefix, so that a topic may be named as another one begins.
 _END_OF_TOPIC = b"\0"
 
 

@@ -154,6 +154,7 @@ def _strictly(kind: type[K], content: object) -> K:
         TypeError: there is a field too many.
         ValueError: one is missing, or of another type.
     """
+    # Never from a file: it would be written again in place of what the entry says.
     names = {field.name for field in fields(kind)} - {"encoded"}
     if isinstance(content, dict) and not content.keys() <= names:
         raise TypeError(f"expected {', '.join(sorted(names))}, got {str(sorted(content.keys() - names))[:80]}")

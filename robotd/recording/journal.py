@@ -41,6 +41,7 @@ class Journal(ABC):
 
     def bytes_passed(self, device: str, direction: Direction, time_ns: int, data: bytes) -> None:
         """Note bytes that were read from, or handed to, the line of ``device``."""
+        # A copy, if it is a buffer that somebody fills again.
         self._note_in_turn(BytesEntry(time_ns, device, direction, bytes(data)))
 
     def line_changed(self, device: str, time_ns: int, *, up: bool) -> None:

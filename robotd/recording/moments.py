@@ -59,6 +59,7 @@ class RecordedTimeLoop(VirtualClockLoop):
             heapq.heappop(self._timers)
         due_ns = round(self._timers[0][0] * NS_PER_S) if self._timers else None
         next_ns = self._next_ns()
+        # A timer before the next moment waits for it: the living loop did nothing in between, or it would be recorded.
         if due_ns is not None and (due_ns <= self._now_ns or next_ns is None):
             self._now_ns = max(self._now_ns, due_ns)
             self.call_soon(_fire, heapq.heappop(self._timers)[2])

@@ -17,6 +17,7 @@ def make_place(directory: Path, name: str, kept_out: Path) -> Path:
     Raises:
         RecordingError: the file lies elsewhere, if only through a link; or the directories cannot be made.
     """
+    # `..` is refused even where it stays below: behind a link it leads elsewhere than it reads.
     if "\0" in name or ".." in Path(name).parts:
         raise _elsewhere(directory, name)
     root, file = _real(directory), _real(directory / name)

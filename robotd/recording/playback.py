@@ -266,6 +266,7 @@ class RecordedCompute:
         try:
             result = function(*args)
         except Exception:
+            # The first recordings did not note that a job failed: to wait would be to wait for their end.
             if not self._is_first_format:
                 await self._wait(name)
             raise

@@ -17,6 +17,7 @@ from robotd.recording.journal import Journal
 from robotd.recording.recorder import Recorder
 
 _ENTRY_OVERHEAD_BYTES = 160
+"""What an entry takes beside its message, roughly: a flood of tiny entries is a flood."""
 
 log = logging.getLogger(__name__)
 

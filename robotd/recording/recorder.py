@@ -21,9 +21,11 @@ from robotd.recording.entries import Entry, RecordingHeader
 from robotd.recording.journal import Journal
 
 FLUSH_S = 1.0
+"""At most this much is lost, whatever ends the daemon."""
 CHUNK_BYTES = 64 * 1024
 _CHUNK_FILL = CHUNK_BYTES - 4096  # mcap ends a chunk with the message that exceeds this
 _QUEUE_BYTES = 8 * 1024 * 1024
+"""How far the disk may fall behind, for each source; beyond, the recording ends and the robot goes on."""
 _ENTRY_OVERHEAD_BYTES = 128
 
 _log = logging.getLogger(__name__)
@@ -54,6 +56,7 @@ class Recorder(Journal):
         self._closing = False
         self._changed = threading.Condition()
         try:
+            # x: a recording never takes the place of a file.
             file = path.open("xb")
         except OSError as error:
             raise RecordingError(f"cannot record to {path}: {error.strerror}") from error
@@ -80,6 +83,7 @@ class Recorder(Journal):
             self._queue.append(message)
             if not self._budgets.use(source_of(entry), len(message[2]) + _ENTRY_OVERHEAD_BYTES):
                 self._fail(f"the disk does not keep up with {source_of(entry)}")
+            # Not for each entry: the thread comes once a second by itself.
             if self._budgets.used_bytes > CHUNK_BYTES or self._closing:
                 self._changed.notify()
 

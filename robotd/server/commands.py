@@ -70,11 +70,13 @@ class Commands:
         reply = self._answer_at_once(numbered, letter, is_stop=is_stop)
         if reply is not None:
             await self._router.answer(letter.route, reply)
+        # A repeat of what is under way is served by the one reply to come; a stop is obeyed and waited for each time.
         elif is_stop or not self._replies.is_under_way((letter.identity, numbered.id)):
             self._begin(numbered, letter, group)
 
     def _obey(self, stop: Stop | Disarm, letter: Letter) -> None:
         """Stop the robot, whatever is to be answered."""
+        # An arm under way would go on to the next device after the stop.
         for task, other in self._pending.items():
             if isinstance(other, Arm):
                 self._overtaken.add(task)
@@ -91,6 +93,7 @@ class Commands:
         if not is_stop and self._replies.is_under_way(asker):
             return None
         given = None if is_stop else self._replies.given(asker)
+        # Stops have room of their own: requests that take long must not keep one from its answer.
         if (
             given is not None
             or sum(isinstance(one, STOPPING) is is_stop for one in self._pending.values()) < self._max_pending
@@ -116,6 +119,7 @@ class Commands:
         try:
             reply = await self._carry_out(numbered, letter)
         finally:
+            # What was seen then is not what is now, so a repeat looks again; and a stop is never answered from memory.
             is_worth_it = not (numbered.request.only_looks or isinstance(numbered.request, STOPPING))
             self._replies.end(asker, reply if is_worth_it else None)
         await self._router.answer(letter.route, reply)

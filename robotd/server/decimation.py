@@ -19,6 +19,7 @@ class Decimator:
         if not is_routine(event):
             return True
         before_ns = self._passed_ns.get(type(event))
+        # An event older than the last passes: one time stamp far ahead would else silence its type for as long.
         if before_ns is not None and 0 <= event.time_ns - before_ns < self._period_ns:
             return False
         self._passed_ns[type(event)] = event.time_ns

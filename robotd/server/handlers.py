@@ -17,7 +17,7 @@ from robotd.server.outcomes import Outcomes
 _CODES: tuple[tuple[type[RobotdError], ErrorCode], ...] = (
     (MapError, ErrorCode.NOT_FOUND),
     (ConfigError, ErrorCode.BAD_ARGUMENT),
-    (RobotdError, ErrorCode.REFUSED),
+    (RobotdError, ErrorCode.REFUSED),  # last, for all the others are of its kind too
 )
 
 
@@ -72,6 +72,7 @@ class Handlers:
     async def _renew(self, request: Renew) -> Renewed:
         await asyncio.sleep(0)  # what was published before the request came has then been noted
         progress = self._outcomes.latest(request.mission_id)
+        # When it is over there is no lease left to renew: to refuse would hide from the client how it ended.
         if progress is None or not progress.is_last:
             await self._control.perform(request)
         return Renewed(progress)

@@ -36,6 +36,7 @@ class Notifier:
 
     def status(self, text: str) -> None:
         """Say in a line, for ``systemctl status``, what the daemon is at."""
+        # One line: the next would be another assignment to the service manager.
         self.send(f"STATUS={text.splitlines()[0] if text else ''}")
 
     def stopping(self) -> None:
@@ -65,6 +66,7 @@ def watchdog_s(environment: Mapping[str, str] = os.environ) -> float | None:
     """Return within which time systemd wants to be fed, or None if it does not."""
     try:
         wanted_us = int(environment.get("WATCHDOG_USEC", "0"))
+        # The variables may have been meant for the process that started us.
         for_pid = int(environment.get("WATCHDOG_PID") or os.getpid())
     except ValueError:
         return None

@@ -25,6 +25,7 @@ def lock_directory(directory: Path) -> Iterator[None]:
     """
     try:
         directory.mkdir(mode=0o750, parents=True, exist_ok=True)
+        # O_NOFOLLOW: what lies there may be a link, and the file behind it would be emptied.
         descriptor = os.open(directory / _NAME, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, _MODE)
     except OSError as error:
         raise _unusable(directory, error) from error

@@ -51,6 +51,7 @@ class _Relay(logging.Handler):
 
 def _shown(message: str) -> str:
     """Return a message as printable lines, within bounds."""
+    # Cut twice: before, so that no time goes into what is cut anyway; after, since escapes make it longer.
     return printable_lines(message[:_LONGEST_MESSAGE])[:_LONGEST_MESSAGE]
 
 

@@ -6,6 +6,7 @@ from collections import deque
 from robotd.contract.events import MapChanged
 
 _DEPTH = 64
+"""Changes; a reader that needs more is served sooner by the whole map."""
 
 
 class MapQueue:
@@ -39,6 +40,6 @@ class MapQueue:
             await self._ready.wait()
         if self._wants_whole:
             self._wants_whole = False
-            self._changes.clear()
+            self._changes.clear()  # they are in the map that is taken now
             return None
         return self._changes.popleft()

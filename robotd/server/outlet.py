@@ -12,8 +12,11 @@ from robotd.contract.topics import EVENTS, Published, Topic, encode_frame, to_wi
 from robotd.core.log_limit import LogLimit
 
 _JOIN = b"\x01"
+"""How a subscription begins on an XPUB socket; a zero ends one."""
 BETWEEN_GREETINGS_S = 0.02
+"""A greeting reaches all readers, so those who join within this are greeted together."""
 _MOST_JOINS = 1000
+"""At a time: who subscribes without end must not keep the loop."""
 _AFTER_ERROR_S = 0.1
 """A socket that fails again and again must not keep the loop busy."""
 

@@ -40,6 +40,7 @@ class Publisher:
     async def run(self) -> None:
         """Publish until cancelled."""
         lines: asyncio.Queue[LogEntry] = asyncio.Queue(DEPTH)
+        # A full queue drops lines: what logs must not wait for those who read.
         with relay_log(lambda line: None if lines.full() else lines.put_nowait(line)):
             async with asyncio.TaskGroup() as group:
                 group.create_task(self._follow_events())
@@ -51,6 +52,7 @@ class Publisher:
     async def _follow_events(self) -> NoReturn:
         decimator = Decimator(self._routine_hz)
         try:
+            # From the first moment on there is a status for the greeting, which clients take as the sign to begin.
             status = await self._control.perform(GetStatus())
             await self._publish(status)
         except Exception as error:  # the next one comes within a second

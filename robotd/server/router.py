@@ -45,6 +45,7 @@ class Router:
         """Wait for the next request."""
         while True:
             try:
+                # Frames, not bytes: they alone know which process they came from.
                 frames = await self._socket.recv_multipart(copy=False)
             except zmq.ZMQError as error:
                 await self._complain("a request could not be received", error)

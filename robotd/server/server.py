@@ -26,9 +26,11 @@ from robotd.server.publisher import DEPTH, Publisher
 from robotd.server.router import Router
 
 _SOCKET_MODE = 0o770
+"""Connecting takes the right to write: the daemon's user and group have it, others do not."""
 _ROOM_TO_REFUSE = 4
 """A request up to this many times too large is answered with ``too_large``; beyond, libzmq hangs up on the client."""
 _LONGEST_SUBSCRIPTION = 256
+"""In bytes, far more than any topic: it is all that readers ever send."""
 _MOST = 1_000_000
 """Longest queue, in messages."""
 _LINGER_MS = 100
@@ -119,7 +121,8 @@ class Server:
         context = zmq.asyncio.Context()
         sockets = context.socket(zmq.ROUTER), context.socket(zmq.XPUB), context.socket(zmq.XPUB)
         try:
-            self._remove_sockets()
+            self._remove_sockets()  # of a daemon that was killed: by the lock no other serves from them
+            # Options before bind: they hold for connections made afterwards.
             self._set_up(*sockets)
             for socket, path in zip(sockets, self._endpoints.paths, strict=True):
                 _bind(socket, path)
@@ -138,6 +141,7 @@ class Server:
         commands.setsockopt(zmq.RCVHWM, settings.max_pending_requests)
         commands.setsockopt(zmq.ROUTER_HANDOVER, 1)  # a client that reconnects keeps its identity
         for socket, queue in ((state, settings.state_queue), (maps, settings.map_queue)):
+            # Else only the first subscription to a topic is heard of, and later readers would not be greeted.
             socket.setsockopt(zmq.XPUB_VERBOSE, 1)
             socket.setsockopt(zmq.MAXMSGSIZE, _LONGEST_SUBSCRIPTION)
             socket.setsockopt(zmq.SNDHWM, queue)
