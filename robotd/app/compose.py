@@ -76,6 +76,7 @@ def compose(
     supervisor = Supervisor(
         MissionContext(robot, settings, noted, news.publish),
         news,
+        # A recording that ended by itself is none: its file is not written any more.
         lambda: None if journal.path is None or journal.error is not None else str(journal.path),
         battery_min_v=config.drive.battery_min_v,
         note_cause=lambda name, arguments: journal.cause(now_ns(), name, arguments),

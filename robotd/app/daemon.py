@@ -31,7 +31,9 @@ from robotd.server.health import Notifier, feed_watchdog, watchdog_s
 from robotd.server.server import Server
 
 EXIT_CONFIG = 78
+"""EX_CONFIG of sysexits.h: the service manager does not try again, for that makes no file better."""
 EXIT_INTERRUPTED = 130
+"""What a shell says of a program that SIGINT ended."""
 
 log = logging.getLogger(__name__)
 
@@ -102,7 +104,7 @@ async def run(config: Config) -> int:
         finally:
             try:
                 await daemon.control.keeping.keep_last()
-            finally:
+            finally:  # a disk that kept no map may still end a recording
                 await daemon.control.perform(RecordStop())
     return ending.exit_code
 

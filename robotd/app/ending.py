@@ -22,6 +22,7 @@ _OTHERS = (
 """By themselves they would end the program at once, or (Ctrl-Z) keep it from ever saying a word again. Signals of a
 broken program (SIGSEGV and its like) are left alone: no Python runs after them."""
 _SIGNALLED = 128
+"""What shells add to the number of a signal that ended a program."""
 
 
 class Ending:

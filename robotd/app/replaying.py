@@ -34,7 +34,9 @@ from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import Recording, read
 
 _NO_LIMIT = 2**62
+"""Of the replay's own journal: the comparison needs all of it, and a recording has an end."""
 _VERSION_MAX = 40
+"""Letters: it is what a file says of itself."""
 DEVICES = ("drive", "pantilt", "rangefinder")
 
 
@@ -132,6 +134,7 @@ async def _play(recording: Recording, config: Config, journal: PrerollJournal) -
         daemon.causes.repeat(entry.name, entry.arguments)
 
     playback = Playback(recording, carry_out, take_up)
+    # Before the daemon is made: a silence asks when it begins whether it is led.
     attention().are_led = recording.notes_silences
     connects = {device: playback.line(device).connect for device in DEVICES}
     daemon = compose(config, connects, playback.compute, journal, leases_end_by_causes=recording.notes_causes)

@@ -20,7 +20,8 @@ from robotd.core.attention import attention
 from robotd.hardware.devices.device import PAST_LOOP_S
 
 STALL_S = 0.2
-"""So long without a turn of the loop is a stall."""
+"""So long without a turn of the loop is a stall: half of what a set-point lives by default, so as to be before
+the deadman."""
 LATE_S = 0.1
 """So late a beat is noted, so that no partner is taken for silent whom we did not hear."""
 _BEAT_EVERY_S = STALL_S / 4
@@ -104,6 +105,7 @@ class _Guard:
         while not self._is_ending:
             if not self._beaten.wait(STALL_S):
                 has_stopped = self._stop(0)
+                # After the stop: to walk the stack takes time that a stop has not.
                 self._stuck_in = self._where()
                 if has_stopped:
                     self._has_stopped.set()

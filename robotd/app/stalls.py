@@ -10,6 +10,7 @@ from robotd.core.log import log_place
 from robotd.mission.safety.hold import WELL_S, Stall
 
 _LOOK_EVERY_S = 0.1
+"""Often enough for a hold of a second; what it finds is noted, so a replay does not depend on it."""
 
 log = logging.getLogger(__name__)
 

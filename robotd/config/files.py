@@ -51,6 +51,7 @@ def effective_text(config: Config) -> str:
 def _prepare(table: dict[str, Any], problems: Problems, directory: Path) -> None:
     locate(table, problems, directory)
     section = table.get("server", {})
+    # After `locate`, for what must fit into a socket's address is the path in full.
     written = section.get("runtime_dir", runtime_dir()) if isinstance(section, dict) else ""
     try:
         Endpoints(Path(written if isinstance(written, str) else ""))

@@ -31,6 +31,7 @@ def key_lines(text: str) -> dict[KeyPath, int]:
             continue
         path = table + _path(statement)
         for length in range(len(table) + 1, len(path) + 1):
+            # A dotted key makes the tables before its last part; each stands where it was named first.
             lines.setdefault(path[:length], number)
     return lines
 

@@ -21,6 +21,7 @@ def locate(table: dict[str, Any], problems: Problems, directory: Path) -> None:
     """
     for section, key in (*DIRECTORIES, *PORTS):
         written = table[section].get(key) if isinstance(table.get(section), dict) else None
+        # What is no path is left to the reader, which says what was expected.
         if not isinstance(written, str) or not written or "\0" in written:
             continue
         try:

@@ -180,6 +180,7 @@ def _read_chosen(choice: ChosenBy, value: object, path: KeyPath, problems: Probl
     if not isinstance(value, dict):
         raise _bad(path, problems, f"expected a table, got {_describe(value)}")
     word = value.get(choice.key, getattr(default, choice.key))
+    # With a word that chooses nothing the rest is judged as the default's kind: more than one mistake may be found.
     kind = choice.kind(word) or type(default)
     own = {item.name for item in dataclasses.fields(kind)}
     table: Table = {}
@@ -225,8 +226,10 @@ def _read_enum(kind: type[enum.Enum], value: object, path: KeyPath, problems: Pr
 
 
 def _read_plain(kind: type[Any], value: object, path: KeyPath, problems: Problems) -> Any:
+    # TOML tells 1 from 1.0; people do not.
     if kind is float and type(value) is int:
         value = float(value)
+    # Not isinstance: to Python true is a whole number.
     if type(value) is not kind:
         raise _bad(path, problems, f"expected {_EXPECTED[kind]}, got {_describe(value)}")
     if isinstance(value, float) and not math.isfinite(value):

@@ -143,6 +143,7 @@ def _check_cells(grid: GridSettings, planning: PlanningSettings) -> None:
 
 
 def _check_places(maps: MapsSettings, recording: RecordingSettings) -> None:
+    # By name alone, links not followed: a replay reads the configuration of another machine.
     kept, recorded = (PurePath(os.path.normpath(section.dir)) for section in (maps, recording))
     if kept.is_relative_to(recorded) or recorded.is_relative_to(kept):
         raise ValueError(

@@ -34,11 +34,12 @@ def write_value(value: object) -> str:
     match value:
         case enum.Enum():
             return write_value(value.value)
-        case bool():
+        case bool():  # before int: to Python it is one
             return "true" if value else "false"
         case int() | float():
             return repr(value)
         case str():
+            # A string of JSON is one of TOML, but for DEL, which TOML wants escaped.
             return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
         case tuple():
             return f"[{', '.join(map(write_value, value))}]"

@@ -13,6 +13,7 @@ def wrap_rad(angle_rad: float) -> float:
     >>> wrap_rad(0.5)
     0.5
     """
+    # As it is where it can be: the remainder would cost the last places.
     if -math.pi <= angle_rad < math.pi:
         return angle_rad
     return (angle_rad + math.pi) % FULL_TURN_RAD - math.pi

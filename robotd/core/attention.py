@@ -15,6 +15,7 @@ from typing import Protocol
 from weakref import WeakKeyDictionary
 
 _OF_LOOP: "WeakKeyDictionary[asyncio.AbstractEventLoop, Attention]" = WeakKeyDictionary()
+"""One for each loop, gone with it: in one process tests and replays run many, and share nothing."""
 
 
 class Awaited(Protocol):

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 NS_PER_S = 1_000_000_000
 _STUCK_AFTER_S = 10.0
+"""Real time for a descriptor to become ready when no timer is set; after it, a program that hangs is an error."""
 
 T = TypeVar("T")
 
@@ -85,6 +86,7 @@ class VirtualClockLoop(TurnCountingLoop):
         return self._now_ns / NS_PER_S
 
     def _jump(self, by_s: float) -> None:
+        # At least one: a wait that rounds to nothing would be asked for again without end.
         self._now_ns += max(1, round(by_s * NS_PER_S))
 
     def run_in_executor(self, executor: Any, func: Callable[..., T], *args: Any) -> asyncio.Future[T]:  # type: ignore[override]  # typeshed has the loop's TypeVarTuple here

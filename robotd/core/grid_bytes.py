@@ -48,6 +48,7 @@ def unpacked_cells(packed: bytes, spec: GridSpec) -> NDArray[np.uint8]:
     expected = spec.rows * spec.cols
     unpacking = zlib.decompressobj()
     try:
+        # One more shows that there is more, without unpacking it.
         data = unpacking.decompress(packed, expected + 1)
     except zlib.error as error:
         raise ValueError(f"cells cannot be unpacked: {error}") from error
@@ -59,6 +60,7 @@ def unpacked_cells(packed: bytes, spec: GridSpec) -> NDArray[np.uint8]:
 
 def grid_digest(spec: GridSpec, cells: NDArray[np.uint8]) -> str:
     """Return the SHA-256 of placement and cells, in hexadecimal: equal exactly if the maps are."""
+    # !r: the shortest text that reads back to the same float, so equal texts are equal placements.
     place = f"{spec.resolution_m!r} {spec.origin_x_m!r} {spec.origin_y_m!r} {spec.rows} {spec.cols}\n"
     found = hashlib.sha256(place.encode())
     found.update(cell_bytes(cells))

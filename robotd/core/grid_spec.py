@@ -81,6 +81,7 @@ class GridSpec:
 
     def flat_at(self, points_m: NDArray[np.float64]) -> NDArray[np.intp]:
         """Return flat indices ``row * cols + col`` of map-frame points, -1 for those outside the grid."""
+        # First, for a point that is far enough away has no whole number of a cell.
         positions = np.clip(self.positions_at(points_m), -1.0, np.array(self.shape))
         rows, cols = np.floor(positions).astype(np.intp).T
         inside = (rows >= 0) & (rows < self.rows) & (cols >= 0) & (cols < self.cols)

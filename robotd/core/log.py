@@ -14,6 +14,7 @@ from robotd.core.text import printable
 
 LONGEST_LINE = 2000
 MOST_LINES = 200
+"""Of one record: a traceback may be as deep as the recursion that it tells of."""
 CONTINUED = "  | "
 
 

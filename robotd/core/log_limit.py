@@ -17,6 +17,7 @@ class LogLimit:
         """Return the line to log, or None if it is one too many."""
         at_ns = now_ns()
         if self._looked_ns is not None:
+            # A quiet while saves up lines again, but never more than a burst.
             self._saved = min(self._burst, self._saved + (at_ns - self._looked_ns) / self._every_ns)
         self._looked_ns = at_ns
         if self._saved < 1.0:

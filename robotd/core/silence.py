@@ -80,6 +80,7 @@ async def within(
     seconds: float, *, of: str, begins: bool = True, counts_stalls: bool = False
 ) -> AsyncIterator[Silence]:
     """Give the block so long from now or the first renewal on, else TimeoutError; see :class:`Silence`."""
+    # Never due by itself: our own timer decides, which knows of stalls and can be led.
     async with asyncio.timeout(None) as limit:
         fell_silent = partial(_end_now, limit)
         silence = Silence(seconds, fell_silent, of=of, begins=begins, counts_stalls=counts_stalls)

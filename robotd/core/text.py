@@ -18,6 +18,7 @@ def printable(text: str, longest: int = LONGEST) -> str:
     >>> printable("a" * 50_000, 10)
     'aaaaaaa...'
     """
+    # Cut before anything looks at it: fifty thousand letters cost no more than few. One more shows that it is cut.
     head = text[: longest + 1]
     if not head.isprintable():
         head = "".join(letter if letter.isprintable() else _escaped(letter) for letter in head)
@@ -41,6 +42,7 @@ def printable_bytes(data: bytes, longest: int = LONGEST) -> str:
     >>> printable_bytes(b"caf\xc3\xa9 \xff")
     'café \\xff'
     """
+    # A letter of UTF-8 has four bytes at most.
     return printable(data[: 4 * longest + 4].decode("utf-8", "backslashreplace"), longest)
 
 

@@ -26,6 +26,7 @@ def write_synced(path: Path, data: Buffer) -> None:
     try:
         rest = memoryview(data)
         while rest:
+            # The disk may take a part alone, as it does when it is nearly full.
             rest = rest[os.write(descriptor, rest) :]
         os.fsync(descriptor)
     finally:
@@ -48,6 +49,7 @@ def make_directory(path: Path) -> None:
     if path.parent != path:
         make_directory(path.parent)
     os.mkdir(path, _LISTABLE_BY_ALL)  # noqa: PTH102  # every change of the disk goes through os, for the fault tests
+    # Its own name, too, or power that fails would take all maps in it along.
     sync_directory(path.parent)
 
 
@@ -62,7 +64,7 @@ def publish_directory(temporary: Path, final: Path, files: Mapping[str, Buffer])
     make_directory(temporary)
     for name, data in files.items():
         write_synced(temporary / name, data)
-    sync_directory(temporary)
+    sync_directory(temporary)  # before its name: the disk may write the two in another order than we did
     os.rename(temporary, final)  # noqa: PTH104  # every change of the disk goes through os, for the fault tests
     sync_directory(final.parent)
 
@@ -84,10 +86,12 @@ def replace_file(temporary: Path, final: Path, data: Buffer) -> None:
 
 def withdraw_directory(path: Path, bin_path: Path) -> None:
     """Take a directory out of its place in one step, then remove it bit by bit; raises OSError."""
+    # First the name: a reader finds it whole or not at all, never half removed.
     os.rename(path, bin_path)  # noqa: PTH104  # every change of the disk goes through os, for the fault tests
     remove_leftover(bin_path)
 
 
 def remove_leftover(path: Path) -> None:
     """Remove a directory that is not in use, as far as that is possible."""
+    # What will not go does no harm: temporary places are sought round it.
     shutil.rmtree(path, ignore_errors=True)

@@ -39,6 +39,7 @@ def _locked(root: Path, wait_s: float) -> int:
     for _ in range(max(1, round(wait_s / _PAUSE_S))):
         descriptor = _opened(root)
         try:
+            # Again and again rather than once and waiting: a flock that waits cannot be given up.
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if _is_still(root / _NAME, descriptor):
                 return descriptor
@@ -63,6 +64,7 @@ def _opened(root: Path) -> int:
     with contextlib.suppress(PermissionError):  # it is another writer's file, who has seen to it
         if os.geteuid() == 0:  # a save by root must not lock out the daemon, whose directory it is
             os.fchown(descriptor, place.st_uid, place.st_gid)
+        # Shifted by one a right to write is one to read: the file is opened for both.
         os.fchmod(descriptor, 0o600 | writers | writers << 1)
     return descriptor
 

@@ -86,6 +86,7 @@ def decode_manifest(data: bytes) -> Manifest:
         raise MapError(f"manifest.json has no {error.args[0]!r}") from error
     except (ValueError, AttributeError, TypeError, RecursionError) as error:
         raise MapError(f"manifest.json is damaged: {error}") from error
+    # Not isinstance: JSON's true would pass for schema 1.
     if type(schema) is not int or not (schema == SCHEMA or schema in _MIGRATIONS):
         raise MapError(f"manifest.json has schema {str(schema)[:20]}, this version reads schemas 1 to {SCHEMA}")
     try:
@@ -137,5 +138,6 @@ def _check_sizes(manifest: Manifest) -> None:
 
 
 def _sum(content: dict[str, Any]) -> str:
+    # Sorted and without spaces: the sum is of what the file says, however it is laid out.
     canonical = json.dumps(content, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(canonical.encode()).hexdigest()

@@ -46,6 +46,7 @@ def next_version(place: Path) -> int:
         OSError: the disk refused.
     """
     highest = max(versions(place), default=0)
+    # lexists: a link that leads nowhere has the name all the same.
     free = (number for number in range(highest + 1, MAX_VERSION + 1) if not os.path.lexists(place / str(number)))
     number = next(free, None)
     if number is None:

@@ -18,6 +18,7 @@ from robotd.maps.stop_columns import StopColumns, columns_of, stops_of
 
 FORMAT = 1
 STOPS_MAX = 1 << 14
+"""Bounds what a damaged file can ask for; the longest mission has a thousand."""
 READINGS_MAX = 1 << 19
 """Of all stops together: a thousand stops of 500, the most that one mission makes. They take 26 MB in memory."""
 _UNPACKED_MAX_BYTES = 32 << 20
@@ -44,6 +45,7 @@ def encode_stops(stops: MapStops) -> bytes:
     """
     content = _Content(asdict(stops.settings), stops.arithmetic, columns_of(stops.stops))
     data = _HEAD + b"%d\n" % FORMAT + zlib.compress(msgspec.msgpack.encode(content), _LEVEL)
+    # Before anything is written: what is reported saved must be found again.
     if decode_stops(data) != stops:
         raise MapError("the stops would not come back as they are")
     return data

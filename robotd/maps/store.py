@@ -43,6 +43,7 @@ class MapStore:
         self._settings = settings
         self._keep = keep
         self._loaded: tuple[str, int] | None = None
+        """The version loaded last, which may be the map in use: however old, it is not dropped."""
 
     @property
     def root(self) -> Path:
@@ -71,6 +72,7 @@ class MapStore:
             TypeError: ``metadata`` holds something that JSON cannot.
         """
         check_name(name)
+        # Before the lock: other writers need not wait while this one encodes and checks.
         new = NewVersion.of(name, grid, stops, metadata, created_unix_ns)
         with _disk_errors(f"cannot save map {name}"):
             make_directory(self._root)
@@ -128,6 +130,7 @@ class MapStore:
         except OSError:
             self._remove_leftovers()
             raise
+        # A disk that folds capitals, or the like, would have it under another name: then nothing is dropped for it.
         if version not in self._versions(name):
             raise MapError(f"map {name} was written, and {path} is not there: this file system keeps other names")
         self._prune(name)
@@ -137,6 +140,7 @@ class MapStore:
         versions = self._versions(name)
         if not versions:
             raise MapError(f"there is no map {name!r}; there is {', '.join(self._names()) or 'none at all'}")
+        # A map of two stops of five, kept by itself, must not take the place of one that somebody saved (decision 25).
         wanted = self._newest(name, versions) if version is None else version
         if wanted not in versions:
             raise MapError(f"map {name} has no version {wanted}; it has {', '.join(map(str, versions))}")

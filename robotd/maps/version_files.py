@@ -111,6 +111,7 @@ def read_version(path: Path, name: str, version: int, settings: GridSettings | N
     wanted = (CELLS, IMAGE, YAML, *([] if manifest.stops is None else [STOPS]))
     files = {file: _read_checked(path / file, manifest.files.get(file)) for file in wanted}
     stops = None if manifest.stops is None else _stops_of(files[STOPS], manifest.stops)
+    # A map with stops goes on by the settings that it was made with, or it would not come to its stops again.
     grid = _grid_of(manifest, files[CELLS], settings if stops is None else stops.settings)
     if stops is not None:
         _check_derived(stops, grid)
@@ -148,6 +149,7 @@ def _grid_of(manifest: Manifest, data: bytes, settings: GridSettings | None) -> 
     except ValueError as error:
         raise MapError(f"{CELLS} has {error}") from error
     grid = OccupancyGrid(manifest.spec, cells, settings)
+    # The checksums say that no byte was altered; this, that these cells belong to this placement.
     if grid.digest() != manifest.digest:
         raise MapError(f"{MANIFEST} has another digest than the map")
     return grid
@@ -179,6 +181,7 @@ def _read(path: Path, max_bytes: int) -> bytes:
         if path.exists() and not path.is_file():
             raise MapError(f"{path.name} is no file")  # and opening a pipe would wait for ever
         with path.open("rb") as file:
+            # One more than there may be, to see whether there is more.
             data = file.read(max_bytes + 1)
     except FileNotFoundError as error:
         raise MapError(f"{path.name} is missing") from error
