@@ -19,6 +19,7 @@ from robotd.hardware.link.session import LinkCounters, Session
 from robotd.hardware.wire.board import BoardWire
 
 _FAULT_BITS = 16
+"""Width of the field: a bit that has no name yet is a fault, too (PROTOCOL.md)."""
 
 
 class BoardDevice(WithHealth):
@@ -65,6 +66,7 @@ class BoardDevice(WithHealth):
         """Allow motion; see :meth:`robotd.hardware.devices.device.Device.arm`."""
         if self._health.faults:
             raise DeviceError(self.name, "fault", f"{', '.join(self._health.faults)} latched: clear first")
+        # Before it is asked: a status that says armed may be read before the answer, and must not be stopped for it.
         self._may_move = True
         await self._order(Arm())
         self._health.change(armed=True)
@@ -110,6 +112,7 @@ class BoardDevice(WithHealth):
         """Note that there is none, and why."""
         self._session = None
         self._may_move = False
+        # The board keeps what it has latched through a new session, and reports it again.
         self._health.change(link=LinkState.ABSENT, armed=False, faults=(), detail=reason)
 
     def telemetry(self, message: Message) -> None:
@@ -119,6 +122,7 @@ class BoardDevice(WithHealth):
             self._rest.told("armed", goes_on=is_armed)
             if is_armed and not self._may_move:
                 self.stop_now()
+            # A status replaces all faults, and the board knows nothing of the one that is ours.
             ours = (IMPLAUSIBLE,) if self._is_distrusted else ()
             self._health.change(armed=is_armed, faults=(*fault_names(message.faults), *ours))
 
@@ -138,6 +142,7 @@ class BoardDevice(WithHealth):
     async def _order(self, message: Message) -> None:
         session = self._talk()
         await session.command(message)
+        # The line was lost and is back: what was answered is void, for the new session begins disarmed.
         if self._session is not session:
             raise TransportError(f"{self.name} was lost: {self._health.detail}")
 
@@ -146,12 +151,13 @@ class BoardDevice(WithHealth):
         self._counters.implausible += 1
         self.stop_now()
         self._is_distrusted = True
-        if IMPLAUSIBLE not in self._health.faults:
+        if IMPLAUSIBLE not in self._health.faults:  # a liar lies with every message; one is news
             self._health.change(armed=False, faults=(*self._health.faults, IMPLAUSIBLE), detail=str(error))
 
     def _host_ns(self, board_us: int, *, periodic: bool = False) -> int:
         """Return the host's time at a time of the board; DeviceError if it cannot be."""
         session = self._talk()
+        # Judged on the bare fit: host_ns remembers what it is asked for, and would carry a lie on to later times.
         time_ns = session.heard_ns + session.clock.ahead_ns(board_us, session.heard_ns)
         (self._times.check_periodic if periodic else self._times.check)(time_ns, session.heard_ns)
         return session.clock.host_ns(board_us)

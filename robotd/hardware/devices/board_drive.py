@@ -21,6 +21,7 @@ from robotd.hardware.devices.wiring import Wiring
 
 _MILLI = 1000
 _BUMPERS = 16
+"""Bits of ``bumpers``, counter-clockwise from the heading (PROTOCOL.md)."""
 _BUMPER_STEP_RAD = math.tau / _BUMPERS
 
 
@@ -81,14 +82,16 @@ class BoardDrive(BoardDevice):
             SetVelocity(
                 speed_mmps=round(twist.speed_mps * _MILLI),
                 turn_mradps=round(twist.turn_radps * _MILLI),
-                ttl_ms=max(1, round(ttl_s * _MILLI)),
+                ttl_ms=max(1, round(ttl_s * _MILLI)),  # 0 would be refused
             )
         )
 
     def telemetry(self, message: Message) -> None:
         """Take odometry, battery, bumpers, and what every board tells."""
+        # A lie is latched and ends there: let through, it would end the reader, and with it the link.
         with contextlib.suppress(DeviceError), self._judging():
             if isinstance(message, OdometryReport):
+                # Before it is judged: a base that lies about where it is still says whether it moves.
                 self._rest.told("moving", goes_on=bool(message.speed_mmps or message.turn_mradps))
                 self._moved(message)
             elif isinstance(message, DriveReport):
@@ -99,6 +102,7 @@ class BoardDrive(BoardDevice):
     async def clear_faults(self) -> None:
         """Acknowledge latched faults; see :meth:`BoardDevice.clear_faults`."""
         if self._is_distrusted:
+            # The counts from before the lie lead nowhere: odometry goes on from the next ones, without a jump.
             self._odometer.start_anew()
         await super().clear_faults()
 

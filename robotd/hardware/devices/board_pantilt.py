@@ -21,11 +21,13 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.session import Session
 
 _PER_RAD = 10_000
+"""The wire counts tenths of a milliradian."""
 _HALF_TURN = 31_415
 """Of the head, in wire units, rounded so that a head without end still reaches it."""
 _TTL_MARGIN_MS = 250
 """The board's deadman is for a host that is gone; a slow head is halted by us before."""
 _TTL_LIMIT_MS = 0xFFFF
+"""What its field holds."""
 _QUIET_PERIODS = 3
 """This many periods of telemetry without a report, and we ask."""
 
@@ -86,6 +88,7 @@ class BoardPanTilt(BoardDevice):
         )
         async with self._one_at_a_time:
             session = self._talk()
+            # Before the Aim goes out: the report that it is done may come together with its Ack.
             with self._reports.subscribe() as reports:
                 try:
                     async with within(timeout_s, of=f"{self.name} aim"):
@@ -150,4 +153,4 @@ def _pan_of_head(pan_rad: float) -> int:
     tenth_mrad = round(pan_rad * _PER_RAD)
     if abs(tenth_mrad) <= _HALF_TURN:
         return tenth_mrad
-    return max(-_HALF_TURN, min(round(wrap_rad(pan_rad) * _PER_RAD), _HALF_TURN))
+    return max(-_HALF_TURN, min(round(wrap_rad(pan_rad) * _PER_RAD), _HALF_TURN))  # pi itself rounds to one unit beyond

@@ -16,6 +16,7 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.session import Session
 
 _REACH_M = 500.0
+"""As far as the strongest instrument here: the board does not say which one it carries."""
 _MM_PER_M = 1000
 _STATUS: dict[int, ReadingStatus] = {
     ShotStatus.OK: ReadingStatus.OK,
@@ -71,7 +72,7 @@ class BoardRangefinder(BoardDevice):
                 time_ns = self._host_ns(shot.board_us)
         except DeviceError:
             return Shot(session.heard_ns, ReadingStatus.DEVICE_ERROR, None, None)
-        status = _STATUS.get(shot.status, ReadingStatus.DEVICE_ERROR)
+        status = _STATUS.get(shot.status, ReadingStatus.DEVICE_ERROR)  # one of a later version is no reading
         if status is not ReadingStatus.OK:
             return Shot(time_ns, status, None, shot.strength)
         return self._instrument.shot(time_ns, shot.range_mm / _MM_PER_M, shot.strength)

@@ -36,6 +36,7 @@ S = TypeVar("S", bound=PortSettings)
 D = TypeVar("D")
 
 _OURS = LineFormat(115_200)
+"""As PROTOCOL.md has it: it carries all telemetry with room, and USB ports ignore it."""
 
 DRIVES: Mapping[str, Dialect[DriveSettings, Drive]] = {
     "board": Dialect(BoardDriveSettings, BoardDrive, Line(_OURS, BoardWire, requests_to(BoardKind.DRIVE))),

@@ -24,25 +24,29 @@ TURN_MAX_RADPS = 20.0
 UNSEEN_S = 0.25
 """How much longer than between their times a base may have moved between two reports: times are those of reading."""
 BATTERY_MAX_V = 150.0
+"""Beyond any pack of a robot: like all bounds here it finds broken devices, not inaccurate ones (decision 19)."""
 PAN_MAX_RAD = 4 * math.tau
 TILT_MAX_RAD = math.radians(120.0)
 OFF_AIM_MAX_RAD = 0.35
 """A head that says that it is where it was told is not farther from there than this."""
 LATE_S = 0.5
+"""A time that is farther behind must catch up within :data:`LATE_FOR_S`."""
 LATE_FOR_S = 1.0
 """After a stall what was kept in buffers is late, and soon caught up with: only what stays late is no true time."""
 OLD_MAX_S = 60.0
+"""No stall and no buffer makes a message older than this."""
 
 
 def check_twist(device: str, twist: Twist2) -> None:
     """Raise DeviceError if no base moves so fast."""
+    # *Not within* instead of *beyond*, here and below: what is not a number lies within nothing.
     if not (abs(twist.speed_mps) <= SPEED_MAX_MPS and abs(twist.turn_radps) <= TURN_MAX_RADPS):
         raise implausible(device, f"it moves at {twist.speed_mps:g} m/s and {twist.turn_radps:g} rad/s")
 
 
 def check_way(device: str, way_m: float, turn_rad: float, elapsed_s: float) -> None:
     """Raise DeviceError if no base gets so far, or turns so far, in the time between two reports."""
-    seconds = max(0.0, elapsed_s) + UNSEEN_S
+    seconds = max(0.0, elapsed_s) + UNSEEN_S  # a report said twice is not older than itself
     if not (abs(way_m) <= SPEED_MAX_MPS * seconds and abs(turn_rad) <= TURN_MAX_RADPS * seconds):
         raise implausible(device, f"it moved {way_m:g} m and turned {turn_rad:g} rad in {elapsed_s:.3f} s")
 

@@ -24,6 +24,7 @@ _ANSWER_S = 1.0
 _TRIES = 3
 _IDLE_POLL_S = 1.0
 _SIGN_OF_LIFE_S = 0.5
+"""Three tries and the idle second before them: a silent device is lost within 2.8 s (docs/safety.md)."""
 _MEASURES_S = 5.0
 """A dark target may take so long; then the measurement is cleared."""
 _LINE_END = b"\r\n"
@@ -90,11 +91,13 @@ class DimetixRangefinder(VendorDevice[Message]):
         """Take one reading; TransportError if the device is absent, any other failure is a result."""
         dialogue = self._talk()
         patience_s = min(timeout_s, _MEASURES_S)
+        # Around the clearing, too, which must not end somebody else's measurement.
         async with self._shooting:
             try:
+                # One try: a second command would cancel the measurement under way, and begin it again.
                 heard = await dialogue.ask(self._tongue.measure, self._is(Distance), timeout_s=patience_s)
             except LinkTimeout:
-                dialogue.post(self._tongue.off)
+                dialogue.post(self._tongue.off)  # or the next command waits behind a dark target
                 return Shot(now_ns(), ReadingStatus.TIMEOUT, None, None)
             except DeviceError:
                 return Shot(now_ns(), ReadingStatus.DEVICE_ERROR, None, None)

@@ -22,13 +22,16 @@ from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.wire import dynamixel
 from robotd.hardware.wire.dynamixel import ALERT, DynamixelWire, Message, Status
 
+# Zero is the middle of a turn, so no goal is near the ends of the counter.
 _COUNTS_PER_RAD = 4096 / math.tau
 _CENTRE = 2048
 _SERVO_ID_MAX = 252
+"""The maker's largest; 254 stands for all servos."""
 _ANSWER_S = 0.1
 _TRIES = 3
 _IDLE_POLL_S = 0.5
 _WATCHDOG_MAX = 127
+"""Largest value of its register: 2.54 s."""
 _SETTLED_COUNTS = 12
 """A servo under load rests within this many counts of its goal: one degree."""
 _HARDWARE = "hardware"
@@ -68,9 +71,12 @@ class DynamixelPanTilt(VendorDevice[Message]):
         self._mount = settings.mount
         self._pan, self._tilt = settings.pan_id, settings.tilt_id
         self._watchdog = min(max(1, settings.ttl_max_ms // dynamixel.BUS_WATCHDOG_MS), _WATCHDOG_MAX)
+        # One packet that both obey and neither answers: a stop waits for nobody.
         self.STOP = dynamixel.sync_write(dynamixel.TORQUE_ENABLE, 1, {self._pan: 0, self._tilt: 0})
         self._is_rebooting = False
+        """Meanwhile a servo is silent, and still reports the error that its reboot is to end."""
         self._is_enabling = False
+        """Meanwhile a servo holds that does not count as armed yet; that is no reason to stop it."""
         self._one_aim = asyncio.Lock()
 
     async def limits(self) -> PanTiltLimits:
@@ -110,8 +116,8 @@ class DynamixelPanTilt(VendorDevice[Message]):
             for servo, goal in goals.items():
                 moving |= bool((await self._read(dialogue, servo, dynamixel.MOVING, 1))[0])
                 at[servo], time_ns = await self._read(dialogue, servo, dynamixel.PRESENT_POSITION, 4)
-                moving |= abs(at[servo] - goal) > _SETTLED_COUNTS
-            self._talk_armed()
+                moving |= abs(at[servo] - goal) > _SETTLED_COUNTS  # it does not move before it begins to, either
+            self._talk_armed()  # reads go on after a stop, aims do not
             if not moving:
                 pan_rad, tilt_rad = _rad(at[self._pan]), _rad(at[self._tilt])
                 return AimReadback(time_ns, pan_rad + self._mount.pan_zero_rad, tilt_rad + self._mount.tilt_zero_rad)
@@ -154,6 +160,7 @@ class DynamixelPanTilt(VendorDevice[Message]):
         self._is_enabling = True
         try:
             for servo in (self._pan, self._tilt):
+                # 0 first: one that ran out refuses all goals until then. Torque last: nothing holds unwatched.
                 await self._write(dialogue, servo, dynamixel.BUS_WATCHDOG, 0, 1)
                 await self._write(dialogue, servo, dynamixel.BUS_WATCHDOG, self._watchdog, 1)
                 await self._write(dialogue, servo, dynamixel.TORQUE_ENABLE, 1, 1)
@@ -198,6 +205,7 @@ class DynamixelPanTilt(VendorDevice[Message]):
         parameters = self._accepted(heard.message)
         if len(parameters) != size:
             raise RemoteProtocolError(f"{self.name}: expected {size} bytes of register {register}, got {parameters!r}")
+        # Only positions take four bytes, and only they are signed.
         return int.from_bytes(parameters, "little", signed=size == 4), heard.time_ns
 
     async def _write(self, dialogue: Dialogue[Message], servo: int, register: int, value: int, size: int) -> None:

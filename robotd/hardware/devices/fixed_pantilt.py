@@ -104,6 +104,7 @@ class FixedPanTilt(WithHealth):
         if not self._is_armed:
             raise DeviceError(self.NAME, "not_armed", "arm first")
         fan, zero_rad = self._fan(), self._mount.pan_zero_rad
+        # As it was asked for first: a fan may reach past the half turn, where wrapping would lead out of it.
         for same_rad in (pan_rad, wrap_rad(pan_rad)):
             index = fan.nearest(same_rad - zero_rad)
             if index is not None and self._settings.pan_min_rad <= same_rad <= self._settings.pan_max_rad:

@@ -12,7 +12,9 @@ class Fan:
     """The directions that a scanner measures, evenly apart."""
 
     first_rad: float
+    """The one farthest to the right, counter-clockwise from the scanner's front."""
     step_rad: float
+    """From one to the next, to the left."""
     count: int
 
     @property

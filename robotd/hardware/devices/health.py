@@ -30,6 +30,7 @@ class Health:
     @property
     def status(self) -> DeviceStatus:
         """It, now."""
+        # Counters join here, and not where changes are looked for: each byte would be one.
         return replace(self._status, counters=self._counted())
 
     @property

@@ -36,4 +36,5 @@ class Instrument:
 
     def nothing_within(self, time_ns: int, reach_m: float, strength: int | None) -> Shot:
         """Return the reading of a beam that met nothing as far as the device measures."""
+        # Never farther than its model sees, whatever it claims: a miss clears cells all along its way.
         return Shot(time_ns, ReadingStatus.MISS, min(reach_m, self.reach_m), strength)

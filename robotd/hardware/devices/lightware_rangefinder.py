@@ -26,6 +26,7 @@ M = TypeVar("M")
 ANSWER_S = 0.2
 TRIES = 3
 _LOST_SIGNAL_M = frozenset({130.0, 160.0, 230.0, 250.0})
+"""All beyond its reach: not named here, a lost signal would count as a broken device instead of a weak reading."""
 _IDLE_POLL_S = 1.0
 _KNOWN = ("LW20", "SF20")
 
@@ -50,6 +51,7 @@ class LightwareRangefinder(VendorDevice[M]):
         dialogue = self._talk()
         async with self._shooting:
             try:
+                # Shared out to the tries, so that all of them together take no longer than a shot may.
                 return await self._newest(dialogue, min(ANSWER_S, timeout_s / TRIES))
             except LinkTimeout:
                 return Shot(now_ns(), ReadingStatus.TIMEOUT, None, None)

@@ -24,6 +24,7 @@ class Lw20Rangefinder(LightwareRangefinder[Answer]):
         super().__init__(Lw20Wire(), settings, wiring)
 
     async def _greet(self, dialogue: Dialogue[Answer]) -> None:
+        # Before the stop, which would be lost as the message that only chooses the bus.
         dialogue.post(lw20.WAKE)
         dialogue.stop_now(self.STOP)
         await self._check_product(dialogue)

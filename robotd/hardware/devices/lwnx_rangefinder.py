@@ -26,7 +26,7 @@ class LwnxRangefinder(LightwareRangefinder[Packet]):
         dialogue.stop_now(self.STOP)
         await self._check_product(dialogue)  # asked until answered, for this also chooses the binary dialect
         await self._fire(dialogue, on=False)
-        await self._write(dialogue, lwnx.STREAM, 0, 4)
+        await self._write(dialogue, lwnx.STREAM, 0, 4)  # each reading is asked for, when the head rests
         await self._write(dialogue, lwnx.RATE, lwnx.RATE_MAX, 1)
         await self._write(dialogue, lwnx.DISTANCE_OUTPUT, lwnx.RAW_AND_STRENGTH, 4)
 

@@ -40,6 +40,7 @@ class Odometer:
         way_m, turn_rad = self.gained(boot_id, translate_counts, rotate_counts)
         self._seen = (boot_id, translate_counts, rotate_counts)
         half_rad = turn_rad / 2
+        # An arc leaves its start at half the turn, along its chord; on a straight leg the two are one.
         chord_m = way_m * math.sin(half_rad) / half_rad if half_rad else way_m
         self.in_odom = Pose2(
             self.in_odom.x_m + chord_m * math.cos(self.in_odom.heading_rad + half_rad),
@@ -68,6 +69,7 @@ class JudgedOdometer:
             DeviceError: no base gets there in that time; the report is left out.
         """
         way_m, turn_rad = self._odometer.gained(boot_id, translate_counts, rotate_counts)
+        # Before anything is taken over: a report that cannot be leaves no trace.
         check_way(self._device, way_m, turn_rad, (time_ns - self._time_ns) / NS_PER_S)
         self._time_ns = time_ns
         return self._odometer.update(boot_id, translate_counts, rotate_counts)

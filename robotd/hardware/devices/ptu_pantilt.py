@@ -28,8 +28,10 @@ RESET_S = 40.0
 _ANSWER_S = 0.5
 _TRIES = 3
 _HALT_S = 0.1
+"""Three tries of it fit into the time that a device has to come to rest."""
 _IDLE_POLL_S = 1.0
 _FINEST_ARC_SECONDS, _COARSEST_ARC_SECONDS = 0.1, 3600.0
+"""Of a step. A resolution outside was misread, and would bend every angle."""
 _ARC_SECONDS_PER_RAD = 3600.0 * 180.0 / math.pi
 
 
@@ -115,7 +117,7 @@ class PtuPanTilt(VendorDevice[Message]):
 
     async def _greet(self, dialogue: Dialogue[Message]) -> None:
         dialogue.stop_now(STOP_BYTES)
-        for mode in ("FT", "ED", "CI", "I", "LE"):
+        for mode in ("FT", "ED", "CI", "I", "LE"):  # terse, no echo, independent, at once, limits enforced
             await self._set_up(dialogue, mode)
         numbers = [await self._number(dialogue, query) for query in ("PR", "TR", "PN", "PX", "TN", "TX")]
         pan_arc_seconds, tilt_arc_seconds, *limits = numbers
@@ -184,6 +186,7 @@ class PtuPanTilt(VendorDevice[Message]):
     async def _find_stops(self, dialogue: Dialogue[Message]) -> None:
         self._is_resetting = True
         try:
+            # One try: a second reset would turn it to its stops again.
             answer = (await dialogue.ask(command("R"), is_a(Done, Refused), timeout_s=RESET_S)).message
             if isinstance(answer, Refused):
                 raise DeviceError(self.name, "refused", f"to reset: {answer.text}")

@@ -141,7 +141,7 @@ class RflexDrive(VendorDevice[Message]):
         self._wanted = STANDSTILL
         for order in (*_HALT, report_every(period_us), switches_every(period_us), DEFAULTS, BRAKE_RELEASE):
             dialogue.post(order)
-            await asyncio.sleep(_SPACING_S)
+            await asyncio.sleep(_SPACING_S)  # of a burst only the first is heard
         await dialogue.ask(STATUS, is_a(SystemStatus), timeout_s=_ANSWER_S, tries=_TRIES)
 
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
@@ -170,6 +170,7 @@ class RflexDrive(VendorDevice[Message]):
                 continue
             try:
                 left_s = max(0.0, (self._deadline_ns - now_ns()) / NS_PER_S)
+                # Stalls count: no watchdog is below, so a set-point ends in its time whether or not we listened.
                 async with within(left_s, of=f"{self.name} set-point", counts_stalls=True):
                     await self._new_set_point.wait()
             except TimeoutError:
@@ -189,6 +190,7 @@ class RflexDrive(VendorDevice[Message]):
             dialogue.post(order)
 
     def _past_loop(self, before: int) -> bytes:
+        # All of it once; then one halt a call, which come 15 ms apart, so that each is heard alone.
         return self.STOP if before == 0 else _HALT[before % len(_HALT)]
 
     async def _watch_battery(self, dialogue: Dialogue[Message]) -> NoReturn:

@@ -33,6 +33,7 @@ from robotd.hardware.wire.rwi_ascii import (
 )
 
 _ANSWER_S = 0.3
+"""Three tries of it are the 0.9 s within which a silent base is lost (docs/safety.md)."""
 _TRIES = 3
 _WATCHDOG_MAX_TICKS = 0xFE
 """Some bases take eight bits; never 0, which may mean off."""
@@ -41,6 +42,7 @@ _TURN_ACCELERATION_RADPS2 = 1.5
 _SPEED_MAX_COUNTS = 0xFFFF
 _PANELS = 8
 _BATTERY_EVERY_POLLS = 100
+"""A question for the battery costs odometry a turn on a line of 9600 baud."""
 _TENTHS_PER_V = 10
 _FAULTS = {"BLO": "battery", "TERR": "servo", "RERR": "servo", "TC": "current", "RC": "current"}
 
@@ -85,7 +87,7 @@ class RwiDrive(VendorDevice[Message]):
         """
         dialogue = self._talk_armed()
         ticks = min(max(1, round(ttl_s * TICKS_PER_S)), _WATCHDOG_MAX_TICKS)
-        orders = [command("WD", ticks)]
+        orders = [command("WD", ticks)]  # first: the base never moves unwatched
         orders += self._axis("T", twist.speed_mps * self._scales.counts_per_m)
         orders += self._axis("R", twist.turn_radps * self._scales.counts_per_rad)
         dialogue.post(b"".join(orders))
@@ -105,7 +107,7 @@ class RwiDrive(VendorDevice[Message]):
             return [command(f"{axis}H")] if before else []
         self._directions[axis] = wanted
         run = [] if before == wanted else [command(f"{axis}{'+' if wanted > 0 else '-'}")]
-        return [command(f"{axis}V", speed), *run]
+        return [command(f"{axis}V", speed), *run]  # speed first, or it starts at the one before
 
     async def _greet(self, dialogue: Dialogue[Message]) -> None:
         dialogue.post(STOP_BYTES + command("HD"))
@@ -179,7 +181,7 @@ class RwiDrive(VendorDevice[Message]):
     def _hear(self, event: Event, time_ns: int) -> None:
         if event.name == "BS" and event.value is not None:
             self._bumped(event.value, time_ns)
-        elif event.name == "WDT" and any(self._directions.values()):
+        elif event.name == "WDT" and any(self._directions.values()):  # a base that was told to stand may let it run out
             self._latch("deadman", "the base's watchdog ran out: no set-point came in time")
         for name, fault in _FAULTS.items():
             if event.name.startswith(name) and not event.name.endswith("CLR"):

@@ -109,7 +109,7 @@ class ScipRangefinder(VendorDevice[Reply]):
         self._parameters = parameters
         step_rad = math.tau / parameters.steps_per_turn
         first_rad = (parameters.first_step - parameters.front_step) * step_rad
-        self._gaze.index = 0
+        self._gaze.index = 0  # before the fan: the old index may lie outside the new one
         self._gaze.fan = Fan(first_rad, step_rad, parameters.last_step - parameters.first_step + 1)
 
     async def _attend(self, dialogue: Dialogue[Reply]) -> NoReturn:
@@ -137,4 +137,5 @@ class ScipRangefinder(VendorDevice[Reply]):
 
 
 def _is_scan_or_refusal(reply: Reply) -> bool:
+    # OK only says that the command was understood: the scan comes in a second block, with a status of its own.
     return reply.command.startswith("MD") and reply.status != scip.OK

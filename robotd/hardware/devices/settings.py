@@ -143,7 +143,7 @@ class RangefinderSettings(PortSettings):
     def __post_init__(self) -> None:
         """Refuse what the port or the calibration refuses."""
         PortSettings.__post_init__(self)
-        _ = self.calibration
+        _ = self.calibration  # made to be refused: it holds the two ranges against each other
 
     @property
     def calibration(self) -> RangefinderCalibration:

@@ -140,7 +140,7 @@ class TfminiRangefinder(VendorDevice[Message]):
         """See whether it is one that answers nothing and streams; raises LinkTimeout if nothing is heard of it."""
         if self._model is Model.TFMINI:
             dialogue.post(FIRST_STANDARD)
-        await self._fresh(_STREAMS_S, stale=0)
+        await self._fresh(_STREAMS_S, stale=0)  # any frame shows that there is a stream
         if self._model is not Model.TFMINI:
             raise RemoteProtocolError(
                 f"{self.name}: it streams readings and answers no command: a TFmini of the first generation "

@@ -46,6 +46,7 @@ class VendorDevice(WithHealth, ABC, Generic[M]):
         self._may_move = False
         """Whether it was armed, and no stop since."""
         self._stops = 0
+        """Counted, so that an arm sees that one came while it was on its way."""
         self._health = Health(self.NAME, self._counted)
 
     @property
@@ -83,7 +84,7 @@ class VendorDevice(WithHealth, ABC, Generic[M]):
     async def clear_faults(self) -> None:
         """Acknowledge latched faults; leaves the device disarmed; same errors as :meth:`arm`."""
         dialogue = self._talk()
-        self.stop_now()
+        self.stop_now()  # as our own boards do: a clear leaves a device disarmed
         stops = self._stops
         await self._acknowledge(dialogue)
         if self._stops != stops:
@@ -105,7 +106,7 @@ class VendorDevice(WithHealth, ABC, Generic[M]):
     def stop_past_loop(self, before: int = 0) -> None:
         """Put the stop on the wire from any thread, while the loop is stuck; see :class:`.Device`."""
         self._may_move = False
-        dialogue = self._dialogue or self._ending
+        dialogue = self._dialogue or self._ending  # the loop may stall while it comes to rest, too
         data = self._past_loop(before)
         if dialogue is not None and data:
             dialogue.stop_past_loop(data)

@@ -14,10 +14,15 @@ from dataclasses import dataclass
 
 _NS_PER_US = 1000
 _SAMPLES = 32
+"""Half a minute of pings: a clock that really jumped is believed again once most of these say so (decision 19)."""
 _DRIFT_SPAN_NS = 5_000_000_000
+"""Over a shorter span a fitted slope is mostly the jitter of the round trips."""
 _DRIFT_MAX = 1e-3
+"""Several times what any crystal is off: a steeper slope is noise, or a lie."""
 _JITTER_NS = 50_000
+"""Keeps the weight of the quickest ping finite, and gives the bounds of each some slack."""
 _ROUND_TRIP_MAX_NS = 1_000_000_000
+"""A slower answer bounds the offset no better than to half a second: no evidence."""
 AHEAD_MAX_NS = _ROUND_TRIP_MAX_NS // 2
 """How far a true time can lie ahead of when it was heard: the offset is wrong by half a round trip at most."""
 
@@ -30,6 +35,7 @@ class ClockSample:
     host_ns: int
     """The middle between sending and receiving."""
     round_trip_ns: int
+    """Half of it is how far ``host_ns`` may be off."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +43,7 @@ class ClockFit:
     """``host = host_ns + (board - board_ns) * rate``."""
 
     board_ns: int
+    """Weighted middle of the samples: there a fitted line is known best."""
     host_ns: int
     rate: float
     """Host nanoseconds per board nanosecond."""
@@ -46,6 +53,7 @@ class ClockFit:
     def at(self, board_us: int) -> int:
         """Return the host's time at a time of the board [ns]."""
         elapsed_ns = board_us * _NS_PER_US - self.board_ns
+        # Whole nanoseconds stay whole; only the small part that drifted goes through a float.
         return self.host_ns + elapsed_ns + round(elapsed_ns * (self.rate - 1.0))
 
 
@@ -61,8 +69,10 @@ def fit(samples: tuple[ClockSample, ...]) -> ClockFit:
         raise ValueError("the board's clock was never seen")
     first = samples[0]
     shortest_ns = min(sample.round_trip_ns for sample in samples)
+    # What a round trip has over the shortest is how far its middle may be off: the weight is that of a variance.
     weights = [(sample.round_trip_ns - shortest_ns + _JITTER_NS) ** -2.0 for sample in samples]
     elapsed = [sample.board_ns - first.board_ns for sample in samples]
+    # The line goes through what one clock gained on the other: small numbers, of which a double loses no digits.
     gained = [sample.host_ns - first.host_ns - since for sample, since in zip(samples, elapsed, strict=True)]
     middle = _mean(weights, elapsed)
     drift = _drift(weights, elapsed, gained) if elapsed[-1] >= _DRIFT_SPAN_NS else 0.0
@@ -91,6 +101,7 @@ def agreeing(samples: tuple[ClockSample, ...]) -> tuple[ClockSample, ...]:
     O(n^2). Clocks are taken to run apart by a thousandth at most.
     """
     bounds = [_offset_bounds(sample, samples[-1].host_ns) for sample in samples]
+    # Where most intervals overlap, one of them begins, so their lower ends are the only offsets to try.
     groups = [[low <= at <= high for low, high in bounds] for at, _ in bounds]
     best = max(groups, key=sum, default=[])
     return tuple(sample for sample, is_in in zip(samples, best, strict=True) if is_in)
@@ -98,6 +109,7 @@ def agreeing(samples: tuple[ClockSample, ...]) -> tuple[ClockSample, ...]:
 
 def _offset_bounds(sample: ClockSample, now_ns: int) -> tuple[int, int]:
     """Return what the host's time less the board's can be now, at least and at most [ns]."""
+    # An old sample says less about now: the clocks may have run apart since.
     slack_ns = sample.round_trip_ns // 2 + _JITTER_NS + round(abs(now_ns - sample.host_ns) * _DRIFT_MAX)
     offset_ns = sample.host_ns - sample.board_ns
     return offset_ns - slack_ns, offset_ns + slack_ns

@@ -27,6 +27,7 @@ M = TypeVar("M")
 M_co = TypeVar("M_co", covariant=True)
 
 _PIECES_MAX = 50
+"""More than this since a request was given up, and the line counts as never quiet: one that streams, or is stuck."""
 
 
 class Wire(Protocol[M_co]):
@@ -103,8 +104,10 @@ class Dialogue(Generic[M]):
         self._one_at_a_time = asyncio.Lock()
         self._request: _Request[M] | None = None
         self._stops = 0
+        """Counted, so that a request sees that one came while it waited for its turn."""
         self._heard_ns = now_ns()
         self._answered_ns = self._heard_ns
+        """When a request was last answered; bytes that answer nothing are no sign of life."""
         self._pieces_ns: deque[int] = deque(maxlen=_PIECES_MAX)
         """When the last pieces came."""
         self._unsettled_ns: int | None = self._heard_ns
@@ -115,6 +118,7 @@ class Dialogue(Generic[M]):
         self._message_came = asyncio.Event()
 
     async def __aenter__(self) -> Self:
+        # The wire outlives the line: half a message of the line before must not swallow the first of this one.
         self._wire.reset()
         self._reader = asyncio.create_task(self._read(), name=f"{self._device} reader")
         return self
@@ -156,13 +160,15 @@ class Dialogue(Generic[M]):
             DeviceError: a stop came between, code ``stopped``.
             TransportError: the line is lost, or was lost meanwhile.
         """
+        # Before the lock: a stop that comes while this waits for its turn ends it, too.
         stops = self._stops
         async with self._one_at_a_time:
             for attempt in range(tries):
                 await self._settle_down()
-                self._check(self._stops if despite_stops else stops)
+                self._check(self._stops if despite_stops else stops)  # against itself: no stop concerns it
                 self._counters.retries += attempt > 0
                 request = self._request = _Request(settles, despite_stops)
+                # Reckoned from the deadline: a replay fires the timer later, and must wait for quiet no longer.
                 given_up_ns = now_ns() + round(timeout_s * NS_PER_S)
                 try:
                     self._line.write(data)
@@ -171,7 +177,7 @@ class Dialogue(Generic[M]):
                 except TimeoutError:
                     self._unsettled_ns = given_up_ns
                 except asyncio.CancelledError:
-                    self._unsettled_ns = now_ns()
+                    self._unsettled_ns = now_ns()  # nobody waits for the answer now, but it may still come
                     raise
                 finally:
                     self._request = None
@@ -232,7 +238,7 @@ class Dialogue(Generic[M]):
         Bytes that answer nothing are no sign of life: a stuck line may pour them in.
         """
         while True:
-            async with self._one_at_a_time:
+            async with self._one_at_a_time:  # a request under way is not idleness
                 missing_s = seconds - (now_ns() - self._answered_ns) / NS_PER_S
             if missing_s <= 0.0:
                 return
@@ -241,6 +247,7 @@ class Dialogue(Generic[M]):
     async def _settle_down(self) -> None:
         """Let late answers to what was given up go by, as reports; what never falls silent is not waited for."""
         while not self._is_never_quiet:
+            # A lost line brings no late answers; why it is lost is for the caller's check to say.
             if self._unsettled_ns is None or self._lost is not None:
                 return
             missing_s = self._quiet_s - (now_ns() - max(self._unsettled_ns, self._heard_ns)) / NS_PER_S
@@ -295,6 +302,7 @@ class Dialogue(Generic[M]):
         return DeviceError(self._device, "stopped", "before it answered")
 
     def _lose(self, error: RobotdError) -> RobotdError:
+        # The first reason is the cause; what follows, a closed line or an ended session, only comes of it.
         if self._lost is None:
             self._lost = error
         if self._request is not None and not self._request.answer.done():

@@ -22,6 +22,7 @@ from robotd.hardware.link.session import Session
 _HELLO_ROUNDS = 10
 """About three seconds: opening the port resets some boards, and their boot loader must end first."""
 _QUICK_PINGS = 8
+"""As PROTOCOL.md has it: from the start one slow or lying answer among them is outvoted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +50,7 @@ async def shake_hands(session: Session, terms: Terms, nonce: int, dictionaries: 
         LinkTimeout, TransportError, DeviceError: as for any request.
     """
     hello = await _hello(session, nonce)
+    # Before Configure: a layout that has drifted is what no checksum notices, and reading alone is safe.
     _check_dictionary(session.device, terms.kind, await _dictionary(session, hello, dictionaries))
     await _configure(session, Configure(terms.telemetry_ms, terms.ttl_max_ms))
     for _ in range(_QUICK_PINGS):
@@ -60,7 +62,7 @@ async def shake_hands(session: Session, terms: Terms, nonce: int, dictionaries: 
 
 async def _hello(session: Session, nonce: int) -> HelloReply:
     reply = await _patiently_say(session, Hello(PROTOCOL_MAJOR, PROTOCOL_MINOR, nonce))
-    if reply.nonce != nonce:
+    if reply.nonce != nonce:  # a late answer to the HELLO of an older session
         raise RemoteProtocolError(f"{session.device}: answered another HELLO than ours")
     if reply.major != PROTOCOL_MAJOR:
         theirs, ours = f"{reply.major}.{reply.minor}", f"{PROTOCOL_MAJOR}.{PROTOCOL_MINOR}"
@@ -78,6 +80,7 @@ async def _patiently_say(session: Session, hello: Hello) -> HelloReply:
 
 
 async def _dictionary(session: Session, hello: HelloReply, known: dict[int, bytes]) -> bytes:
+    # Known by its checksum, not by the board: a reconnection is quick, and another board is still read.
     if hello.dictionary_crc32 in known:
         return known[hello.dictionary_crc32]
     data = b""
@@ -85,7 +88,7 @@ async def _dictionary(session: Session, hello: HelloReply, known: dict[int, byte
         reply = await session.ask(Identify(len(data)), IdentifyReply)
         if reply.offset != len(data):
             raise RemoteProtocolError(f"{session.device}: gave another piece of its dictionary than we asked for")
-        data += reply.data[: min(DICTIONARY_CHUNK, hello.dictionary_size - len(data))]
+        data += reply.data[: min(DICTIONARY_CHUNK, hello.dictionary_size - len(data))]  # zeros fill the last piece
     if zlib.crc32(data) != hello.dictionary_crc32:
         raise RemoteProtocolError(f"{session.device}: its dictionary does not fit its checksum")
     known[hello.dictionary_crc32] = data

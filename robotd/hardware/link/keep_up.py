@@ -11,6 +11,7 @@ from robotd.hardware.transport.transport import Connect
 
 BACKOFF_MIN_S = 0.25
 BACKOFF_MAX_S = 5.0
+"""A device that is plugged in again is found within this, however long it was gone."""
 
 
 class Talker(Protocol):
@@ -45,11 +46,12 @@ async def keep_up(device: str, connect: Connect, tap: Tap, talker: Talker) -> No
                 await talker.talk(line)
             finally:
                 line.close()
-        except (RobotdError, OSError) as error:
+        except (RobotdError, OSError) as error:  # any other is ours, and ends the daemon, stop first
             talker.line_lost(str(error))
         except asyncio.CancelledError:
             talker.line_lost("shut down")
             raise
+        # An open port does not count, only the right device behind it: a stranger is not asked four times a second.
         if talker.sessions > sessions:
             backoff_s = BACKOFF_MIN_S
         await asyncio.sleep(backoff_s)

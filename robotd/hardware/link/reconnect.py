@@ -85,7 +85,7 @@ class _Talk:
         async with session:
             try:
                 await shake_hands(session, link.terms, link.rng.getrandbits(32), link.dictionaries)
-                link.counters.sessions += 1
+                link.counters.sessions += 1  # not sooner: the back-off begins again with it
                 self.listener.link_ready(session)
                 await session.serve()
             except BaseException as error:  # whatever ended it, nothing must go on moving

@@ -28,12 +28,13 @@ class Request:
 
     def is_answered_by(self, received: Received) -> bool:
         """Say whether this is the first reply to it."""
+        # A request that was repeated may be answered as often as it was said; the first answer settles it.
         return not self._reply.done() and (self.message.TYPE, self.seq) == (answered_type(received), received.seq)
 
     def settle(self, received: Received) -> None:
         """End it with its reply: a refusal raises DeviceError where it is waited for."""
         result = result_of(received.message)
-        if result == Result.OK:
+        if result == Result.OK:  # any other is a refusal, those of later versions included
             self._reply.set_result(received)
         else:
             self.fail(DeviceError(self._device, _name(result), type(self.message).__name__))
@@ -60,4 +61,4 @@ def _name(result: int) -> str:
     try:
         return Result(result).name.lower()
     except ValueError:
-        return f"result_{result}"
+        return f"result_{result}"  # of a later version: shown as its number

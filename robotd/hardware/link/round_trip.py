@@ -1,10 +1,13 @@
 """How long to wait for an answer before asking again."""
 
 TIMEOUT_MIN_S = 0.025
+"""A board answers within 10 ms: to ask again much sooner than this only fills the line."""
 TIMEOUT_MAX_S = 0.5
+"""Both bounds are those of PROTOCOL.md, and so is the start."""
 _TIMEOUT_START_S = 0.05
 _MEAN_GAIN = 1 / 8
 _DEVIATION_GAIN = 1 / 4
+"""Both gains, and the four deviations of the timeout, are those of the RFC."""
 
 
 class RoundTrip:
@@ -22,6 +25,7 @@ class RoundTrip:
         if self._mean_s is None:
             self._mean_s, self._deviation_s = sample_s, sample_s / 2
             return
+        # The deviation first, from the mean as it was before this sample: the order of the RFC.
         self._deviation_s += _DEVIATION_GAIN * (abs(sample_s - self._mean_s) - self._deviation_s)
         self._mean_s += _MEAN_GAIN * (sample_s - self._mean_s)
 

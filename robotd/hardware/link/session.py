@@ -27,7 +27,9 @@ from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.wire.board import EMERGENCY_SEQ, STOP_BYTES, BoardWire, Received
 
 TRIES = 3
+"""As PROTOCOL.md has it; all bear the same seq, so a board does once what it hears three times."""
 _PING_EVERY_S = 1.0
+"""As PROTOCOL.md has it; between two the clocks run apart by far less than a round trip is uncertain."""
 _NS_PER_US = 1000
 
 log = logging.getLogger(__name__)
@@ -81,10 +83,14 @@ class Session:
         self._one_at_a_time = asyncio.Lock()
         self._request: Request | None = None
         self._posted: set[int] = set()
+        """Types of request whose replies are only counted."""
         self._serving = False
+        """Whether the handshake is over: from then on telemetry is the sign of life."""
         self._stops = 0
         self._board_us = 0
+        """Newest time that its status bore: one that goes back is a restart."""
         self._is_unlearned = False
+        """Whether it was logged already: a clock that cannot learn is news once, not each second."""
         self._lost: RobotdError | None = None
 
     async def __aenter__(self) -> Self:
@@ -168,9 +174,11 @@ class Session:
     # Requests
 
     async def _exchange(self, message: Message, takes_s: float) -> Received:
+        # Before the lock: a stop that comes while this waits for its turn counts.
         stops = self._stops
         async with self._one_at_a_time:
             self._check()
+            # Arm alone: after a stop the board itself refuses whatever else would move it.
             if isinstance(message, Arm) and self._stops != stops:
                 raise self._stopped()
             request = self._request = Request(self.device, message, self._next_seq(message))
@@ -190,6 +198,8 @@ class Session:
             self._counters.retries += attempt > 0
             sent_ns = now_ns()
             self._line.write(data)
+            # A slow answer is waited for after the last try only: the board is at work on it, to ask again does no
+            # harm, and a request that was lost is found out sooner.
             patience_s = takes_s if attempt >= TRIES + unheard - 1 else 0.0
             reply = await request.wait(self._round_trip(request.message).timeout_s(attempt) + patience_s)
             if reply is not None:
@@ -211,6 +221,7 @@ class Session:
         return self._round_trips.setdefault(type(message), RoundTrip())
 
     def _next_seq(self, message: Message) -> int:
+        # Leaves out the seq of the preformatted stop, whose answers must match no request.
         seq = self._seqs[type(message)] % EMERGENCY_SEQ
         self._seqs[type(message)] += 1
         return seq
@@ -219,6 +230,7 @@ class Session:
 
     async def _read(self) -> NoReturn:
         try:
+            # From the first message on: a booting board is silent longer, and the handshake has its own timeouts.
             async with within(self._silence_s, of=f"{self.device} line", begins=False) as silence:
                 while True:
                     chunk = await self._line.read()
@@ -242,7 +254,7 @@ class Session:
         if not TELEMETRY_START <= received.type < TELEMETRY_END:
             self._settle(received)
             return not self._serving
-        if self._serving:
+        if self._serving:  # before, it may be telemetry of the session before ours
             self._check_ours(message)
             self._on_telemetry(message)
         return True
@@ -269,8 +281,10 @@ class Session:
     def _check_ours(self, message: Message) -> None:
         if not isinstance(message, BoardStatus):
             return
+        # A boot begins its clock again; a HELLO that is not ours leaves the board unconfigured.
         if message.board_us < self._board_us or message.state < BoardState.CONFIGURED:
             raise RemoteProtocolError(f"{self.device}: the board restarted, or serves somebody else")
+        # Only ahead: what waited in a buffer is late, but nothing is heard before it is said.
         ahead_ns = self.clock.ahead_ns(message.board_us, self.heard_ns)
         if ahead_ns > AHEAD_MAX_NS:
             self._counters.implausible += 1
@@ -285,7 +299,7 @@ class Session:
         return DeviceError(self.device, "stopped", "while arming")
 
     def _lose(self, error: RobotdError) -> RobotdError:
-        if self._lost is None:
+        if self._lost is None:  # the first reason is the cause
             self._lost = error
         if self._request is not None:
             self._request.fail(TransportError(str(self._lost)))

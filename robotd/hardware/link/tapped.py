@@ -39,6 +39,7 @@ class TappedLine:
         except TransportError as error:
             self._tap.line_broke(self._device, now_ns(), str(error))
             raise
+        # Before these bytes get their time: a stall is noted ahead of all that came after it, here and in a replay.
         attention().look()
         chunk = Chunk(now_ns(), data)
         self._tap.bytes_passed(self._device, Direction.FROM_BOARD, chunk.time_ns, data)

@@ -14,6 +14,7 @@ async def together(*duties: Coroutine[Any, Any, NoReturn]) -> NoReturn:
     finally:
         for task in tasks:
             task.cancel()
+        # Each is seen to its end: one left running would go on writing to a line that is given up.
         await asyncio.gather(*tasks, return_exceptions=True)
     ended.result()
     raise AssertionError("a duty only ends with an error")

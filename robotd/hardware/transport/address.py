@@ -42,6 +42,7 @@ def _host_and_port(address: str) -> tuple[str, int]:
         port = parts.port
     except ValueError:
         port = None
+    # A path is a slip of somebody who thinks of URLs, and port 0 is no port to connect to.
     if parts.scheme != "tcp" or not parts.hostname or not port or parts.path:
         raise ConfigError(f"expected a device path or tcp://host:port, got {address!r}")
     return parts.hostname, port

@@ -11,6 +11,7 @@ from robotd.hardware.transport.outbox import Outbox
 from robotd.hardware.transport.readiness import Readiness
 
 _READ_BYTES = 4096
+"""What the kernel holds for a terminal: one call takes it all."""
 
 
 class DescriptorTransport:
@@ -43,9 +44,10 @@ class DescriptorTransport:
             await self._wait_readable()
             try:
                 data = os.read(self._descriptor, _READ_BYTES)
-            except (BlockingIOError, InterruptedError):
+            except (BlockingIOError, InterruptedError):  # that it is ready is a hint, no promise
                 continue
             except OSError as error:
+                # Round again, for the end of a pseudo-terminal does not end with those who opened it: waiting tells.
                 self._hang_up(f"read: {error.strerror}")
                 continue
             if data:
@@ -57,7 +59,7 @@ class DescriptorTransport:
         self._check()
         self._outbox.put(data)
         self._flush()
-        self._check()
+        self._check()  # the write itself may have found that the line is gone
 
     def write_urgent(self, data: bytes) -> None:
         """Queue bytes in place of everything not yet written; TransportError when the line is gone."""
@@ -68,6 +70,7 @@ class DescriptorTransport:
 
     def write_past_loop(self, data: bytes) -> None:
         """Write bytes at once, from any thread; what does not fit into the kernel's buffer is lost."""
+        # Past the outbox, which is the loop's and no thread's.
         with self._closing, contextlib.suppress(OSError):
             if self._lost is None:
                 os.write(self._descriptor, data)
@@ -92,6 +95,7 @@ class DescriptorTransport:
 
     def _flush(self) -> None:
         try:
+            # Now, not when the loop says that there is room: a stop does not wait for its turn.
             while self._outbox:
                 self._outbox.drop(os.write(self._descriptor, self._outbox.head()))
         except (BlockingIOError, InterruptedError):

@@ -10,6 +10,7 @@ def holder_of(path: str) -> str | None:
     A sandbox may hide other processes, or the table of locks.
     """
     try:
+        # The table of locks is one file; the other way looks at every descriptor of every process.
         pid = _locking_pid(path)
     except OSError:
         pid = None
@@ -22,6 +23,7 @@ def _locking_pid(path: str) -> int | None:
     wanted = f"{os.major(device.st_dev):02x}:{os.minor(device.st_dev):02x}:{device.st_ino}"
     for line in Path("/proc/locks").read_text().splitlines():
         fields = line.split()
+        # 0 and -1 stand for a process that this one may not see.
         if wanted in fields and int(fields[fields.index(wanted) - 1]) > 0:
             return int(fields[fields.index(wanted) - 1])
     return None

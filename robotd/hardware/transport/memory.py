@@ -28,7 +28,7 @@ class MemoryEnd:
     async def read(self) -> bytes:
         """Return the next bytes, at least one; TransportError when the line is gone."""
         while not self._arrived:
-            self._check()
+            self._check()  # after what arrived: bytes outlive their line here, as in a kernel's buffer
             self._readable = asyncio.get_running_loop().create_future()
             try:
                 await self._readable

@@ -8,6 +8,7 @@ board, which is in step again with the stop.
 from robotd.core.errors import TransportError
 
 OUTBOX_LIMIT_BYTES = 64 * 1024
+"""Nearly six seconds of a line of 115200 baud: what waits longer has waited too long to be obeyed."""
 
 
 class Outbox:

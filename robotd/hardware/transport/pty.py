@@ -43,6 +43,7 @@ class PtyEnd(DescriptorTransport):
             self._loop.call_later(_LOOK_AGAIN_S, wake, readable)
 
     def _hang_up(self, reason: str) -> None:
+        # Only who had it open is gone: the next one opens the same path.
         self._drop_output()
 
     def _flush(self) -> None:
@@ -59,8 +60,8 @@ class PtyEnd(DescriptorTransport):
 def open_pty() -> PtyEnd:
     """Make a new pseudo-terminal in raw mode and return its far end; must run on the event loop."""
     master, slave = pty.openpty()
-    tty.setraw(slave)
+    tty.setraw(slave)  # before anybody opens it: a kernel that echoes would answer for the board
     path = os.ttyname(slave)
-    os.close(slave)
+    os.close(slave)  # kept open it would look plugged in for ever
     os.set_blocking(master, False)
     return PtyEnd(path, master)

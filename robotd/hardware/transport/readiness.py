@@ -65,6 +65,7 @@ class OnLoop:
         self.forget_writable()
 
     def _once(self, forget: Callable[[], None], tell: Callable[[], None]) -> None:
+        # First, for what is told may wish again; and a level that stays ready would call in every turn of the loop.
         forget()
         tell()
 
@@ -89,6 +90,7 @@ class InThread:
         """The thread closes the bell, and not before it was rung for the last time."""
         self._bell = os.eventfd(0, os.EFD_CLOEXEC)
         try:
+            # A daemon thread: it may hang in the kernel for as long as a driver likes, and the program ends without it.
             threading.Thread(target=self._watch, name=f"watch {name}", daemon=True).start()
         except RuntimeError:
             os.close(self._bell)
@@ -122,12 +124,14 @@ class InThread:
 
     def _wish(self) -> None:
         wanted = sum(self._tells)
+        # What is forgotten meanwhile is not taken back: the thread finds it ready once, and nobody is told.
         if wanted & ~self._wanted and not self._has_ended:
             self._wanted = wanted
             os.eventfd_write(self._bell, 1)
 
     def _heard(self, happened: int) -> None:
         self._wanted = 0
+        # A list, for those who are told wish again.
         for event in [one for one in self._tells if happened & (one | _WHATEVER_HAPPENED)]:
             self._tells.pop(event)()
         if self._tells:
@@ -147,6 +151,7 @@ class InThread:
                         break
                 poll.register(self._descriptor, self._wanted)
             elif self._descriptor in happened:
+                # Until the next wish: what stays ready would turn this thread round and round.
                 poll.unregister(self._descriptor)
                 with contextlib.suppress(RuntimeError):  # the loop is closed: nobody waits any more
                     self._loop.call_soon_threadsafe(self._heard, happened[self._descriptor])

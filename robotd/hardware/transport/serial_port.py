@@ -23,6 +23,7 @@ from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.readiness import InThread
 
 _PTY_SLAVE_MAJORS = range(136, 144)
+"""Device numbers by which Linux knows the slaves of pseudo-terminals."""
 _ADVICE = {
     errno.ENOENT: "no such device",
     errno.EACCES: "permission denied; is this user in the group of the device?",
@@ -40,6 +41,7 @@ async def open_serial(path: str, line_format: LineFormat) -> DescriptorTransport
             process has no descriptor or thread left.
     """
     try:
+        # In a thread: opening a port asks its driver, which takes its time.
         port = await asyncio.get_running_loop().run_in_executor(None, _open, path, line_format)
     except RuntimeError as error:
         raise TransportError(f"{path}: {error}") from error
@@ -61,7 +63,7 @@ def _open(path: str, line_format: LineFormat) -> serial.Serial:
             bytesize=line_format.data_bits,
             parity=line_format.parity,
             stopbits=line_format.stop_bits,
-            timeout=0,
+            timeout=0,  # the loop waits, pyserial never does
             exclusive=True,
         )
     except ValueError as error:

@@ -26,6 +26,7 @@ async def open_tcp(host: str, port: int) -> DescriptorTransport:
     reasons = []
     for family, address in addresses:
         try:
+            # A share for each: one that swallows packets must not use up the time of the next.
             async with asyncio.timeout(_CONNECT_TIMEOUT_S / len(addresses)):
                 return tcp_transport(name, await _connect(family, address))
         except TimeoutError:
@@ -39,7 +40,7 @@ def tcp_transport(name: str, connection: socket.socket) -> DescriptorTransport:
     """Take over a connected socket."""
     connection.setblocking(False)
     connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _KERNEL_BUFFER_BYTES)
-    connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # a stop does not wait for an acknowledgement
     return DescriptorTransport(name, connection.fileno(), OnLoop(connection.fileno()), connection.close)
 
 
@@ -51,7 +52,7 @@ async def _look_up(name: str, host: str, port: int) -> list[tuple[int, _Address]
         raise TransportError(f"{name}: the name was not found within {_CONNECT_TIMEOUT_S:g} s") from error
     except OSError as error:
         raise TransportError(f"{name}: {error.strerror}") from error
-    except UnicodeError as error:
+    except UnicodeError as error:  # how the lookup says that a label is empty or too long
         raise TransportError(f"{name}: no name of a host: {error}") from error
     return [(family, address) for family, *_, address in found]
 
@@ -61,7 +62,7 @@ async def _connect(family: int, address: _Address) -> socket.socket:
     connection.setblocking(False)
     try:
         await asyncio.get_running_loop().sock_connect(connection, address)
-    except BaseException:
+    except BaseException:  # cancelled by its timeout, too: nobody else knows this socket
         connection.close()
         raise
     return connection

@@ -99,12 +99,13 @@ class BoardWire:
             self._wrong_sizes += 1
             return None
         if message is HelloReply:
-            self._expected = dict.fromkeys(self._telemetry, 0)
+            self._expected = dict.fromkeys(self._telemetry, 0)  # each session counts from 0
         if frame.type in self._telemetry:
             self._count_gap(frame)
         return Received(frame.type, frame.seq, message.from_payload(frame.payload))
 
     def _count_gap(self, frame: RawFrame) -> None:
+        # Before the first session that was seen to begin nothing is known to be missing.
         gap = (frame.seq - self._expected.get(frame.type, frame.seq)) % _SEQ_SPAN
         if gap < _SEQ_SPAN // 2:  # otherwise the counter went back: a repeat or a restart, nothing is lost
             self._gaps += gap

@@ -143,7 +143,7 @@ class DynamixelWire:
             whole = bytes(self._buffer[:size])
             if crc16(whole[:-2]) != int.from_bytes(whole[-2:], "little"):
                 self._counters["crc_errors"] += 1
-                del self._buffer[:1]
+                del self._buffer[:1]  # not the packet: its length may be what was damaged
                 continue
             del self._buffer[:size]
             self._counters["packets"] += 1
@@ -159,13 +159,14 @@ class DynamixelWire:
         while True:
             at = self._buffer.find(HEADER)
             if at < 0:
+                # The last bytes may be the beginning of a header.
                 keep = next((k for k in (3, 2, 1) if self._buffer[-k:] == HEADER[:k]), 0)
                 self._drop(len(self._buffer) - keep)
                 return False
             self._drop(at)
             if len(self._buffer) < 7:
                 return False
-            if 3 <= int.from_bytes(self._buffer[5:7], "little") <= LENGTH_MAX:
+            if 3 <= int.from_bytes(self._buffer[5:7], "little") <= LENGTH_MAX:  # an instruction and the CRC at least
                 return True
             self._drop(1)
 

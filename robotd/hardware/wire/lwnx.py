@@ -80,6 +80,7 @@ class LwnxWire:
     def feed(self, data: bytes) -> list[Packet]:
         """Take bytes as they come; return the packets that are whole now."""
         packets: list[Packet] = []
+        # A little at a time, so that the buffer stays bounded, whatever is poured in.
         for start in range(0, len(data), PAYLOAD_MAX_BYTES):
             self._buffer += data[start : start + PAYLOAD_MAX_BYTES]
             packets += self._taken()

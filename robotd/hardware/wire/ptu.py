@@ -108,13 +108,14 @@ class PtuWire:
         return [LimitHit(axis)]
 
     def _finish(self) -> list[Message]:
+        # No checksum tells what was damaged, so a line with a byte that nobody types is no answer.
         if any(not 0x20 <= byte < 0x7F for byte in self._line):
             self._skip()
             return []
         text = self._line.decode("ascii")
         self._line.clear()
         if "*" in text:
-            answers = text.split("*")[1:]
+            answers = text.split("*")[1:]  # before the first stands the echo
             self._counters["replies"] += len(answers)
             return [Done(answer.strip()) for answer in answers]
         if "!" in text:

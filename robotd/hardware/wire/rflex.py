@@ -135,7 +135,7 @@ class RflexWire:
                 check ^= byte
             if check != whole[-3] or whole[-2:] != TAIL:
                 self._counters["checksum_errors"] += 1
-                del self._buffer[: len(HEAD)]
+                del self._buffer[: len(HEAD)]  # not the frame: its length may be what was damaged
                 continue
             del self._buffer[:size]
             self._counters["frames"] += 1
@@ -151,7 +151,7 @@ class RflexWire:
         while True:
             at = self._buffer.find(HEAD)
             if at < 0:
-                keep = 1 if self._buffer[-1:] == HEAD[:1] else 0
+                keep = 1 if self._buffer[-1:] == HEAD[:1] else 0  # a head may be cut in half here
                 self._drop(len(self._buffer) - keep)
                 return False
             self._drop(at)

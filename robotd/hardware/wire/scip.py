@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from robotd.hardware.wire.word import Word, typed
 
 LINE_MAX_BYTES = 128
+"""Data come in lines of 64 characters and a sum; what is longer than this is noise."""
 BLOCK_MAX_LINES = 200
 """A scan of a turn in steps of an eighth of a degree has 136 lines; what is longer is no block."""
 _OFFSET = 0x30
@@ -99,6 +100,7 @@ class Parameters:
 
 
 _STEPS_MAX = 20_000
+"""More than any scanner has: bounds the scan that a lying one would have us ask for."""
 
 
 def command(text: str) -> bytes:
