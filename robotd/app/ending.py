@@ -34,6 +34,7 @@ class Ending:
         self.reason = ""
         self.exit_code = 0
         self.is_hastened = False
+        """Whether a second signal came: what is still waited for is given up."""
         self._stop_now = stop_now
         self._main = asyncio.current_task()
         for number in (*_ON_REQUEST, *_OTHERS):

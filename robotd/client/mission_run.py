@@ -31,9 +31,12 @@ class MissionRun:
         self._lease_s = started.lease_s
         self._period_s = started.lease_s / _RENEWALS_PER_LEASE
         self._late_s = 0.0
+        """By how much a renewal was late at most; it tells our own fault from the daemon's."""
         self._held: str | None = None
+        """Why the mission was held when a status said so last: only a change is news."""
         self._next_s = now_s + self._period_s
         self._has_begun = False
+        """Whether its first word came: sweeps and poses before that are of another mission."""
         self._end: MissionProgress | None = None
 
     @property

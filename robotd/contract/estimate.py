@@ -37,6 +37,7 @@ class Extent:
         """Return whether a pose lies within, if its sides are moved outward by ``near_m`` and ``near_rad``."""
         beside_m = max(self.x_min_m - pose.x_m, pose.x_m - self.x_max_m)
         above_m = max(self.y_min_m - pose.y_m, pose.y_m - self.y_max_m)
+        # From the middle: the headings may run across pi, where ends cannot be compared.
         middle_rad = (self.heading_min_rad + self.heading_max_rad) / 2
         turned_rad = abs(wrap_rad(pose.heading_rad - middle_rad)) - (self.heading_max_rad - middle_rad)
         return max(beside_m, above_m) <= near_m and turned_rad <= near_rad

@@ -48,7 +48,9 @@ class SweepProgress:
     time_ns: int
     number: int
     taken: int
+    """Readings made so far, failed ones included."""
     total: int
+    """Readings of the whole sweep."""
     hits: int
     misses: int
     rejected: int

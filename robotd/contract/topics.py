@@ -72,7 +72,9 @@ class Message:
 
     topic: str
     session: str
+    """Changes with each start of the daemon: then ``seq`` begins again."""
     seq: int
+    """Counts the messages of its topic; a number left out is a message missed."""
     event: Published | None
     """None for a type of event that this version does not know."""
 

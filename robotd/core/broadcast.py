@@ -13,6 +13,7 @@ class Subscription(Generic[T]):
     """One reader's bounded queue; when it is full the oldest item gives way."""
 
     def __init__(self, depth: int) -> None:
+        # The oldest gives way: a slow reader still learns the newest.
         self._items: deque[T] = deque(maxlen=depth)
         self._ready = asyncio.Event()
 

@@ -52,6 +52,7 @@ def columns_of(stops: tuple[MapStop, ...]) -> StopColumns:
         counts=_packed([len(stop.readings) for stop in stops], _COUNT),
         in_odom=_packed(_poses([stop.in_odom for stop in stops]), _FLOAT),
         in_map=_packed(_poses([stop.map_from_robot for stop in stops]), _FLOAT),
+        # Steps between readings are small and alike, and pack to little.
         times_ns=_packed(np.diff(readings["time_ns"], prepend=np.int64(0)), _WHOLE),
         bearings_rad=_packed(readings["bearing_rad"], _FLOAT),
         ranges_m=_packed(readings["range_m"], _FLOAT),
@@ -93,6 +94,7 @@ def _readings(columns: StopColumns, total: int) -> NDArray[np.void]:
     if bool((readings["range_m"][measured] <= 0.0).any()):
         raise ValueError("ranges_m: expected positive ones for hits and misses")
     readings["range_m"][~measured] = 0.0
+    # A stop is never changed, and this one was read into an array that could be.
     readings.flags.writeable = False
     return readings
 

@@ -218,6 +218,7 @@ class MapStore:
         entries = [self._listed(name, version) for version in self._versions(name)]
         saved = [entry.version for entry in entries if not entry.is_unsaved]
         unsaved = [entry.version for entry in entries if entry.is_unsaved]
+        # Counted apart: maps that kept themselves must not push out what somebody saved.
         for version in (*saved[: -self._keep], *unsaved[:-UNSAVED_KEPT]):
             if (name, version) != self._loaded:
                 self._drop(name, version)

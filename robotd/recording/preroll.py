@@ -58,6 +58,7 @@ class PrerollJournal(Journal):
         self._remembered.append(entry)
         source = source_of(entry)
         if not self._budgets.use(source, _ENTRY_OVERHEAD_BYTES + len(encode(entry)[1])):
+            # All of it goes: what lacks a piece no replay could use, and the memory is given back.
             self._remembered, self._exceeded = None, source
             log.info("%s", self._why_not())
 

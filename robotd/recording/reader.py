@@ -126,6 +126,7 @@ def _messages(file: "_BoundedFile") -> Iterator[tuple[str, Message]]:
         if isinstance(record, Channel):
             topics[record.id] = record.topic
         elif isinstance(record, Message):
+            # A chunk that is missing as a whole leaves no wrong checksum, only a gap in the count.
             if record.sequence != read_count or record.channel_id not in topics:
                 raise RecordingError(f"message {read_count} is missing")
             read_count += 1

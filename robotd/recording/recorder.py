@@ -147,6 +147,7 @@ class _ChunkedFile:
             self._writer.add_message(channel, time_ns, data, publish_time=time_ns, sequence=self._written)
             self._written += 1
         if messages:
+            # A chunk for what there is, however little: what is not in a chunk with its checksum is not believed later.
             self._writer.flush()  # type: ignore[no-untyped-call]  # mcap leaves it bare
             os.fsync(self._file.fileno())
 

@@ -6,6 +6,7 @@ from robotd.contract.events import Event, MissionProgress
 from robotd.core.broadcast import Broadcast
 
 _REMEMBERED = 16
+"""Missions; a client asks for the end of its own within its lease, so the last few would do."""
 
 
 class Outcomes:

@@ -44,6 +44,7 @@ class Outlet:
 
     def _number(self, topic: Topic) -> int:
         seq = self._seq.get(topic, 0)
+        # Counted before it is known whether it can be sent: what is lost must show as a gap.
         self._seq[topic] = seq + 1
         return seq
 

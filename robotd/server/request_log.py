@@ -21,6 +21,7 @@ class RequestLog:
     """Notes requests, each kind of line within bounds: a client that floods must not hide what the others do."""
 
     def __init__(self) -> None:
+        # One limit for each kind: a client that is refused without end must not hide a stop.
         self._stops = LogLimit(burst=_BURST)
         self._done = LogLimit(burst=_BURST)
         self._refused = LogLimit(burst=_BURST)
