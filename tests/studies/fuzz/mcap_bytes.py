@@ -27,7 +27,7 @@ class Container:
     missing: set[int] = field(default_factory=set)
     """Counts that no message has."""
     cut: int = 0
-    """So many bytes are missing at the end."""
+    """How many bytes are missing at the end."""
 
 
 def mcap_bytes(messages: Sequence[Message], container: Container) -> bytes:
