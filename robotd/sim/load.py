@@ -50,5 +50,6 @@ def _is_map(name_or_path: str) -> bool:
 def _is_building(path: Path) -> bool:
     if not path.is_file():
         return False
+    # By what it holds: the file of a building may have any name.
     with path.open("rb") as file:
         return file.read(len(_GZIP_MAGIC)) == _GZIP_MAGIC

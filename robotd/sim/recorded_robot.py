@@ -24,8 +24,10 @@ from robotd.sim.physics.walls import NO_WALLS, Point
 from robotd.sim.robot import board_by_device, clocks_of_seed
 
 AT_STOP_M = 0.15
+"""The daemon stops within a few centimetres; what was seen from farther off may be hidden from here."""
 _CLOCK_SKEW_PPM = 40.0
 _BRISK = BodySettings(acceleration_mps2=3.0, turn_acceleration_radps2=15.0, speed_max_mps=3.0, turn_max_radps=6.0)
+"""Quicker than any robot: nothing is measured on the way, it is only waited for."""
 _SHOT_US = 1_000
 _STRENGTH = 1_000
 _AIMED_WELL_RAD = 1e-9
@@ -46,6 +48,7 @@ class Place:
 
     def __init__(self, building: RecordedBuilding, odometry: OdometrySource) -> None:
         first = building.stops[0]
+        # Raw odometry has a frame of its own: it is laid so that both agree at the first stop.
         tie = Pose2(0.0, 0.0, 0.0) if odometry is OdometrySource.CORRECTED else first.pose @ first.odometry.inverse()
         self._stops = tuple(
             (stop, stop.pose if odometry is OdometrySource.CORRECTED else tie @ stop.odometry)
@@ -78,7 +81,7 @@ class Place:
     def _in_stop(self) -> Pose2:
         """Return where the body is in the frame of the recorded robot at the nearest stop."""
         here = self.body.true_pose
-        if here != self._told_from:
+        if here != self._told_from:  # a sweep asks hundreds of times from one place
             self._stop, self._stop_at = min(self._stops, key=lambda pair: pair[1].distance_m(here))
             self._told_from, self._view = here, None
         return self._stop_at.inverse() @ here
@@ -141,7 +144,7 @@ class RecordedLaser:
         if not self._on:
             return ShotAnswer(ShotStatus.LASER_OFF, 0.0, 0, _SHOT_US)
         range_m = self._recorded_m(pan_rad)
-        if range_m is None:
+        if range_m is None:  # no beam went there: not a miss, which would clear cells
             return ShotAnswer(ShotStatus.NOT_MEASURED, 0.0, 0, _SHOT_US)
         if math.isinf(range_m):
             return ShotAnswer(ShotStatus.OVER_RANGE, 0.0, 0, _SHOT_US)

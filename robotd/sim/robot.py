@@ -130,6 +130,7 @@ def board_by_device(
     dialects: Dialects,
 ) -> dict[str, HostedBoard]:
     """Put a board on top of each plant, each with a clock and a boot id of its own."""
+    # Another with each boot, as PROTOCOL.md demands, and yet the same in each run.
     boot_ids = {device: stream(seed, f"{device}/boot {boot}").getrandbits(32) for device in DEVICES}
     return {
         "drive": dialects.drive_on(DriveOnClock(drive, clocks["drive"]), boot_ids["drive"]),

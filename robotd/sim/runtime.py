@@ -91,6 +91,7 @@ async def _served(
                 task.cancel()
             outcomes = await asyncio.gather(*tasks, return_exceptions=True)
     for outcome in outcomes:
+        # Being cancelled is none: what a board raised by itself must not be lost with its task.
         if isinstance(outcome, Exception):
             raise outcome
 
@@ -103,7 +104,7 @@ def _links(directory: Path, paths: dict[str, str]) -> Iterator[dict[str, str]]:
         try:
             directory.mkdir(parents=True, exist_ok=True)
             for device, link in links.items():
-                if link.is_symlink():
+                if link.is_symlink():  # a file in its place is somebody's: the next line fails on it
                     link.unlink()
                 link.symlink_to(paths[device])
         except OSError as error:
@@ -111,6 +112,7 @@ def _links(directory: Path, paths: dict[str, str]) -> Iterator[dict[str, str]]:
         yield {device: str(link) for device, link in links.items()}
     finally:
         for device, link in links.items():
+            # Ours alone: another simulator may have taken the name since.
             if link.is_symlink() and str(link.readlink()) == paths[device]:
                 link.unlink()
 

@@ -27,7 +27,7 @@ class TruthLog:
         pose = self._told = self._robot.truth
         line = {"t_ns": self._time.now_ns(), "x_m": pose.x_m, "y_m": pose.y_m, "heading_rad": pose.heading_rad}
         self._file.write(json.dumps(line) + "\n")
-        self._file.flush()
+        self._file.flush()  # those who show the robot read along
 
 
 @contextmanager

@@ -89,7 +89,7 @@ class Board(ABC):
         for frame in self._deframer.feed(data):
             self._answer(frame)
             self._observe()
-            self._tell_change()
+            self._tell_change()  # after the answer to what changed it (PROTOCOL.md)
 
     def advance(self, now_us: int) -> None:
         """Let time pass; what falls due on the way happens in order, each at its own time."""
@@ -155,10 +155,11 @@ class Board(ABC):
         self._now_us = to_us
         self._advance_plant(to_us)
         self._observe()
+        # The deadman before the telemetry: what is told at a moment holds at that moment.
         if self._deadline_us is not None and self._deadline_us <= to_us:
             self._latch(Fault.DEADMAN)
         if self._telemetry_us is not None and self._telemetry_us <= to_us:
-            self._telemetry_us += self._period_us
+            self._telemetry_us += self._period_us  # on its grid: a late call does not shift it
             self._outbox.tell(self._status())
             for report in self._reports():
                 self._outbox.tell(report)
@@ -204,6 +205,7 @@ class Board(ABC):
         allowed = rule.allows(self._beneath, faulted=bool(self._faults))
         outcome = self._handlers[type(request)](request, seq) if allowed else Result.WRONG_STATE
         wire = b"" if outcome is None else self._outbox.reply(request.TYPE, seq, outcome)
+        # BUSY is not kept: asked again later, the same request may be done (PROTOCOL.md).
         if rule.deduplicated and outcome is not Result.BUSY:
             self._outbox.remember(request.TYPE, seq, wire)
 
@@ -232,7 +234,7 @@ class Board(ABC):
         self._period_us = configure.telemetry_ms * 1000
         self._telemetry_us = self._now_us + self._period_us
         self._outbox.telling = True
-        self._told = None
+        self._told = None  # so that a status follows at once
         self._ttl_max_ms = configure.ttl_max_ms
         return ConfigureReply(Result.OK, zlib.crc32(configure.to_payload()))
 

@@ -27,7 +27,7 @@ class DriveBoard(Board):
             return Result.BAD_VALUE
         self._plant.command(wanted.speed_mmps / 1000, wanted.turn_mradps / 1000)
         self._wanted = bool(wanted.speed_mmps or wanted.turn_mradps)
-        self._deadline_us = None
+        self._deadline_us = None  # that of a standstill runs out without a fault
         if self._wanted:
             self._grant(min(wanted.ttl_ms, TTL_LIMIT_MS))
         return Result.OK
@@ -52,6 +52,7 @@ class DriveBoard(Board):
         was_moving = self._moving
         self._moving = self._wanted or any(self._velocity())
         pressed = self._plant.bumpers
+        # One that stays pressed is not pressed again: after Clear and Arm the base can back away (PROTOCOL.md).
         newly = pressed & ~self._bumpers
         if pressed != self._bumpers:
             self._bumpers = pressed

@@ -74,7 +74,7 @@ class PanTiltBoard(Board):
         arrives_us = self._plant.arrives_us
         if arrives_us is None or arrives_us <= self._now_us:
             self._motion = Motion.DONE
-            self._deadline_us = None
+            self._deadline_us = None  # a head that is there holds still without one
             self._outbox.tell(self._aim_report())
 
     def _reports(self) -> tuple[Message, ...]:

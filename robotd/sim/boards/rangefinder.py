@@ -39,7 +39,7 @@ class RangefinderBoard(Board):
             return Shot(self._now_us, 0, 0, ShotStatus.LASER_OFF)
         answer = self._plant.shoot(self._now_us)
         patience_us = shoot.timeout_ms * 1000
-        if answer.takes_us > patience_us:
+        if answer.takes_us > patience_us:  # it ends then, and says so
             answer = ShotAnswer(ShotStatus.DEVICE_ERROR, 0.0, 0, patience_us)
         self._pending = (self._now_us + answer.takes_us, seq, self._shot(answer))
         return None
@@ -55,6 +55,7 @@ class RangefinderBoard(Board):
             return
         _, seq, shot = self._pending
         self._pending = None
+        # At once: each request has its answer, even if the light goes off under it (PROTOCOL.md).
         self._answer_late(Shoot, seq, Shot(shot.board_us, 0, 0, ShotStatus.LASER_OFF))
 
     def _cut(self) -> None:

@@ -110,7 +110,7 @@ def view_from(stop: Stop, in_stop: Pose2) -> View:
     distances_m[missed], directions_rad[missed] = np.inf, angles_rad[missed]
     seen = ~np.isnan(distances_m)
     bearings_rad = np.mod(directions_rad[seen] - in_stop.heading_rad + math.pi, math.tau) - math.pi
-    order = np.argsort(bearings_rad, kind="stable")
+    order = np.argsort(bearings_rad, kind="stable")  # beams seen from the side may change places
     return View(bearings_rad[order], distances_m[seen][order], stop.step_rad)
 
 
@@ -169,9 +169,10 @@ def load_recorded_building(path: Path) -> RecordedBuilding:
     """
     try:
         with gzip.open(path) as file:
-            content = file.read(_LARGEST_BYTES + 1)
+            content = file.read(_LARGEST_BYTES + 1)  # bounded: a small file can unpack to any size
         if len(content) > _LARGEST_BYTES:
             raise RecordingError(f"{path}: over {_LARGEST_BYTES >> 20} MiB when unpacked: no recorded building")
+        # The header alone first: another version may lay out the rest in another way.
         header = msgspec.json.decode(content, type=_Header)
         if (header.format, header.version) != (FORMAT, VERSION):
             found = f"{header.format!r} version {header.version}"

@@ -21,6 +21,7 @@ from robotd.logs.scan import RecordedLog
 
 STANDARD_INPUT = "-"
 _HEAD = 1024
+"""Bytes by which a file is known; the mark of a tar stands farthest in."""
 _TAR_AT = 257
 _Unpacked = gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile
 _UNPACKERS: dict[bytes, Callable[[BinaryIO], _Unpacked]] = {

@@ -96,7 +96,7 @@ def load_world(name_or_path: str) -> World:
     """
     path = WORLDS_DIR / f"{name_or_path}.toml" if name_or_path in world_names() else Path(name_or_path)
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = path.read_text(encoding="utf-8-sig")  # some editors begin with a byte order mark
     except FileNotFoundError as error:
         known = ", ".join(world_names())
         raise ConfigError(f"no such world; known: {known}, or a path", file=name_or_path) from error

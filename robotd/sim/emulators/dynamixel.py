@@ -12,6 +12,7 @@ _COUNTS_PER_RAD = 4096 / math.tau
 _CENTRE = 2048
 _MODEL = struct.pack("<HB", 1060, 45)
 _BOOTS_US = 250_000
+"""The quarter of a second for which a real one is silent."""
 _UNKNOWN_INSTRUCTION, _RANGE, _ACCESS = 2, 4, 7
 
 
@@ -105,6 +106,7 @@ class DynamixelEmulator:
         values = {
             dynamixel.TORQUE_ENABLE: self._torque[servo],
             dynamixel.HARDWARE_ERROR: self._hardware_error[servo],
+            # -1 is how a servo says that its watchdog ran out.
             dynamixel.BUS_WATCHDOG: -1 if self._is_expired[servo] else self._watchdog[servo],
             dynamixel.GOAL_POSITION: self._goals[servo],
             dynamixel.MOVING: int(self._plant.arrives_us is not None),

@@ -21,6 +21,7 @@ class PtuEmulator:
     def __init__(self, plant: HeadPlant) -> None:
         self._plant = plant
         low_pan, high_pan, low_tilt, high_tilt = (limit / _STEP_RAD for limit in plant.limits_rad)
+        # Rounded inwards: what it names as a limit it can reach.
         self._limits = {
             "P": (math.ceil(low_pan), math.floor(high_pan)),
             "T": (math.ceil(low_tilt), math.floor(high_tilt)),
@@ -76,7 +77,7 @@ class PtuEmulator:
             self._reset_done_us = None
             self._goal = {"P": 0, "T": 0}
             self._plant.aim(0.0, 0.0)
-            self._said += b"!T!T!P!P*"
+            self._said += b"!T!T!P!P*"  # to find its stops it meets them, and says so
             self._end()
         if self._waits and (self._plant.arrives_us or 0) <= self._now_us:
             self._waits = False

@@ -46,6 +46,7 @@ class RflexEmulator:
         """Take bytes from the host."""
         self.advance(now_us)
         for message in self._wire.feed(data):
+            # Since the last one heard, dropped or not: of a burst nothing but its first is obeyed.
             is_burst, self._heard_us = now_us - self._heard_us < _SPACING_US, now_us
             if isinstance(message, OtherFrame) and not is_burst:
                 self._obey(message)

@@ -9,6 +9,7 @@ from robotd.sim.physics.plant import ScannerPlant
 _STEPS_PER_TURN, _FIRST, _FRONT, _LAST = 1440, 0, 540, 1080
 _RANGE_MIN_MM, _RANGE_MAX_MM = 100, 30_000
 _SCAN_US = 25_000
+"""One turn of its mirror, which makes 2400 a minute."""
 _BLOCK = 64
 _CODES = {ShotStatus.OVER_RANGE: 1, ShotStatus.TOO_NEAR: 4}
 _OTHER_CODE = 5
@@ -92,7 +93,7 @@ class ScipEmulator:
         answer = self._plant.measure(at_us, (step - _FRONT) * math.tau / _STEPS_PER_TURN)
         if answer.status is not ShotStatus.OK:
             return _CODES.get(answer.status, _OTHER_CODE)
-        return min(max(round(answer.range_m * 1000), _RANGE_MIN_MM), _RANGE_MAX_MM)
+        return min(max(round(answer.range_m * 1000), _RANGE_MIN_MM), _RANGE_MAX_MM)  # below it numbers are codes
 
     def _say(self, typed: str, status: str, lines: list[str] | None = None) -> None:
         self._said += "\n".join((typed, status + sum_of(status), *(lines or ()), "", "")).encode()

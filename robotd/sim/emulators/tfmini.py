@@ -8,6 +8,7 @@ from robotd.hardware.wire.tfmini import FORMAT_CM, OUTPUT_OFF, OUTPUT_ON, RATE_0
 from robotd.sim.physics.plant import LaserPlant, ShotAnswer
 
 _STREAM_US = 10_000
+"""A hundred readings a second, as from power-up."""
 _TEMPERATURE = b"\xc8\x08"
 _VERSION = b"\x08\x00\x02"
 _SENTINELS = {
@@ -21,6 +22,7 @@ _SENTINELS_OF = {
     Model.TFMINI_S: {**_SENTINELS, ShotStatus.AMBIENT: (0xFFFC, 500)},
 }
 _STRENGTH_MIN, _STRENGTH_MAX = 101, 30_000
+"""A good reading is never called weak, or saturated, for its strength."""
 
 
 class TfminiEmulator:

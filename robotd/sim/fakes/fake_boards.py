@@ -137,7 +137,7 @@ class FakeBoard:
     def _take(self, frame: RawFrame) -> None:
         layout = self._requests.get(frame.type)
         if layout is None or payload_size(layout) != len(frame.payload):
-            if frame.type < REQUEST_END:
+            if frame.type < REQUEST_END:  # or a line that is looped back would answer itself
                 self._outbox.reply(frame.type, frame.seq, Result.UNKNOWN_TYPE if layout is None else Result.BAD_LENGTH)
             return
         request = layout.from_payload(frame.payload)
@@ -154,7 +154,7 @@ class FakeBoard:
     def _open_session(self, hello: Hello) -> None:
         """Go on to the session that followed, or, for a fresh daemon, back to the beginning."""
         self._outbox.new_session()
-        if self._hello is not None and self._hello.nonce == hello.nonce:
+        if self._hello is not None and self._hello.nonce == hello.nonce:  # said again: its answer was lost
             return
         goes_on = self._hello is not None and self._walk.finished and self._session + 1 < len(self._script.sessions)
         self._hello = hello
@@ -192,6 +192,7 @@ class FakeBoard:
             self._period_us = request.telemetry_ms * 1000
             self._put_off_repeating()
         self._moving = starts_motion(request, moving=self._moving) or (self._moving and not is_standstill(request))
+        # Stops are said until they are obeyed, and the script has one step for all of them.
         is_volley = isinstance(request, Stop | Kill) and request == self._last_change
         self._last_change = request
         expected = self._walk.expected
@@ -217,7 +218,7 @@ class FakeBoard:
             self._last[AimReport] = aimed(request, seq, self._now_us, Motion.TURNING)
         if meeting.asked.answered and not isinstance(request, _MADE_LIVE):
             self._open[meeting.place] = (request, seq, self._now_us)
-            self._outbox.remember(request.TYPE, seq, b"")
+            self._outbox.remember(request.TYPE, seq, b"")  # a repeat waits for the same answer
         else:
             self._reply(request, seq, plausible_answer(request, self._now_us))
 

@@ -35,7 +35,7 @@ from robotd.hardware.link.tap import Direction
 from robotd.recording.entries import BytesEntry, Entry, LineEntry
 
 QUESTIONS = (Hello, Ping, Identify, ReadAim, ReadLimits)
-"""They change nothing (Hello begins a script anew)."""
+"""They change nothing (Hello begins another script)."""
 BOOKKEEPING = (Arm, Disarm, Clear, Stop, Kill)
 """What clients ask between missions: a script goes on without them if need be."""
 
@@ -174,6 +174,7 @@ class _Builder:
         self._moving = False
 
     def _end_session(self) -> None:
+        # One in which the board told nothing is a handshake that failed: there is nothing to play.
         if any(isinstance(step, Said) and step.answers is None for step in self._steps):
             self._sessions.append(Session(self._hello, tuple(self._steps)))
         self._begin_session()

@@ -88,7 +88,7 @@ class Cable:
     def unplug(self) -> None:
         """Pull the plug at the host's side."""
         self.is_plugged = False
-        while not self._hosts.empty():
+        while not self._hosts.empty():  # lines opened and not served yet go with the plug
             self._hosts.get_nowait().close()
         if self._host is not None:
             self._host.close()
@@ -145,6 +145,7 @@ class Cable:
             outcomes = await asyncio.gather(*carrying, return_exceptions=True)
             board.close()
         for outcome in outcomes:
+            # That a line ends is what cables are for; all else is a mistake of ours.
             if isinstance(outcome, Exception) and not isinstance(outcome, TransportError):
                 raise outcome
 
@@ -187,6 +188,7 @@ class _Plug:
         self._line.close()
 
     def _check(self) -> None:
+        # The error takes the line with it: closed here, reading finds it dead as well.
         if self._cable.fault.refuses_writes:
             self._line.close()
             raise TransportError(f"{self.name}: write: Input/output error")

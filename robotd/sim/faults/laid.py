@@ -138,18 +138,19 @@ def _unlink(link: Path) -> None:
 
 
 def _second_robot() -> SimulatedRobot:
+    # A robot of its own: a stranger that is armed must not drive the first one's body.
     return SimulatedRobot(load_world("office"), seed=0)
 
 
 def _neighbour(device: str) -> str:
-    return DEVICES[(DEVICES.index(device) + 1) % len(DEVICES)]
+    return DEVICES[(DEVICES.index(device) + 1) % len(DEVICES)]  # of another kind: that is what a handshake can tell
 
 
 def _reboot(robot: EmulatedRobot, device: str) -> Callable[[], None] | None:
     board = robot.boards[device]
     if not isinstance(board, OwnBoard):
         return None
-    boot_ids = random.Random(f"{device}/reboots")
+    boot_ids = random.Random(f"{device}/reboots")  # each boot has another, each run the same
     return lambda: board.reboot(boot_ids.getrandbits(32))
 
 

@@ -6,6 +6,7 @@ from robotd.hardware.link.tap import Direction
 from robotd.sim.faults.fault import Fault
 
 _STUCK_AT = (0x00, 0x55, 0xFF)
+"""A line held low, whose zeros part our frames; one that alternates; one held high."""
 _FLIPPED_ONE_IN = 50
 
 
@@ -22,6 +23,7 @@ class HalfBaud(Fault):
 
     def changed(self, data: bytes, way: Direction) -> bytes:
         """Return each bit twice, as a receiver sees them that samples twice as fast."""
+        # The low half first: a serial line sends the lowest bit first.
         return bytes(half for byte in data for half in (_stretched(byte & 0x0F), _stretched(byte >> 4)))
 
 

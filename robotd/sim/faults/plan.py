@@ -88,6 +88,7 @@ async def carry_out(
     begun_ns = now_ns()
     async with asyncio.TaskGroup() as group:
         for number, fault in enumerate(plan):
+            # Luck of its own for each: what one draws does not depend on when others draw.
             rng = random.Random(f"{seed}/{number}/{fault.device}/{fault.fault}")
             group.create_task(_happen(fault, cables[fault.device], rng, begun_ns, say))
 
@@ -101,7 +102,7 @@ async def _happen(
     cable.set_fault(fault)
     if planned.lasts_s is None:
         return
-    await _until(begun_ns, planned.end_s)
+    await _until(begun_ns, planned.end_s)  # from the beginning of all, so that delays do not add up
     if cable.fault is fault:  # where one begins as another ends, the one may already be there
         cable.mend()
     say(f"{planned.device}: {planned.fault} is over")

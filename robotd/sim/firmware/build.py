@@ -80,5 +80,5 @@ builder.set_source(
     sources=[f"{PLACE}/{name}.c" for name in SOURCES],
     include_dirs=[PLACE],
     extra_compile_args=["-std=c99", "-O2", "-fvisibility=hidden", "-Wall", "-Wextra"],
-    py_limited_api=True,
+    py_limited_api=True,  # one build for every version of Python
 )

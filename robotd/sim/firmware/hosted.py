@@ -23,6 +23,7 @@ class FirmwareBoard:
 
     def __init__(self, device: Any, hal: Any, power_up: Any, *, keep: object, boot_id: int) -> None:
         self._output = bytearray()
+        # Held for as long as the board lives: C has pointers to them, of which Python knows nothing.
         self._device, self._hal, self._power_up, self._keep = device, hal, power_up, keep
         self._board = ffi.addressof(device, "board")
         self._handle = ffi.new_handle(self._output)

@@ -12,6 +12,7 @@ from robotd.sim.physics.plant import DrivePlant, HeadPlant, ScannerPlant, ShotAn
 
 _PPB = 10**9
 _OLDEST_BOOT_US = 600_000_000
+"""Each board has been up for a time of its own, ten minutes at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,7 @@ class BoardClock:
 
     def true_us(self, board_us: int) -> int:
         """Return the earliest true time at which the board's clock shows ``board_us``."""
+        # Rounded up, so that the board's clock has got there by then.
         return -((self.offset_us - board_us) * _PPB // (_PPB + self.skew_ppb))
 
 
@@ -112,6 +114,7 @@ class HeadOnClock:
     def arrives_us(self) -> int | None:
         """When the motion under way will be done."""
         arrives_us = self._plant.arrives_us
+        # A tick later: rounded down, the board would look before the head is there.
         return None if arrives_us is None else self._clock.board_us(arrives_us) + 1
 
     @property

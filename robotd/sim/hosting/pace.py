@@ -77,8 +77,8 @@ class SlowedTime:
         passed_ns, late_ns = host_ns - self._seen_ns, host_ns - self._due_ns
         self._seen_ns = host_ns
         if late_ns > LATE_NS:
-            self._due_ns = host_ns + BEAT_NS
-            self._lose(min(late_ns, passed_ns))
+            self._due_ns = host_ns + BEAT_NS  # or the next look would count the same lateness again
+            self._lose(min(late_ns, passed_ns))  # what was late before the last look is counted already
         else:
             self._behind_ns = max(0, self._behind_ns - round(passed_ns * (CATCHING_UP - 1.0)))
         return host_ns - self._behind_ns

@@ -107,15 +107,16 @@ class Body:
             self._first_us = to_us
         self._now_us = max(self._now_us, to_us)
         while not self.at_rest:
+            # On a fixed grid, whenever a command came: how often somebody looks changes nothing.
             next_us = self._knot_us - self._knot_us % _KNOT_US + _KNOT_US
             if next_us > self._now_us:
                 return
             self._tie(next_us)
-        self._knot_us = self._now_us
+        self._knot_us = self._now_us  # at rest nothing happens: an hour of it is one step
 
     def command(self, speed_mps: float, turn_radps: float) -> None:
         """Ramp towards these velocities, as far as the motors go."""
-        self._tie(self._now_us)
+        self._tie(self._now_us)  # a new ramp begins here, so here must be a knot
         self._speed.head_for(speed_mps)
         self._turn.head_for(turn_radps)
 
@@ -130,6 +131,7 @@ class Body:
         """Translation and rotation encoder."""
         way_m, turn_rad = self._since_knot()
         return (
+            # An encoder counts what has passed: it never rounds up.
             math.floor((self._wheel_m + way_m) * self._settings.counts_per_m),
             math.floor((self._wheel_rad + turn_rad) * self._settings.counts_per_rad),
         )
@@ -190,6 +192,7 @@ class Body:
         turn_rad, turn_radps = self._turn.after(seconds)
         pose = self._randomized(way_m, turn_rad)
         if self._is_blocked(pose):
+            # A wall takes the way and not the turn: a round body still turns on the spot beside it.
             way_m = speed_mps = 0.0
             pose = Pose2(self._pose.x_m, self._pose.y_m, pose.heading_rad)
         self._pose = pose
@@ -213,6 +216,7 @@ class Body:
             return False
         before_m = clearance_m(self._walls, (self._pose.x_m, self._pose.y_m))
         after_m = clearance_m(self._walls, (pose.x_m, pose.y_m))
+        # Away from a wall it may always go, or it would stick where it touched.
         blocked = after_m < self._settings.radius_m and after_m < before_m
         self._clearance_m = before_m if blocked else after_m
         return blocked

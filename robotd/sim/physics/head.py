@@ -86,7 +86,7 @@ class Head:
         """What it reads back: whole steps."""
         pan_rad, tilt_rad = self.true_angles_rad
         if self._settings.is_endless and not -math.pi <= pan_rad <= math.pi:
-            pan_rad -= math.copysign(FULL_TURN_RAD, pan_rad)
+            pan_rad -= math.copysign(FULL_TURN_RAD, pan_rad)  # on its way across the half turn
         return self._nearest_step(pan_rad), self._nearest_step(tilt_rad)
 
     @property

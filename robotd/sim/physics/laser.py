@@ -113,7 +113,7 @@ class Laser:
             climb=math.tan(tilt_rad),
         )
         floor_m = settings.height_m / math.tan(-tilt_rad) if tilt_rad < 0.0 else math.inf
-        return min(wall_m, floor_m) / math.cos(tilt_rad)
+        return min(wall_m, floor_m) / math.cos(tilt_rad)  # from level to along the beam
 
     def _measured_m(self, true_m: float) -> float:
         """Return what the instrument makes of it; every shot draws the same amount of randomness."""
@@ -126,5 +126,6 @@ class Laser:
         return true_m + error_m + settings.range_bias_m
 
     def _answer(self, status: ShotStatus, range_m: float = 0.0) -> ShotAnswer:
+        # What comes back falls with the square of the distance.
         strength = min(_STRENGTH_MAX, round(_STRENGTH_AT_1_M / range_m**2)) if range_m else 0
         return ShotAnswer(status, range_m, strength, self._settings.takes_us)

@@ -56,4 +56,4 @@ NOISELESS = NoiseSettings(
 
 def stream(seed: int, purpose: str) -> random.Random:
     """Return the random numbers of one device, which do not depend on what others draw."""
-    return random.Random(f"{seed}/{purpose}")
+    return random.Random(f"{seed}/{purpose}")  # seeded by a text, alike in every process

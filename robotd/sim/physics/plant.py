@@ -45,6 +45,7 @@ class DrivePlant(Protocol):
 
 
 _WATCH_US = 10_000
+"""A fixed grid: how often somebody looks must not change what a base feels."""
 
 
 class BumperWatch:

@@ -52,6 +52,7 @@ def ray_cast(
     to_start = walls.starts_m - np.array(origin_m)
     along = walls.along_m
     cross = cos * along[:, 1] - sin * along[:, 0]
+    # Parallel walls divide by zero here, and are met edge-on below.
     with np.errstate(divide="ignore", invalid="ignore"):
         distance = (to_start[:, 0] * along[:, 1] - to_start[:, 1] * along[:, 0]) / cross
         share = (to_start[:, 0] * sin - to_start[:, 1] * cos) / cross
@@ -59,6 +60,7 @@ def ray_cast(
     edge_on = cross == 0.0
     if np.any(edge_on):
         met[edge_on], distance[edge_on] = _meet_edge_on(to_start[edge_on], along[edge_on], np.array((cos, sin)))
+    # Where no wall is met the distance may be infinite, and a level climb times that is no number.
     met &= eye_height_m + climb * np.where(met, distance, 0.0) <= walls.heights_m
     return float(np.min(distance, where=met, initial=np.inf))
 
