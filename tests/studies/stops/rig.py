@@ -70,6 +70,10 @@ class Wire:
         write(data)
 
 
+ALWAYS_LIT = ("tfmini", "tfmini-s", "tfmini-plus", "tf-luna")
+"""Their light cannot be switched off."""
+
+
 @dataclass(slots=True)
 class Rig:
     """A robot that outlives its daemons."""
@@ -88,7 +92,7 @@ class Rig:
         """Whether the base or the head moves, or a laser shines that can be switched off."""
         now_us = self.robot.clocks["drive"].board_us(now_ns() // 1000)
         self.robot.boards["drive"].advance(now_us)  # a base without a host may have nothing to wake for
-        shines = self.robot._laser._on and "tfmini" not in self.config.rangefinder.dialect
+        shines = self.robot._laser._on and self.config.rangefinder.dialect not in ALWAYS_LIT
         return not self.robot.at_rest or self.robot._head.arrives_us is not None or shines
 
     @contextlib.asynccontextmanager
