@@ -13,7 +13,9 @@ class DriveReadout:
     """Battery and bumpers."""
 
     time_ns: int
+    """When it was measured, or when a device without a clock said so; clock of this host."""
     battery_v: float
+    """0.0 while it is not known: a base may tell of its bumpers first."""
     bumpers_rad: tuple[float, ...]
     """Directions of the pressed bumpers in the robot frame."""
 

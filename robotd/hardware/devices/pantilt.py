@@ -14,8 +14,10 @@ class PanTiltLimits:
     """How far the head turns. A pan range of a full turn or more needs no turn of the base."""
 
     pan_min_rad: float
+    """Rightmost; pan counts counter-clockwise from the robot's heading."""
     pan_max_rad: float
     tilt_min_rad: float
+    """Lowest; tilt counts up from level."""
     tilt_max_rad: float
 
 
@@ -24,6 +26,7 @@ class AimReadback:
     """Where the head points, as measured."""
 
     time_ns: int
+    """When it was measured, or when a device without a clock said so; clock of this host."""
     pan_rad: float
     """Counter-clockwise from the robot's heading (pan zero applied)."""
     tilt_rad: float

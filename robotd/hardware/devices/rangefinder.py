@@ -12,11 +12,13 @@ class Shot:
     """One measurement along the beam, before it is laid into the robot frame."""
 
     time_ns: int
+    """When it was measured, or when a device without a clock said so; clock of this host."""
     status: ReadingStatus
     range_m: float | None
     """Distance along the beam, range bias applied; of a miss, how far nothing was met, None if the device does not say;
     None for every other status."""
     strength: int | None
+    """As the device counts it, which differs from model to model; None if it tells none."""
 
 
 class Rangefinder(Device, Protocol):

@@ -18,7 +18,8 @@ class Rest:
 
     async def seen(self, wanted: AbstractSet[str]) -> None:
         """Return once the device said of everything wanted, from now on, that it is over."""
-        self._goes_on.clear()
+        self._goes_on.clear()  # what was told before was told before the stop
+        # What it has not spoken of since counts as going on.
         while any(self._goes_on.get(what, True) for what in wanted):
             self._told.clear()
             await self._told.wait()

@@ -27,7 +27,7 @@ class LineFormat:
         LineFormat(baud=19200, data_bits=7, parity='E', stop_bits=1)
         """
         found = _TEXT.fullmatch(text)
-        if found is None or int(found[1]) == 0:
+        if found is None or int(found[1]) == 0:  # a speed of 0 tells a terminal to hang up
             raise ValueError(f"expected a speed and a frame as in '115200 8N1' or '19200 7E1', got {text!r}")
         return cls(int(found[1]), int(found[2]), found[3], int(found[4]))
 

@@ -126,7 +126,7 @@ class RwiWire:
 
     def _understood(self, text: str) -> Message | None:
         if text == "%PSR":
-            self._drop_report()
+            self._drop_report()  # the rest of one under way will not come any more
             self._items = []
             return None
         if found := _EVENT.fullmatch(text.replace("%%", "%")):

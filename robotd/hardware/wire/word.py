@@ -66,6 +66,7 @@ def whole(data: bytes, understood: Iterable[tuple[bytes, Word | None]]) -> list[
         understood: the frames in it, each with its word, or with None if it is left out.
     """
     frames = list(understood)
+    # Encoded again and compared, for what stands between frames must not pass unseen.
     if b"".join(frame for frame, _ in frames) != data:
         return [unknown(data)]
     return [word for _, word in frames if word is not None]

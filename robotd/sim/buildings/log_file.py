@@ -79,10 +79,11 @@ def _lines(stack: ExitStack, path: Path, packed: io.BufferedReader) -> Iterator[
         unpacked = stack.enter_context(unpack(packed))
         file = io.BufferedReader(cast("io.RawIOBase", unpacked), _HEAD)
     head = file.peek(_HEAD)
+    # Latin-1 has a letter for every byte, and any may stand in a comment.
     encoding = next((name for magic, name in _TEXTS.items() if head.startswith(magic)), "latin-1")
     _refuse_others(path, head, is_wide=encoding == "utf-16")
     text = io.TextIOWrapper(file, encoding=encoding, errors="replace")
-    stack.callback(text.detach)
+    stack.callback(text.detach)  # the file is the stack's to close
     return iter(lambda: text.readline(LINE_MAX), "")
 
 
@@ -101,5 +102,5 @@ def _refuse_others(path: Path, head: bytes, *, is_wide: bool) -> None:
         what = "a web page, not a CARMEN log"
     if what is not None:
         raise RecordingError(f"{path}: this is {what}")
-    if not is_wide and b"\0" in head:
+    if not is_wide and b"\0" in head:  # in UTF-16 half of a plain text is zeros
         raise RecordingError(f"{path}: not a text: byte {head.index(0)} is 0x00")

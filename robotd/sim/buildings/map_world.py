@@ -79,7 +79,7 @@ def _y_m(spec: GridSpec, row: int) -> float:
 
 def _runs(marks: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
     """Return ``(line, first, one after the last)`` of every run of marks along a line."""
-    padded = np.pad(marks, ((0, 0), (1, 1))).astype(np.int8)
+    padded = np.pad(marks, ((0, 0), (1, 1))).astype(np.int8)  # a run that reaches the edge ends there, too
     steps = np.diff(padded, axis=1)
     lines, firsts = np.nonzero(steps == 1)
     _, lasts = np.nonzero(steps == -1)
@@ -88,7 +88,7 @@ def _runs(marks: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
 
 def _open_place(occupied: NDArray[np.bool_], free: NDArray[np.bool_], spec: GridSpec) -> Point:
     """Return the free place farthest from walls and unknown ground; of equals, the one nearest to the middle."""
-    limit = max(1, round(_CLEAR_M / spec.resolution_m))
+    limit = max(1, round(_CLEAR_M / spec.resolution_m))  # farther off all places are equal, and need no more rounds
     distances = _distances(~free | occupied, limit)
     rows, cols = np.nonzero(free & (distances == distances[free].max()))
     middle = (spec.rows - 1) / 2, (spec.cols - 1) / 2

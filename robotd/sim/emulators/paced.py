@@ -50,5 +50,6 @@ class Paced:
     def _send(self) -> None:
         said = self.device.take_output()
         if said:
+            # Behind what is still under way: a line carries one byte at a time.
             self._line_free_us = max(self._line_free_us, self._now_us) + len(said) * self._byte_us
             self._under_way.append((self._line_free_us, said))
