@@ -34,7 +34,7 @@ class Vertex:
     """The face just below and left of it."""
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False)  # not frozen: a sweep learns the end, and which faces are one, only later
 class Edge:
     """A piece of a support between two vertices that nothing else meets."""
 

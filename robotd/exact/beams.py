@@ -34,6 +34,7 @@ class Beam:
     def body_share(self, eps: Rational) -> Number:
         """Return how much of it must be free: all but the last eps."""
         share = 1 - eps / self.length
+        # A reading shorter than eps has no body at all.
         return share if sign(share) > 0 else arithmetic_of(self.dx)(0)
 
     def turned(self, by_rad: float) -> "Beam":
@@ -50,9 +51,11 @@ def direction(bearing_rad: float, arithmetic: Arithmetic = DEFAULT) -> tuple[Rat
     >>> print(*direction(math.pi / 2))
     0 1
     """
+    # Quarter turns go first, and exactly; what is left keeps the tangent of the half angle far from its pole.
     quarters = round(bearing_rad / (math.pi / 2.0))
     half = Fraction(math.tan((bearing_rad - quarters * math.pi / 2.0) / 2.0))
     tangent = _simplest(half - _NEAR, half + _NEAR)
+    # A rational tangent of the half angle gives a point on the unit circle itself: turned beams keep their length.
     norm = 1 + tangent * tangent
     cos, sin = (1 - tangent * tangent) / norm, 2 * tangent / norm
     for _ in range(quarters % 4):

@@ -43,6 +43,7 @@ class CastVerdict:
 def cast(obstacles: PlanarSet, beam: Beam, eps: Rational, pose: Point) -> CastVerdict:
     """Return what becomes of a beam from a point of rational or irrational coordinates: O(n k) if it meets k edges."""
     entry = _entry(obstacles, beam, pose)
+    # Less, not equal: a body does not hold its end, so it may touch an obstacle there (E is open).
     if entry is not None and compare(entry, beam.body_share(eps)) < 0:
         return CastVerdict(Outcome.BLOCKED, free_length=entry * beam.length)
     if contains(interior(obstacles), pose):  # a beam without body begins somewhere all the same
@@ -72,6 +73,7 @@ def _entry(obstacles: PlanarSet, beam: Beam, pose: Point) -> Number | None:
     """Return the least share of the beam after which it is inside an obstacle; None if it never is."""
     inside = interior(obstacles)
     met = [share for border in obstacles.borders for share in _meeting(border, beam, pose)]
+    # Inside and outside change only where the beam meets an edge: one point between two such shares answers for all.
     between = [share for share in met if sign(share) > 0 > compare(share, 1)]
     arithmetic = arithmetic_of(beam.dx)
     shares = sorted([arithmetic(0), *between, arithmetic(1)], key=cmp_to_key(compare))

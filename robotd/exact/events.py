@@ -30,6 +30,7 @@ class Piece:
         highs = [end.y_float + end.y_error for end in (border.start, border.end)]
         if isinstance(border.support, HalfCircle):
             (y, y_error), reach = approximation(border.support.y), math.sqrt(sum(approximation(border.support.r2)))
+            # An arc rises beyond its ends to one side only.
             if border.support.upper:
                 highs.append(y + y_error + reach)
             else:
@@ -55,6 +56,7 @@ class Event:
         """Join events at one point, written in the simplest way."""
         if len(together) == 1:
             return together[0]
+        # Equal points may be written with roots or without; all that follows is cheaper without.
         point = next((event.point for event in together if event.point.is_rational), together[0].point)
         starts = tuple(piece for event in together for piece in event.starts)
         ends = tuple(piece for event in together for piece in event.ends)

@@ -18,7 +18,7 @@ from robotd.exact.rationals import Rational
 from robotd.exact.sweep import arrange
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True)  # no slots: a cached property needs a place to be kept
 class PolygonMap:
     """A map for one error radius; what many readings need of it is made once."""
 

@@ -26,6 +26,7 @@ _WORDS = re.compile(r"[A-Za-z]+|[(),;=]|[^\s(),;=]+")
 _WITHOUT_INSIDE = {"Point", "MultiPoint", "LineString", "MultiLineString"}
 _WKT_KINDS = {"POLYGON", "MULTIPOLYGON", "GEOMETRYCOLLECTION", *(kind.upper() for kind in _WITHOUT_INSIDE)}
 _SHOWN = 60
+"""Characters of a wrong value that an error message repeats."""
 _DIMENSIONS = {"Z", "M", "ZM"}
 
 
@@ -35,6 +36,7 @@ def map_of_geojson(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
     Raises:
         ValueError: it is none, or has no polygons, or one is impossible, or its coordinates are degrees; says which.
     """
+    # Decimals stay text: as floats they would no longer be what was written.
     document = json.loads(text, parse_float=str)
     _expect(isinstance(document, dict), "an object of GeoJSON", "it", document)
     refuse_geographic(_crs_of(document))
@@ -71,6 +73,7 @@ def map_of_toml(text: str, arithmetic: Arithmetic = DEFAULT) -> PlanarSet:
         return _of_world(document, arithmetic)
     _refuse_unknown(document, {"name", "outline_m", "obstacle"})
     obstacles = document.get("obstacle", [])
+    # A misspelt key would leave something solid out of the map in silence.
     for obstacle in obstacles:
         _refuse_unknown(obstacle, {"name", "points_m", "holes_m"})
     room = ring_of(document["outline_m"], arithmetic) if "outline_m" in document else None

@@ -40,6 +40,7 @@ def middle(border: Border) -> Point:
 
 
 def _between(low: Number, high: Number) -> Number:
+    # The exact middle may have roots, and every predicate on it would pay for them; any point between will do.
     simple = rational((float(low) + float(high)) / 2.0, arithmetic_of(low))
     return simple if compare(low, simple) < 0 < compare(high, simple) else (low + high) / 2
 

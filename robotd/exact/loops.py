@@ -16,6 +16,7 @@ def outline_loops(planar: PlanarSet) -> list[Polyline]:
 
     A set that reaches to infinity is, within them, what does not.
     """
+    # Borders with the set on both sides, or on neither, bound no area.
     ways = [_way(border) for border in planar.borders if border.left != border.right]
     leaving: dict[int, list[int]] = {}
     nodes = _nodes([end for start, _, _, end in ways for end in (start, end)])
@@ -28,6 +29,7 @@ def outline_loops(planar: PlanarSet) -> list[Polyline]:
         while leaving.get(node):
             _, border, forward, end = ways[leaving[node].pop()]
             line = drawn(border.support, border.start, border.end)
+            # Without its end, with which the next one begins.
             loop.extend((line if forward else line[::-1])[:-1])
             node = nodes[id(end)]
         loops.append(loop)
@@ -58,4 +60,5 @@ def _nodes(points: list[Point]) -> dict[int, int]:
         return {}
     ordered = sorted(points, key=cmp_to_key(compare_points))
     steps = (compare_points(one, other) != 0 for one, other in pairwise(ordered))
+    # By identity, for points cannot be hashed: equal ones may be written differently.
     return {id(point): number for point, number in zip(ordered, accumulate(steps, initial=0), strict=True)}

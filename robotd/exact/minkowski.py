@@ -29,9 +29,11 @@ def grown(obstacles: PlanarSet, eps: Rational) -> PlanarSet:
     It is the map, a strip outside each edge and a disk around each corner that stands out: O((n + s) log n) for n edges
     whose strips and disks meet in s points.
     """
+    # The paper's exact case: a disk without radius has no curvature to compare.
     if eps == 0:
         return obstacles
     strips = [_strip(border, eps) for border in obstacles.borders]
+    # In a corner that turns inwards every point is nearer to one of its edges, whose strip holds it.
     disks = [disk(at, eps, closed=True) for at, rays in corners(obstacles) if _stands_out(rays)]
     return arrange([obstacles, *strips, *disks]).select(bool)
 
@@ -126,6 +128,7 @@ def _swept_edge(border: Border, beam: Way, body: Vector) -> PlanarSet:
 
 def _parallelogram(near: Border, offset: Vector, way: Way, *, closed: bool) -> PlanarSet:
     """Return what lies between an edge and its copy at an offset, with the edge; ``way`` is along the offset."""
+    # Sides run along known rational directions: drawn through computed ends, a slope could be irrational (decision 14).
     line, one, two = line_of(near), near.start, near.end
     three, four = two.moved(*offset), one.moved(*offset)
     far = Line(line.a, line.b, line.c + (line.a * offset[0] + line.b * offset[1]))

@@ -34,6 +34,7 @@ def outlines(
         return Point(x + cell * (col - 1), y + cell * (row - 1))
 
     borders: list[Border] = []
+    # Cell sides in one line become one border: what a sweep costs grows with their number.
     for row, first, last, above in _runs(padded):
         borders.append(segment(corner(row, first), corner(row, last), on=True, left=above, right=not above))
     for col, first, last, right in _runs(padded.T):
@@ -43,6 +44,7 @@ def outlines(
 
 def _runs(cells: NDArray[np.bool_]) -> Iterator[tuple[int, int, int, bool]]:
     """Return where rows differ from those before: the row, first and last column of a run, and which is occupied."""
+    # Signed: the difference has to say on which side the solid cell lies.
     before, after = cells[:-1].astype(np.int8), cells[1:].astype(np.int8)
     steps = np.pad(after - before, ((0, 0), (1, 1)))
     changes = np.diff(steps, axis=1) != 0

@@ -40,6 +40,7 @@ def parts(sets: Sequence[PlanarSet]) -> list[Part]:
         on_it = [at for at in points if border.start <= at <= border.end and border.support.side(at) == 0]
         for start, end in pairwise(on_it):
             piece = Border(border.support, start, end, border.right, border.on, border.left)
+            # Told apart by their middles: two arcs can have both ends in common and yet be two.
             at = middle(piece)
             if not any(other.start == start and other.end == end and other.support.side(at) == 0 for other, _ in found):
                 found.append((piece, at))

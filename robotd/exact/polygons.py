@@ -58,6 +58,7 @@ def solid(polygons: Iterable[Polygon], *, room: Ring | None = None) -> PlanarSet
     sets = [_closed(polygon) for polygon in polygons]
     if room is not None:
         outside = area_within([turned(room, counter_clockwise=False)], closed=True)
+        # The room turned inside out: all beyond its outline is solid, without end.
         sets.append(PlanarSet(outside.borders, far=True))
     try:
         return arrange(sets).select(bool)

@@ -25,7 +25,7 @@ _CLASSES = {"gmpy2": "mpq", "flint": "fmpq", "fractions": "Fraction"}
 """Where each arithmetic lives, fastest first; all but the last are extras."""
 _HUGE_EXPONENT: Final = re.compile(r"[eE][+-]?[0-9_]{4,}")
 _TOO_LARGE: Final = 10**90
-"""Anyone who draws or prints a number wants a float, and squares it."""
+"""Anyone who draws or prints a number wants a float, and squares it; just below the 2^300 of :mod:`.surds`' filter."""
 
 
 def _installed() -> dict[str, Arithmetic]:

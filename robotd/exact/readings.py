@@ -37,12 +37,14 @@ def _beams(table: "csv.DictReader[str]", arithmetic: Arithmetic) -> list[Beam]:
 
 
 def _beam(row: dict[str, str], number: int, arithmetic: Arithmetic) -> Beam:
+    # csv puts surplus columns under None, and None where there are too few.
     if None in row or None in (row["bearing_deg"], row["range_m"]):
         raise ValueError(f"reading {number}: another number of columns than names")
     status = (row.get("status") or "hit").strip()
     if status not in _STATUS:
         raise ValueError(f"reading {number}: the status is hit or miss, got {status}")
     try:
+        # The bearing becomes a float next, so only the range needs the arithmetic that was asked for.
         bearing, reach = rational(row["bearing_deg"]), rational(row["range_m"], arithmetic)
     except ValueError as error:
         raise ValueError(f"reading {number}: {error}") from error

@@ -46,6 +46,7 @@ def regions(arrangement: Arrangement, belongs: Callable[[Mask], bool]) -> list[R
     """
     areas, around = face_areas(arrangement), _borders_of_faces(arrangement)
     found = [_region(arrangement, areas, around, cells) for cells in _components(arrangement, belongs)]
+    # Down to the box, so that no order depends on how cells happen to be numbered.
     return sorted(found, key=lambda region: (-region.best_rank, -region.area_m2, -region.length_m, region.box_m))
 
 
@@ -95,6 +96,7 @@ def _touching(arrangement: Arrangement, first_edge: int, first_vertex: int) -> I
             yield face, first_vertex + edge.end
         yield number, first_vertex + edge.start
         yield number, first_vertex + edge.end
+    # A spot in the open has no edges that would join it to the face around it.
     for number, vertex in enumerate(arrangement.vertices, first_vertex):
         yield vertex.face, number
 

@@ -54,6 +54,7 @@ def smallest_error(
     if not count or not 0 < share <= 1 or width <= 0:
         raise ValueError(f"cannot look for a share of {share} of {count} readings to within {width}")
     wanted = share * count
+    # Rounded up among whole numbers: as floats, 0.55 of 100 comes out as more than 55.
     needed = -(-int(wanted.numerator) // int(wanted.denominator))
 
     def enough(eps: Rational, among: Sequence[int]) -> tuple[int, ...]:
@@ -64,6 +65,7 @@ def smallest_error(
     if not left:
         return None
     low, high = arithmetic_of(largest)(0), largest
+    # Zero is asked by itself, since halving never gets there.
     exact = enough(low, left)
     if exact:
         return Bracket(low, low, needed, exact)

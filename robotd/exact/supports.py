@@ -24,6 +24,7 @@ class Line:
     @classmethod
     def normalized(cls, a: Rational, b: Rational, c: Number) -> "Line":
         """Return the line ``a x + b y = c``."""
+        # b / b, not 1: a one of the same arithmetic as all the rest.
         return cls(a / b, b / b, c / b) if b != 0 else cls(-a / a, b, -c / a)
 
     @classmethod
@@ -82,6 +83,7 @@ class HalfCircle:
     def side(self, point: Point) -> int:
         """Return 1 for a point above, 0 for one on it, -1 for one below; the half must reach over or under it."""
         half = 1 if self.upper else -1
+        # Beyond the centre's height only the other half could answer, and this one lies on the far side of it.
         if compare(point.y, self.y) == -half:
             return -half
         return half * self.outside(point)

@@ -19,8 +19,11 @@ Key = tuple[int, ...]
 """What roots are ordered by: depth first, so that a radicand has only smaller roots."""
 
 _COARSE_BITS = 96
+"""Binary digits with which an approximation begins; they are doubled until they are enough."""
 _SURE_BITS = 60
+"""An approximation is good to this many digits after the point, more than a float near 1 has."""
 _FINE_BITS = 320
+"""Digits of the last filter before arithmetic that is exact, and slow."""
 _RATIONALS: tuple[type[Rational], ...] = tuple(type(arithmetic(0)) for arithmetic in ARITHMETICS.values())
 _ROUNDING = 2.0**-51
 """More than the relative error of one float operation or conversion."""
@@ -40,6 +43,7 @@ class Radical:
 
     def enclosure(self, bits: int) -> tuple[int, int]:
         """Return whole numbers around the root times ``2 ** bits``."""
+        # One root stands in many numbers, and each of them asks for it again.
         if bits not in self._enclosures:
             low, high = enclosure(self.radicand, bits)
             self._enclosures[bits] = math.isqrt(max(low, 0) << bits), math.isqrt(max(high, 0) << bits) + 1
@@ -234,6 +238,7 @@ def enclosure(number: Number, bits: int) -> tuple[int, int]:
         return low, low + 1
     low, high = enclosure(number.a, bits)
     of_b, of_root = enclosure(number.b, bits), number.root.enclosure(bits)
+    # Of two intervals, the ends of the product are among the products of their ends.
     products = [one * other for one in of_b for other in of_root]
     return low + (min(products) >> bits), high + (max(products) >> bits) + 1
 

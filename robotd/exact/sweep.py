@@ -56,6 +56,7 @@ class _Sweep:
 
     def __init__(self, queue: list[Event], *, far: Mask) -> None:
         self.queue = queue
+        # A list, not a tree: it is searched by halves, and moving pointers is cheap beside an exact predicate.
         self.status: list[_Strand] = []
         self.vertices: list[Vertex] = []
         self.edges: list[Edge] = []
@@ -83,6 +84,7 @@ class _Sweep:
     def _stop_at(self, event: Event) -> None:
         first, last = self._reach(event.point)
         arriving = self.status[first:last]
+        # Below everything lies the far face, number 0.
         below = self.status[first - 1].edge.left if first else 0
         above = arriving[-1].edge.left if arriving else below
         here = len(self.vertices)
@@ -115,6 +117,7 @@ class _Sweep:
         for number, pieces in enumerate(bundles):
             touched, on, left_mask = _sides(pieces, self.faces.masks[right])
             mask = self.faces.masks[right] & ~touched
+            # The topmost edge gets no face of its own: above it goes on what was above before.
             left = above if number == len(bundles) - 1 else self.faces.add(mask | left_mask)
             if self.faces.masks[left] != mask | left_mask:
                 raise ValueError(f"the borders at {pieces[0].border.start} do not close around an area")
@@ -131,12 +134,15 @@ class _Sweep:
         if not 0 < upper < len(self.status):
             return
         one, other = self.status[upper - 1], self.status[upper]
+        # Cheap tests first: most neighbours never meet, and a crossing may cost a root.
         if one.high < other.low or _stay_apart(one, other):
             return
+        # By identity, which lasts as long as the sweep: the edges keep their supports alive.
         pair = id(one.edge.support), id(other.edge.support)
         pair = min(pair), max(pair)
         if pair not in self.crossings:
             self.crossings[pair] = list(crossings(one.edge.support, other.edge.support))
+        # What lies beyond an end stays in the list: another piece on the same support may get there.
         to_come = [at for at in self.crossings[pair] if point < at <= one.last and at <= other.last]
         for at in to_come:
             self.crossings[pair].remove(at)

@@ -24,6 +24,7 @@ def distance_field(free: NDArray[np.bool_], goal: tuple[int, int]) -> NDArray[np
     """
     rows, cols = free.shape
     width = cols + 2
+    # A rim of obstacles: steps in the flattened grid cannot run over into the next row.
     passable = np.pad(free, 1).reshape(-1)
     distance = np.full(passable.shape, np.inf)
     steps = np.array([row * width + col for row, col in NEIGHBOURS])
@@ -39,6 +40,7 @@ def distance_field(free: NDArray[np.bool_], goal: tuple[int, int]) -> NDArray[np
         candidates = np.concatenate((beyond, reached))
         in_next = distance[candidates] < ring + 1
         front, beyond = np.unique(candidates[in_next]), candidates[~in_next]
+        # What lay beyond may have been reached by a shorter way since, and was settled in that ring.
         front = front[distance[front] >= ring]
     return distance.reshape(rows + 2, width)[1:-1, 1:-1].copy()
 
@@ -51,5 +53,6 @@ def _relax(
     ways = (distance[front][:, None] + np.array(STEP_CELLS)).reshape(-1)
     shorter = passable[cells] & (ways < distance[cells])
     improved: NDArray[np.intp] = cells[shorter]
+    # Several cells of the front reach the same one: plain assignment would keep the last way, not the shortest.
     np.minimum.at(distance, improved, ways[shorter])
     return improved

@@ -31,6 +31,7 @@ def touched_cells(one: Position, other: Position) -> NDArray[np.intp]:
     >>> touched_cells((0.5, 0.5), (1.5, 2.5)).tolist()
     [[0, 0], [0, 1], [1, 2], [0, 0], [1, 1], [1, 2]]
     """
+    # Slabs across the axis along which the leg is longer: in each of them it touches two cells at most.
     along = 0 if abs(other[0] - one[0]) > abs(other[1] - one[1]) else 1
     (begin, begin_aside), (end, end_aside) = sorted((point[along], point[1 - along]) for point in (one, other))
     slope = (end_aside - begin_aside) / (end - begin) if end > begin else 0.0
@@ -57,6 +58,7 @@ def pulled_straight(free: NDArray[np.bool_], way: Sequence[Position]) -> list[in
     """
     corners = [0]
     for last, point in enumerate(way[1:]):
+        # The very next point is in sight, as the caller promises: asking could stop the way for ever.
         if last > corners[-1] and not in_sight(free, way[corners[-1]], point):
             corners.append(last)
     return [*corners, len(way) - 1] if len(way) > 1 else corners
@@ -71,6 +73,7 @@ def distances_of_leg(cells: NDArray[np.intp], one: Position, other: Position) ->
     square = float(along @ along)
     if square == 0.0:
         return found
+    # A leg and a square that do not meet are nearest at an end of the leg or at a corner of the square.
     for corner in itertools.product((0.0, 1.0), repeat=2):
         off = low + corner - begin
         share = np.clip(off @ along / square, 0.0, 1.0)
@@ -89,6 +92,7 @@ def _crosses(low: NDArray[np.float64], begin: NDArray[np.float64], along: NDArra
     for axis in (0, 1):
         near, far = low[:, axis] - begin[axis], low[:, axis] + 1.0 - begin[axis]
         if along[axis] == 0.0:
+            # No share can be divided out here; -1 leaves nothing for the other axis to overlap with.
             leave = np.where((near <= 0.0) & (far >= 0.0), leave, -1.0)
             continue
         shares = np.sort(np.stack((near, far)) / along[axis], axis=0)

@@ -122,6 +122,7 @@ def plan(
     if isinstance(answer, Path) or not lone.any() or _is_at(lone, spec, goal_m):
         return answer
     doubting = _planned(grid, _Ground.of(grid, start, hit, lone, settings), start, goal_m)
+    # Where doubt does not help either, the answer without it names what is really in the way.
     return doubting if isinstance(doubting, Path) else answer
 
 
@@ -140,6 +141,7 @@ def _planned(grid: OccupancyGrid, ground: "_Ground", start: Pose2, goal_m: Point
     cells = _descent(field, exit_cell)
     way = [centre_of(cell) for cell in cells] + [_position(spec, goal_m)]
     points_m = [spec.centre_of(*cell) for cell in cells] + [goal_m]
+    # Where the robot does not fit, the leg out of there was checked by itself, and the string begins at its end.
     if ground.allowed[here]:
         way, points_m = [ground.start, *way], [(start.x_m, start.y_m), *points_m]
     corners = pulled_straight(ground.allowed, way)
@@ -191,7 +193,10 @@ class _Ground:
         distances = np.hypot(*(cells - here).T)
         near = distances <= self.reach_cells
         around = np.argwhere(self.met)
+        # Nothing farther can come within the robot's radius on a leg so short; two cells are for the size of the cells
+        # themselves.
         around = around[np.hypot(*(around - here).T) <= self.reach_cells + self.robot_cells + 2.0]
+        # Stable: of several cells at one distance every replay must take the same one.
         for row, col in cells[near][np.argsort(distances[near], kind="stable")].tolist():
             if self._gets_out(around, (row, col)):
                 return row, col
@@ -220,6 +225,7 @@ def _descent(field: NDArray[np.float64], start: Cell) -> list[Cell]:
     while field[way[-1]] > 0.0:
         row, col = way[-1]
         onward = [
+            # With the step to it: a corner step is longer, so the neighbour with the smallest field may be a detour.
             (field[row + i, col + j] + step, (row + i, col + j))
             for (i, j), step in zip(NEIGHBOURS, STEP_CELLS, strict=True)
             if 0 <= row + i < rows and 0 <= col + j < cols
@@ -239,9 +245,11 @@ def _hindrance(grid: OccupancyGrid, ground: _Ground, goal: Cell) -> Hindrance:
 
 
 def _nearest_reachable_m(ground: _Ground, spec: GridSpec, here: Cell, goal_m: Point) -> Point | None:
+    # A field of zeros, for where to is not asked: only whether the robot gets onto any ground on which it fits.
     start = ground.way_out(here, np.zeros(spec.shape))
     if start is None:
         return None
+    # Flooded from the robot's side, since from the goal there is no way.
     cells = np.argwhere(np.isfinite(distance_field(ground.allowed, start)))
     goal = spec.positions_at(np.array([goal_m]))[0] - 0.5
     row, col = cells[np.hypot(*(cells - goal).T).argmin()].tolist()

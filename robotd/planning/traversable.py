@@ -16,6 +16,7 @@ from robotd.grid.footprints import dilate, disk_footprint, touching_footprint
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION, raise_table
 
+# Without the middle: a hit does not keep itself company.
 _NEIGHBOURS = np.array([[True, True, True], [True, False, True], [True, True, True]])
 _TO_THE_CORNER = math.sqrt(0.5) + 1e-6
 """No point of a cell is farther from its centre [cells]; the rest is for rounding."""
@@ -48,6 +49,7 @@ def lone_hits(grid: OccupancyGrid, hit: NDArray[np.bool_]) -> NDArray[np.bool_]:
         hit: ``bool[rows, cols]``, cells hit since they were last seen free.
     """
     occupied = (grid.cells > NO_INFORMATION) | hit
+    # From never seen upwards: a second hit leaves a greater value, and is no longer a lone one.
     hit_once = raise_table(grid.settings.raise_alpha)[NO_INFORMATION]
     lone: NDArray[np.bool_] = occupied & (grid.cells <= hit_once) & ~dilate(occupied, _NEIGHBOURS)
     return lone
@@ -60,9 +62,11 @@ def closed(mask: NDArray[np.bool_], gap_cells: int) -> NDArray[np.bool_]:
     square may reach beyond the grid, where nothing is in the set.
     """
     side = gap_cells + 1
+    # A square of any width hung into a footprint that has a middle, which `dilate` needs.
     corner = np.zeros((2 * gap_cells + 1,) * 2, np.bool_)
     corner[:side, :side] = True
     touching = dilate(np.pad(mask, gap_cells), corner)
+    # Where no square begun at a cell meets the set; mirrored, the footprint lays those squares over their cells.
     open_ground = dilate(~touching, corner[::-1, ::-1])
     return ~open_ground[gap_cells : gap_cells + mask.shape[0], gap_cells : gap_cells + mask.shape[1]]
 
