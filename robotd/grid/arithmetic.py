@@ -12,6 +12,7 @@ import numpy as np
 
 _RULE = 1
 """Counts the changes of what an insertion does to cells, made on purpose, that no setting undoes."""
+# More than one turn either way: headings and bearings are added without being wrapped.
 _ANGLES_RAD = np.linspace(-3.0 * math.pi, 3.0 * math.pi, 4001)
 
 

@@ -69,6 +69,7 @@ def squared_distances_updated(
         limit_cells: as above; without a limit any cell could change.
     """
     updated = squares.copy()
+    # No source farther than the limit has a say, so farther cells keep their distance.
     window = changed.grown(limit_cells, sources.shape)
     kernels.in_use().distance.squared_distances(sources, updated, window, limit_cells=limit_cells, outside=outside)
     return updated

@@ -71,6 +71,7 @@ class Drawn:
     @property
     def head_cells(self) -> NDArray[np.int64]:
         """In which cell each ends, ``int64[n, 2]``; of a miss it means nothing."""
+        # From the start as it is, not from its cell: rounding twice would put heads a cell off.
         return _nearest(self.starts + self.range_cells[:, None] * self.ahead)
 
     def body_lengths(self, error_radius_cells: float, reach_cells: float) -> NDArray[np.int64]:
@@ -97,5 +98,6 @@ class Drawn:
 
 
 def _nearest(cells: NDArray[np.float64]) -> NDArray[np.int64]:
+    # Clipped before the cast, which is undefined beyond 64 bits. Not `rint`: it takes halves to the even cell.
     nearest: NDArray[np.int64] = np.floor(np.clip(cells, -FAR_CELLS, FAR_CELLS) + 0.5).astype(np.int64)
     return nearest

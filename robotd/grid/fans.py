@@ -21,7 +21,7 @@ STARTS_PER_CELL = 1 << 20
 STARTS_MAX = 1 << 30
 """A thousand cells: no robot is as large as that."""
 WINDOW_CELLS_MAX = 32
-"""Where a fan gets wider than this, it ends."""
+"""Where a fan gets wider than this, it ends: a shorter one blocks fewer poses, which never excludes the true one."""
 SPREAD_CELLS = 0.5
 """How far a start may lie from the centre of the cell, along either axis."""
 
@@ -43,6 +43,7 @@ class Fans:
         """Return how many lines all beams of some fans have crossed before they are so long, ``int32[n]``."""
         start, per_line = self.ways[fan].T
         drawn = np.diff(self.lines[:, 5], append=len(self.windows))
+        # Slack to the side of fewer lines: E may be too small, never too large.
         before = np.ceil(lengths_cells / per_line + start - SLACK_CELLS)
         crossed: NDArray[np.int32] = np.clip(before - self.lines[fan, 2], 0.0, drawn[fan]).astype(np.int32)
         return crossed
@@ -81,15 +82,19 @@ def draw_fans(directions: NDArray[np.int64], starts: NDArray[np.int64], turn_rad
     axis = np.abs(ahead).argmax(axis=1)
     forward = np.where(ahead[which, axis] > 0.0, 1.0, -1.0)
     along, aside = starts_cells[which, axis] * forward, starts_cells[which, 1 - axis]
+    # Turning about the axis carries a start along a chord: that is added to its place in the cell.
     spread = SPREAD_CELLS + SLACK_CELLS + 2.0 * math.sin(turn_rad / 2.0) * np.hypot(*starts_cells.T)
     angles = np.arctan2(ahead[which, 1 - axis], np.abs(ahead[which, axis]))
     least, greatest = np.tan(angles - turn_rad), np.tan(angles + turn_rad)
+    # The first line ahead of every start: lines before it are crossed by some of the beams only.
     first = np.ceil(along + spread)
     lines = first[:, None] + np.arange(line_count)
     ways = np.stack((lines - (along + spread)[:, None], lines - (along - spread)[:, None]))
+    # A slope may have either sign, so which end of the way is the extreme one has to be tried.
     low = (aside - spread)[:, None] + (ways * least[:, None]).min(axis=0)
     high = (aside + spread)[:, None] + (ways * greatest[:, None]).max(axis=0)
     windows = np.floor(np.stack((low, high), axis=2) + 0.5)
+    # Up to the first that is too wide: a path needs every line, so what comes after that is of no use.
     narrow = np.logical_and.accumulate(windows[:, :, 1] - windows[:, :, 0] < WINDOW_CELLS_MAX, axis=1)
     drawn = narrow.sum(axis=1)
     steps = np.floor(least - SLACK_CELLS), np.ceil(greatest + SLACK_CELLS)

@@ -29,6 +29,7 @@ def touching_footprint(radius_cells: float) -> NDArray[np.bool_]:
         raise ValueError(f"radius_cells must not be negative, got {radius_cells}")
     most = max(0, int(np.ceil(radius_cells + 0.5)) - 1)
     nearest = np.maximum(np.abs(np.arange(-most, most + 1)) - 0.5, 0.0)
+    # Strictly: a disk that only touches a square from outside does not meet it.
     touching: NDArray[np.bool_] = nearest[:, None] ** 2 + nearest**2 < radius_cells**2
     return touching
 
@@ -64,6 +65,7 @@ class _RunWindows:
     def any_of(self, length: int) -> NDArray[np.bool_]:
         if length not in self._by_length:
             half = 1 << ((length - 1).bit_length() - 1)
+            # Two windows of a power of two, overlapping, cover any length between: an OR may count a cell twice.
             window = self.any_of(half)
             width = window.shape[1] - (length - half)
             self._by_length[length] = window[:, :width] | window[:, length - half :]

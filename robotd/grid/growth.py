@@ -60,6 +60,7 @@ def grown_by_disk_updated(
     if radius_cells > _RADIUS_MAX_CELLS:
         return grown_by_disk(mask, radius_cells, outside=outside)
     updated = grown.copy()
+    # A disk reaches whole cells along rows and columns, so its radius may be rounded down.
     window = changed.grown(int(radius_cells), mask.shape)
     kernels.in_use().grow.grow_disk(mask, updated, window, radius_cells=radius_cells, outside=outside)
     return updated

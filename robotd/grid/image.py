@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 OCCUPIED_THRESH = 0.65
+"""map_server's own figure."""
 FREE_THRESH = 0.196
 """map_server's own figure; with the 0.25 that it also accepts, an unknown pixel of 205 would load as free."""
 OCCUPIED_GREY, UNKNOWN_GREY, FREE_GREY = 0, 205, 254

@@ -16,6 +16,7 @@ from robotd.grid.readings import Readings
 NOTHING, PASSED, HIT = 0, 1, 2
 """Values of a cell: no sweep met it; beams ran through it and none ended in it; one ended in it."""
 
+# Constant: whatever a cell held before, the latest sweep has the last word.
 _TABLES = (np.full(256, PASSED, np.uint8), np.full(256, HIT, np.uint8))
 
 
@@ -24,5 +25,6 @@ def latest_with(
 ) -> NDArray[np.uint8]:
     """Return what was said last with one more sweep, ``uint8[rows, cols]``; what went in is left as it is."""
     found = latest.copy()
+    # At once: where a beam ends and its neighbours graze by, the hit counts, whatever their order.
     kernels.in_use().insert.insert_sweep(found, Readings.of(readings).rows, map_from_robot, spec, _TABLES, at_once=True)
     return found

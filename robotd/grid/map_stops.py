@@ -18,7 +18,7 @@ class MapStops:
     settings: GridSettings
     """How readings change the cells, at every stop; what it says of size is of no account here."""
     stops: tuple[MapStop, ...] = ()
-    """In the order in which they were laid in, which matters."""
+    """In the order in which they were laid in, which matters: evidence decays, so later stops weigh more."""
     arithmetic: str = field(default_factory=arithmetic)
     """By which they were laid in, see :func:`robotd.grid.arithmetic.arithmetic`."""
 
@@ -29,6 +29,7 @@ class MapStops:
 
     def with_stop(self, stop: MapStop) -> "MapStops":
         """Return these and one more, which was laid in here."""
+        # Once mixed it stays so: no machine makes all of these cells again, bit for bit.
         same = self.arithmetic if self.is_of_this_arithmetic else _SEVERAL
         return replace(self, stops=(*self.stops, stop), arithmetic=same)
 

@@ -31,6 +31,7 @@ def repacked(
     if changed.is_empty:
         return packed
     planes = packed.planes.copy()
+    # The first three planes are the masks; the two after them are pooled from these below.
     for words, mask in zip(planes, (free, blocking, grown), strict=False):
         kernels.in_use().pack.pack_cells(words, mask, packed.origin, changed)
     top, left = TILE_ROWS + packed.origin[0], PAD_WORDS * WORD_CELLS + packed.origin[1]

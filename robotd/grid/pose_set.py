@@ -40,6 +40,7 @@ class PoseSet:
             least_rank: of all that are here.
             slack: poses were asked for that explain up to this many readings fewer than the best.
         """
+        # A kernel that finds too many raises the least rank: then some that were asked for are missing.
         is_all = least_rank <= max(1, best_rank - slack) or best_rank == 0
         return cls(rows[:, :3].astype(np.intp), rows[:, 3].astype(np.uint16), best_rank, least_rank, is_all)
 
@@ -80,5 +81,6 @@ class PoseSet:
     def cells(self) -> NDArray[np.intp]:
         """Return their cells ``(row, col)``, ``intp[k, 2]``, ascending and each once."""
         cols = int(self.poses[:, 2].max(initial=0)) + 1
+        # As single integers, which NumPy sorts sooner than rows.
         flat = np.unique(self.poses[:, 1] * cols + self.poses[:, 2])
         return np.stack((flat // cols, flat % cols), axis=1)

@@ -39,6 +39,7 @@ def ray_cells(
         ``row * cols + col``, from start to end. Time and memory are O(m), however long the rays are.
     """
     steps = ray_steps(bearings_rad)
+    # Clipped before the samples are made: else a long miss would take memory for every cell beyond the grid.
     first, last = _inside_along_dominant_axis(starts, steps, sample_counts(bearings_rad, lengths_cells), shape)
     counts = last - first
     ray = np.repeat(np.arange(len(counts)), counts)

@@ -28,12 +28,14 @@ def lower_table(alpha: float) -> UpdateTable:
         ValueError: ``alpha`` is out of range.
     """
     lowered = _decayed(alpha)
+    # Whatever was seen must not look like what never was.
     lowered[lowered == NO_INFORMATION] = NO_INFORMATION - 1
     return lowered
 
 
 def raise_table(alpha: float) -> UpdateTable:
     """Return the table of ``p <- 1 - alpha (1 - p)``: a beam ended in the cell; else as :func:`lower_table`."""
+    # Raising an obstacle's chance is lowering that of a vacant cell: the same decay, counted from 255.
     raised: UpdateTable = SURELY_OCCUPIED - _decayed(alpha)[::-1]
     raised[raised == NO_INFORMATION] = NO_INFORMATION + 1
     return raised
@@ -44,5 +46,6 @@ def _decayed(alpha: float) -> UpdateTable:
     if not 0.0 <= alpha < 1.0:
         raise ValueError(f"alpha must be at least 0 and less than 1, got {alpha}")
     states = np.arange(256)
+    # Rounding alone would trap small states: with alpha 0.85, a 3 becomes 2.55 and is a 3 again.
     decayed: UpdateTable = np.minimum(np.rint(alpha * states), np.maximum(states - 1, 0)).astype(np.uint8)
     return decayed

@@ -40,6 +40,7 @@ class TernaryMap:
 
     def updated(self, grid: OccupancyGrid, changed: CellWindow) -> "TernaryMap":
         """Return the map of a grid that differs from the one this is of in a window alone; this one stays as it is."""
+        # Copies: a thread may be localizing on this map (decision 11).
         occupied, vacant = self.occupied.copy(), self.vacant.copy()
         occupied[changed.slices] = grid.cells[changed.slices] > NO_INFORMATION
         vacant[changed.slices] = grid.cells[changed.slices] < NO_INFORMATION

@@ -39,5 +39,6 @@ def reflected(cells: NDArray[Scalar]) -> NDArray[Scalar]:
 def _overlap(moved_size: int, size: int, step: int) -> tuple[slice, slice]:
     """Return which indices of the moved axis look at which indices of the old one."""
     first = max(0, -step)
+    # A move farther than the grid leaves no overlap: an empty slice, not one that counts from the end.
     last = max(first, min(moved_size, size - step))
     return slice(first, last), slice(first + step, last + step)

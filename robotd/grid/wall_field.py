@@ -51,8 +51,11 @@ class WallField:
             return self
         codes, skips = self.codes.copy(), self.skips.copy()
         here, there, part = (window.slices for window in influence(changed, REACH_CELLS, self.spec.shape))
+        # A code knows nothing of what is farther than its reach, so this much of the map, and no more, is looked at
+        # again.
         codes[here] = kernels.in_use().cast.wall_codes(np.ascontiguousarray(walls[part]))[there]
         here, there, part = (window.slices for window in influence(changed, SKIP_MAX, self.spec.shape))
         ends = np.ascontiguousarray(walls[part])
+        # Without the ring round the map, which never changes.
         skips[1:-1, 1:-1][here] = kernels.in_use().cast.skip_codes(ends, blocking[part] & ~ends)[1:-1, 1:-1][there]
         return replace(self, codes=codes, skips=skips)

@@ -31,6 +31,7 @@ class CellWindow:
         if not cells.size:
             return cls(0, 0, 0, 0)
         cols = cells % shape[1]
+        # Ascending, so the first and the last tell the rows; columns come in any order.
         first_row, last_row = int(cells[0]) // shape[1], int(cells[-1]) // shape[1]
         return cls(first_row, last_row + 1, int(cols.min()), int(cols.max()) + 1)
 
@@ -109,6 +110,7 @@ def influence(changed: CellWindow, reach: int, shape: tuple[int, int]) -> tuple[
         The cells to make again, in the map; the same in the part of the map that they depend on; and that part.
     """
     influenced = changed.grown(reach, shape)
+    # Twice: the cells to make again depend on others as far outside of themselves.
     part = influenced.grown(reach, shape)
     row, col = influenced.first_row - part.first_row, influenced.first_col - part.first_col
     rows, cols = influenced.shape

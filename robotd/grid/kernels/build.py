@@ -31,6 +31,7 @@ builder.set_source(
     "".join(f'#include "{header}"\n' for header in DECLARED),
     sources=[f"{SHELF}/{source}" for source in SOURCES],
     include_dirs=[SHELF],
+    # Else a header that changed would not compile its sources again.
     depends=sorted(f"{SHELF}/{header.relative_to(HERE).as_posix()}" for header in HERE.glob("*/*.h")),
     # Contraction would round differently from NumPy; no -march: a wheel must run elsewhere.
     extra_compile_args=[
@@ -43,5 +44,6 @@ builder.set_source(
         "-Wno-psabi",
     ],
     extra_link_args=["-pthread"],
+    # One library for every later Python, not one for each.
     py_limited_api=True,
 )

@@ -21,6 +21,7 @@ def wall_codes(walls: NDArray[np.bool_]) -> NDArray[np.int8]:
 def skip_codes(ends: NDArray[np.bool_], blocks: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """See :class:`.CastKernel`."""
     rows, cols = ends.shape
+    # Not zeroed: the kernel writes every cell, the ring included.
     skips = np.empty((rows + 2, cols + 2), np.uint8)
     scratch = octets(np.empty(skips.size + cols + 2 + 2 * SKIP_MAX, np.uint8))
     lib.skip_codes(octets(ends.view(np.uint8)), octets(blocks.view(np.uint8)), rows, cols, scratch, octets(skips))

@@ -50,6 +50,8 @@ def _cast(
     (start_x, start_y), (ahead_x, ahead_y), count = start, ahead, start.shape[1]
     ways, run_ways, run_stops = np.zeros(count), np.zeros(count), np.full(count, BLOCKS, np.uint8)
     met, in_run = np.zeros(count, np.intp), np.zeros(count, np.bool_)
+    # Clipped before the cast, which is undefined for great floats; what is outside lands in the ring or beyond, and
+    # goes nowhere.
     col, row = (np.floor(np.clip(at, -1.0, 1e9)).astype(np.intp) + 1 for at in (start_x, start_y))
     on = np.flatnonzero((col > 0) & (row > 0) & (col < cols - 1) & (row < rows - 1))
     while on.size:
@@ -79,6 +81,7 @@ def _cast(
 def _way(side: NDArray[np.intp], start: NDArray[np.float64], ahead: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return how far it is to a line across; for ever, if the beam runs along it."""
     along = np.abs(ahead) < _ALONG
+    # By the reciprocal, as in C: a division may differ in the last bit.
     ways: NDArray[np.float64] = np.where(along, np.inf, (side - start) * (1.0 / np.where(along, 1.0, ahead)))
     return ways
 

@@ -33,6 +33,7 @@ def _walk(the_map: PackedMap, beams: Beams, groups: range) -> dict[int, Words]:
     kept = {}
     for group in groups:
         still_open = seen_from(the_map.free, 0, 0).copy()
+        # Where one cell is enough to block, it is as if one had been met before.
         met = np.full_like(still_open, ~np.uint64(0) if the_map.blocked_by == 1 else 0)
         for row, col, slot in beams.chains[beams.groups[group] : beams.groups[group + 1]].tolist():
             blocking = seen_from(the_map.blocking, row, col)
@@ -47,6 +48,7 @@ def greatest(counters: Words) -> int:
     """See :class:`.CountKernel`."""
     best, value = np.full_like(counters[:, :, 0], ~np.uint64(0)), 0
     for bit in reversed(range(counters.shape[2])):
+        # From the highest digit down: a count that lacks one which another has is out, whatever follows.
         better = best & counters[:, :, bit]
         if better.any():
             best, value = better, value | 1 << bit
@@ -57,6 +59,7 @@ def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
     """See :class:`.CountKernel`."""
     _, headings, bits, _ = counters.shape
     masks = np.zeros((headings, the_map.rows, the_map.words), np.uint64)
+    # More than the counters hold: no count reaches it, and the digits below would be compared alone.
     if least >> bits:
         return masks
     greater, equal = np.zeros_like(counters[:, :, 0]), np.full_like(counters[:, :, 0], ~np.uint64(0))

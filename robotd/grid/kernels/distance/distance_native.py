@@ -25,6 +25,7 @@ def squared_distances(
     along, spare = np.empty((window.shape[0], cols), np.int32), np.empty(3 * (cols + 2), np.int32)
     job = ffi.new("distance_job *")
     job.sources = ffi.from_buffer("uint8_t[]", cells)
+    # C would write into read-only memory without a word.
     job.squares = ffi.from_buffer("int32_t[]", squares, require_writable=True)
     job.rows, job.cols, job.outside, job.limit = rows, cols, outside, min(limit_cells, rows + cols)
     job.first_row, job.end_row = window.first_row, window.end_row

@@ -47,6 +47,7 @@ def _least_along_rows(squares: NDArray[np.float64]) -> NDArray[np.float64]:
     least = squares.copy()
     for step in range(1, squares.shape[1]):
         farther = float(step**2)
+        # Squares are not negative: from this far off not even a source itself comes nearer than what is known.
         if farther >= least.max():
             break
         np.minimum(least[:, step:], squares[:, :-step] + farther, out=least[:, step:])

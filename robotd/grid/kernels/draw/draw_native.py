@@ -29,6 +29,7 @@ def draw_beams(readings: NDArray[np.float64], headings: NDArray[np.float64], how
     scratch = words(np.empty(lib.draw_scratch_words(job), np.uint64))
     job.scratch = scratch
     lib.find_bearings(job)
+    # NumPy's sines, not the C library's, which differ in the last place: chains have to be the twin's.
     np.sin(ahead[0], ahead[1])
     np.cos(ahead[0], ahead[2])
     numbers, drawn = np.empty(lib.draw_groups(job), np.int32), ffi.new("drawn_beams *")

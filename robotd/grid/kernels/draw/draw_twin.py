@@ -28,6 +28,8 @@ def draw_beams(readings: NDArray[np.float64], headings: NDArray[np.float64], how
     chains = _Chains.of(drawn, keys)
     if chains.differ.any():
         _, exact = np.unique(drawn.steps, axis=0, return_inverse=True)
+        # Groups without a common chain are parted by their exact steps; adding all directions keeps the keys apart from
+        # the rest.
         differ = chains.differ[chains.group_of]
         keys[differ] = exact.reshape(-1)[differ] + _DIRECTIONS
         chains = _Chains.of(drawn, keys)

@@ -17,6 +17,7 @@ def share_errors(
     """See :class:`.ErrorRadiusKernel`."""
     rows, cols = the_map.shape
     errors = np.full(the_map.shape, np.iinfo(np.uint16).max, np.uint16)
+    # No more than there are tiles, for each thread takes its own scratch.
     threads = min(threads, lib.THREADS_MAX, max(1, len(the_map.tiles)))
     needed = np.empty((threads, len(bodies.readings), TILE_ROWS * WORD_CELLS), np.uint16)
     job = ffi.new("errors_job *")

@@ -35,6 +35,7 @@ def share_errors(
 
 def _needed_by_body(the_map: PackedMap, free: NDArray[np.bool_], bodies: Bodies, cells: range) -> NDArray[np.uint16]:
     needed = np.zeros(the_map.shape, np.uint16)
+    # Where one cell is enough to block, it is as if one had been met before.
     still_open, met = free.copy(), np.full_like(free, the_map.blocked_by == 1)
     for cell in cells:
         row, col = bodies.chains[cell].tolist()

@@ -19,6 +19,7 @@ def count_fans(
     """See :class:`.FansKernel`."""
     fans, planes = fan_beams.fans, [words(plane) for plane in grown]
     job = ffi.new("fan_job *")
+    # Kept by name until the call is over: the job's pointer alone would not keep it alive.
     pointers = ffi.new("uint64_t *[]", planes)
     put_map(job.map, the_map)
     job.grown = pointers

@@ -27,6 +27,7 @@ def count_fans(
         longest = beams[-1][0] if beams else 0
         fronts, crossed, passed = _fronts(the_map, fan_beams, fan, longest), 0, free
         for lines, heading, radius, row, col in beams:
+            # Beams come by how many lines they cross, so each line of the fan is worked out once for all of them.
             while crossed < lines:
                 passed, crossed = passed & next(fronts), crossed + 1
             possible = passed if radius < 0 else passed & seen_from(grown[radius], row, col)

@@ -19,6 +19,7 @@ from robotd.grid.kernels.fit.fit_kernel import (
 
 _ROUNDS_MAX = 32
 _NARROWING = 0.7
+"""A biweight that begins wide lets far heads pull; narrowed step by step, it ends at the outlier's width."""
 _CLOSE = 1e-4
 _PRIOR = 0.1
 
@@ -131,6 +132,7 @@ def _fit(
         else:
             step = step / 4
         if width > outlier_cells:
+            # Costs of different widths cannot be compared, so every narrowing begins with no least cost.
             width, least = max(outlier_cells, width * _NARROWING), math.inf
         elif np.abs(step).max() < _CLOSE:
             break

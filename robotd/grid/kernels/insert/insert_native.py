@@ -28,6 +28,7 @@ def insert_sweep(
     (rows, cols), count, heading_rad = cells.shape, len(readings), map_from_robot.heading_rad
     bearings_rad = heading_rad + readings[:, 0]
     ahead, beams, hits = np.empty((2, count)), np.empty((count, 6)), np.empty(count, np.int64)
+    # NumPy's sines, not the C library's: the twin's, to the last bit, decide in which cell a beam lies.
     np.sin(bearings_rad, ahead[0])
     np.cos(bearings_rad, ahead[1])
     before = np.empty(cells.size, np.uint8)

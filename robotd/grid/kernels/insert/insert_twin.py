@@ -26,14 +26,17 @@ def insert_sweep(
     passed_rays, passed = ray_cells(rays.starts, rays.bearings_rad, rays.lengths_cells, spec.shape)
     flat = cells.reshape(-1)
     if at_once:
+        # A hit beats the misses of its sweep: one grazing neighbour would otherwise erase a wall that was just met.
         hit = np.unique(rays.hits[rays.hits >= 0])
         vacant = np.setdiff1d(passed, hit)
         flat[vacant] = lower[flat[vacant]]
         flat[hit] = higher[flat[hit]]
     else:
+        # As in the paper, reading by reading: a later beam may take back what an earlier one raised.
         bounds = np.searchsorted(passed_rays, np.arange(len(rays.hits) + 1))
         for ray, hit in enumerate(rays.hits):
             vacant = passed[bounds[ray] : bounds[ray + 1]]
+            # A ray's last cell may be the one that it ended in.
             vacant = vacant[vacant != hit]
             flat[vacant] = lower[flat[vacant]]
             if hit >= 0:

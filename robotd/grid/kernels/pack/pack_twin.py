@@ -11,6 +11,7 @@ def pack_cells(words: Words, mask: NDArray[np.bool_], origin: tuple[int, int], w
     """See :class:`.PackKernel`."""
     if window.is_empty:
         return
+    # The corner is padding on every map, so it says what lies outside.
     outside = bool(words[0, 0])
     rows = slice(window.first_row, window.end_row)
     packed = pack(mask[rows], (0, origin[1]), outside=outside)

@@ -24,6 +24,7 @@ def endings(error_radius_cells: float, cells: int) -> NDArray[np.int8]:
         error_radius_cells: by how much bodies are shorter.
         cells: how many of the last cells of a body are meant.
     """
+    # Half a degree and a twentieth of a cell apart: what falls between costs time, not answers.
     bearings_rad = np.repeat(np.arange(720) * (np.pi / 360), 40)
     lengths = (error_radius_cells + 8.0 + np.tile(np.arange(40) / 20, 720))[:, None]
     steps = ray_steps(bearings_rad)

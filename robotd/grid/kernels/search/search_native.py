@@ -83,6 +83,7 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     if not lib.search_poses(job):
         raise ValueError(f"this processor has no {instructions}")
     found = poses[: job.pose_count]
+    # Threads find poses in any order; the answer must not depend on that.
     order = np.lexsort((found[:, 2], found[:, 1], found[:, 0]))
     return PoseSet.of_rows(found[order], job.best_rank, job.least, slack=question.slack)
 
@@ -90,6 +91,7 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
 @functools.lru_cache(maxsize=8)
 def _jumping(count: int) -> NDArray[np.intp]:
     """Return an order of readings in which neighbours look in different directions, whatever the sweep."""
+    # By the golden section, and prime to the number of readings, so that every reading comes once.
     steps = (step for step in range(int(0.618 * count), 0, -1) if math.gcd(step, count) == 1)
     return np.arange(count) * next(steps, 1) % count
 

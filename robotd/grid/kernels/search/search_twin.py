@@ -36,6 +36,7 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1) -> Pos
         beams = _beams(ground, question, heading)
         cells, heads = _count(around, beams, free, np.zeros(len(free), np.int64), total - least, bodies=False)
         bounds.append((total - int(heads.min(initial=total)), heading, cells, heads))
+    # The most promising headings first: what they reach raises the least rank, and the others need not be counted.
     for bound, heading, hopeful, heads in sorted(bounds, key=lambda bound: -bound[0]):
         if bound < least:
             break
@@ -135,6 +136,7 @@ def _count(
     """
     places, kept = around.places(cells), np.arange(len(cells))
     for body, head in beams:
+        # A miss has no head to be missed.
         if head is None and not bodies:
             continue
         meets = np.ones(len(places), np.bool_) if head is None else around.grown[places + around.steps(head)]

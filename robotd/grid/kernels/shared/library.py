@@ -55,6 +55,7 @@ def agree(**constants: float) -> None:
             raise ImportError(f"the library was compiled from other source: {name} is {compiled} in it, not {value}")
 
 
+# When imported: a library of other source is refused before it computes anything, and the twins are used.
 agree(TILE_ROWS=TILE_ROWS, WORD_CELLS=WORD_CELLS, PAD_WORDS=PAD_WORDS)
 
 INSTRUCTION_SETS: tuple[str, ...] = tuple(

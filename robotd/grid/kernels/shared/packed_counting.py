@@ -16,6 +16,7 @@ def seen_from(packed: Words, row: int, col: int) -> Words:
         return seen
     there = slice(first_row + row + TILE_ROWS, last_row + row + TILE_ROWS)
     low: Words = packed[first_word + word + PAD_WORDS : last_word + word + PAD_WORDS, there]
+    # Without a shift the word beside it would be shifted by all of its 64 bits, which is undefined.
     if shift:
         high: Words = packed[first_word + word + PAD_WORDS + 1 : last_word + word + PAD_WORDS + 1, there]
         low = (low >> np.uint64(shift)) | (high << np.uint64(WORD_CELLS - shift))

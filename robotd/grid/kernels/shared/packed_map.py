@@ -41,6 +41,7 @@ def pack(mask: NDArray[np.bool_], origin: tuple[int, int] = (0, 0), *, outside: 
 
 def unpack(words: Words, cols: int) -> NDArray[np.bool_]:
     """Return ``bool[..., cols]`` of rows of words ``uint64[..., words]``."""
+    # On a big-endian machine the bytes of a word, and with them the cells, would come the other way round.
     octets = np.ascontiguousarray(words.astype("<u8")).view(np.uint8)
     return np.unpackbits(octets, axis=-1, count=cols, bitorder="little").view(np.bool_)
 
@@ -72,6 +73,7 @@ class PackedMap:
         blocked_by: int = 1,
     ) -> "PackedMap":
         """Pack the three masks ``bool[rows, cols]`` of a map, and what lies outside."""
+        # Tiles begin where the free cells do, for only tiles with a free cell are counted, and each costs memory.
         first_row, first_col = int(free.any(axis=1).argmax()), int(free.any(axis=0).argmax())
         origin = -first_row % TILE_ROWS, -first_col % WORD_CELLS
         rows, cols = free.shape
@@ -134,12 +136,14 @@ class PackedMap:
 def planes_of(free: Words, blocking: Words, grown: Words) -> Words:
     """Return the five planes of a packed map from its three masks, packed."""
     planes = np.stack((free, blocking, grown, blocking, grown))
+    # The last 31 rows have no whole tile below them; they are padding, whose own value is right.
     planes[3:, :, : 1 - TILE_ROWS] = any_of_a_tile(planes[1:3])
     return planes
 
 
 def any_of_a_tile(planes: Words) -> Words:
     """Return the OR of each word and the 31 below it, ``uint64[..., rows - 31]`` of ``uint64[..., rows]``."""
+    # Doubling: five ORs for 32 rows.
     for step in (1, 2, 4, 8, 16):
         planes = planes[..., :-step] | planes[..., step:]
     return planes

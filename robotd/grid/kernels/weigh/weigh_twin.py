@@ -59,6 +59,7 @@ def _follow(the_map: ChanceMap, rays: _Rays, share: float, chances: NDArray[np.f
     sample, left, through = np.zeros(len(rays.pace), np.intp), np.ones(len(rays.pace)), np.ones(len(rays.pace))
     passing = 1.0 - the_map.stops[UNKNOWN] * rays.pace[:, None]
     faded = np.cumprod(np.concatenate((np.ones_like(passing), np.tile(passing, SKIP_MAX)), axis=1), axis=1)
+    # Rays drop out one by one, so the arrays shrink as they go instead of being masked.
     under_way = np.arange(len(rays.pace))
     while under_way.size:
         under_way = under_way[(sample * rays.pace <= rays.ends)[under_way] & (left[under_way] >= _STOPPED)]
