@@ -12,6 +12,7 @@ _UNIQUE_M = 1.0
 
 def state_by_belief(found: PoseSet, believed: PoseState) -> PoseState:
     """Return what the second look believes, unless it could not look at all poses."""
+    # Poses too many to tell were never looked at, and the right one may be among them.
     return believed if found.is_all else PoseState.AMBIGUOUS
 
 
@@ -25,6 +26,7 @@ def state_by_proof(found: PoseSet, headings_rad: tuple[float, ...], resolution_m
     """
     if not found.is_all:
         return PoseState.AMBIGUOUS
+    # Asked only now: a set too large to tell holds no poses either, and would pass for lost.
     if len(found) == 0:
         return PoseState.LOST
     return PoseState.LOCALIZED if _is_one_place(found, headings_rad, resolution_m) else PoseState.AMBIGUOUS
@@ -32,5 +34,6 @@ def state_by_proof(found: PoseSet, headings_rad: tuple[float, ...], resolution_m
 
 def _is_one_place(found: PoseSet, headings_rad: tuple[float, ...], resolution_m: float) -> bool:
     """Whether poses are all connected, and no corridor or room full of them."""
+    # One region is asked for: it does not matter which, only whether any is left out.
     is_connected = pieces_of(found, headings_rad, 1).left_out == 0
     return is_connected and float(np.hypot(*np.ptp(found.poses[:, 1:], axis=0))) <= _UNIQUE_M / resolution_m

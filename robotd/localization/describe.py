@@ -49,6 +49,7 @@ def described(regions: Sequence[JudgedRegion], situation: Situation) -> tuple[Re
         return ()
     extents = [extent_of(region.piece.poses, situation.spec, situation.headings_rad) for region in regions]
     boxes = [_box(region, extent, situation) for region, extent in zip(regions, extents, strict=True)]
+    # All boxes in one call: the readings' heads are worked out once for all of them.
     wide = situation.refined(boxes)
     # The box round a region that is no box holds cells that are not in it: there its nearest cell must do.
     narrow = situation.refined(
@@ -82,6 +83,7 @@ def _described(region: JudgedRegion, extent: Extent, fit: _Fit, situation: Situa
     cells = piece.cells()
     heading, row, col = best_pose(piece)
     prepared = situation.the_map.prepared
+    # At the cell's centre and the slice's heading, as the plain count asked; the refined pose may explain others.
     explained = explained_at(prepared, situation.readings, (row, col), headings_rad[heading])
     return Region(
         belief=region.belief,
@@ -102,9 +104,11 @@ def _described(region: JudgedRegion, extent: Extent, fit: _Fit, situation: Situa
 def _box(region: JudgedRegion, extent: Extent, situation: Situation) -> PoseBox:
     """Return the box round a region; where a place in it is known to be the best, only what is near to that."""
     begin = region.begin or _best_of(region.piece, situation)
+    # The second look climbs wherever it likes, so its place may lie outside the region: begin where that is nearest.
     x_m = min(max(begin.x_m, extent.x_min_m), extent.x_max_m)
     y_m = min(max(begin.y_m, extent.y_min_m), extent.y_max_m)
     heading_rad = _heading_in(extent, begin.heading_rad)
+    # Without such a place nothing says where in the region the hill is, so all of it is searched.
     half_m, half_rad = (math.inf, math.inf) if region.begin is None else (_NEAR_M, _NEAR_RAD)
     bounds = Extent(
         max(extent.x_min_m, x_m - half_m),
@@ -120,6 +124,7 @@ def _box(region: JudgedRegion, extent: Extent, situation: Situation) -> PoseBox:
 def _heading_in(extent: Extent, heading_rad: float) -> float:
     """Return the heading of an extent that is nearest to another, counted as the extent counts."""
     middle_rad = (extent.heading_min_rad + extent.heading_max_rad) / 2
+    # Extents are not wrapped: of all turns that mean the same heading take the one that lies nearest.
     near_rad = middle_rad + wrap_rad(heading_rad - middle_rad)
     return min(max(near_rad, extent.heading_min_rad), extent.heading_max_rad)
 
@@ -133,6 +138,7 @@ def _box_of_cell(piece: PoseSet, box: PoseBox, situation: Situation) -> PoseBox:
     """Return the cell of a region that is nearest to where a box begins."""
     spec = situation.spec
     half_m = spec.resolution_m / 2
+    # Positions count from a cell's corner; less a half, whole numbers are centres, as rows and columns are.
     place = spec.positions_at(np.array([[box.start.x_m, box.start.y_m]]))[0] - 0.5
     off = piece.poses[:, 1:] - place
     row, col = piece.poses[int(np.hypot(off[:, 0], off[:, 1]).argmin()), 1:].tolist()

@@ -38,6 +38,7 @@ def judged_regions(
         most: how many regions to return.
     """
     nearest = np.array([_nearest(poses_m, place) for place in look.poses], np.intp)
+    # Regions of places that were looked at come first: rank is a good shortlist and a poor judge (decision 16).
     pieces = pieces_of(found, headings_rad, most, nearest)
     regions = [JudgedRegion(piece) for piece in pieces.best]
     for place, number, belief in zip(look.poses, nearest, look.beliefs, strict=True):
@@ -54,6 +55,7 @@ def _nearest(poses_m: NDArray[np.float64], place: NDArray[np.float64]) -> int:
 
 def _give(regions: list[JudgedRegion], pose: NDArray[np.intp], place: Pose2, belief: float) -> None:
     """Give the region that holds a pose the belief in the place it is nearest to; the first to come is the best."""
+    # If the list is too short for the region of a place, no region is given its belief.
     for number, region in enumerate(regions):
         if region.piece.holds(pose):
             regions[number] = JudgedRegion(region.piece, region.belief + belief, region.begin or place)

@@ -75,6 +75,7 @@ class Localizer:
             final: whether the sweep is whole.
         """
         readings, least = self.stop.readings, self.the_map.settings.readings_min
+        # A handful of readings is explained nearly anywhere: saying nothing is better than naming half of the map.
         found = self.stop.best_poses() if len(readings) >= least else PoseSet.nothing()
         poses_m = found.in_metres(self.the_map.spec, self.stop.headings_rad)
         look = second_look(self.the_map.likelihood, readings, poses_m, found.ranks, self.judgement.second_look)
@@ -85,6 +86,7 @@ class Localizer:
         return PoseEstimate(
             time_ns=time_ns,
             state=state,
+            # Of several regions all are the answer (sec. 2.2.1); a best one would be taken for the answer itself.
             best=regions[0].pose if state is PoseState.LOCALIZED else None,
             regions=regions,
             best_rank=found.best_rank,
@@ -94,7 +96,9 @@ class Localizer:
             regions_left_out=left_out,
             belief_aside=look.aside,
             belief_nowhere=look.nowhere,
+            # Infinite where the place has no rival: None says that in a message.
             contrast=look.contrast if math.isfinite(look.contrast) and len(look.poses) else None,
+            # In the order of each region's `explained`, so that a reader knows which reading that was.
             bearings_rad=tuple(readings.bearing_rad.tolist()),
         )
 
@@ -111,4 +115,5 @@ class Localizer:
             return (), 0
         most = self.the_map.settings.regions_max
         regions, left_out = judged_regions(found, poses_m, look, self.stop.headings_rad, most)
+        # Once it is sure, the other regions are not left out but ruled out.
         return (regions[:1], 0) if state is PoseState.LOCALIZED else (regions, left_out)

@@ -61,6 +61,7 @@ class ReadyMap:
         if self.sure is not None:
             share = settings.outlier_share
             return UnexcludedStop(self.sure, headings_rad, disk, outlier_share=share, threads=threads)
+        # A rank grid counts the whole map; within a disk, a search looks only at the cells that are wanted.
         if disk is None and len(headings_rad) <= FEW_HEADINGS:
             return CountedStop(RankGrid(self.prepared, headings_rad, threads=threads), settings)
         return SearchedStop(self.searched, headings_rad, disk, settings, threads=threads)
@@ -75,6 +76,7 @@ class ReadyMap:
         obstacles = Obstacles.of_map(ternary, unknown, error_radius_cells, blocked_by=settings.blocked_by)
         prepared = PreparedMap.of(obstacles, ternary.spec, error_radius_cells)
         searched = SearchMap.of(obstacles, ternary.spec, error_radius_cells)
+        # Heads are laid on cells that ended beams; what merely blocks only stops a beam that is cast.
         walls = WallField.of(ternary.spec, ternary.occupied, obstacles.blocking)
         likelihood = Likelihood.of(grid.spec, grid.cells, error_model or ErrorModel())
         return cls(ternary, settings, prepared, searched, walls, likelihood, _sure(ternary, settings))
@@ -90,6 +92,7 @@ class ReadyMap:
         ternary = self.ternary.updated(grid, changed)
         prepared = self._prepared(ternary, self.settings.unknown, changed)
         walls = self.walls.updated(ternary.occupied, prepared.obstacles.blocking, changed)
+        # A disk reaches whole cells along a row or a column, so rounding its radius down loses none of them.
         radius_cells = int(self.prepared.error_radius_cells)
         searched = self.searched.updated(prepared.obstacles, changed.grown(radius_cells, ternary.spec.shape))
         likelihood = self.likelihood.updated(grid.cells, changed)
@@ -105,5 +108,6 @@ class ReadyMap:
 def _sure(ternary: TernaryMap, settings: LocalizationSettings) -> ConservativeMap | None:
     if not settings.conservative:
         return None
+    # The true heading lies within half a step of one that is tried: `stop` asks its caller for that.
     bounds = ErrorBounds(settings.range_error_m, settings.heading_step_rad / 2)
     return ConservativeMap.of(SureObstacles.of_map(ternary), ternary.spec, bounds)

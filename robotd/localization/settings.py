@@ -66,9 +66,11 @@ class LocalizationSettings:
         >>> LocalizationSettings(heading_error_rad=0.2, heading_step_rad=0.1).headings_near(1.0)
         (0.8, 0.9, 1.0, 1.1, 1.2)
         """
+        # A quotient such as 0.3 / 0.1 comes out just below 3: no step is to be lost to rounding.
         steps = math.floor(self.heading_error_rad / self.heading_step_rad + 1e-9)
         return tuple(heading_rad + step * self.heading_step_rad for step in range(-steps, steps + 1))
 
     def headings_all_round(self) -> tuple[float, ...]:
         """Return the headings to try when nothing is known, evenly all round, in steps no longer than the setting."""
+        # The other way round here: rounding must not add a slice.
         return even_headings(math.ceil(math.tau / self.heading_step_rad - 1e-9))

@@ -99,4 +99,5 @@ class SearchedStop:
 
 def _asked_for(settings: LocalizationSettings, readings: int) -> tuple[int, int]:
     """Return how many readings fewer than the best a pose may explain, and how many the best must."""
+    # Both are rounded to the cautious side: rather one rival more, and rather lost than localized by half a reading.
     return math.ceil(settings.rival_share * readings), math.ceil(settings.localized_share * readings)

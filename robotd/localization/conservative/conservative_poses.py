@@ -54,7 +54,9 @@ from robotd.grid.ternary import TernaryMap
 from robotd.grid.translation import translated
 
 _HEADING_ERROR_MAX_RAD = math.pi / 8
+"""Half of a step of 45 degrees: well below the 45 degrees at which a fan would run along its lines."""
 _RADIUS_STEPS_PER_CELL = 4
+"""Radii are rounded up to such steps, so that readings of different lengths share grown maps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +70,7 @@ class ErrorBounds:
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
+        # Not `< 0.0`: NaN has to be refused, too.
         if not self.range_error_m >= 0.0:
             raise ValueError(f"range_error_m must not be negative, got {self.range_error_m}")
         if not 0.0 <= self.heading_error_rad <= _HEADING_ERROR_MAX_RAD:
@@ -95,6 +98,7 @@ class SureObstacles:
     @classmethod
     def of_map(cls, ternary: TernaryMap) -> "SureObstacles":
         """Take only cells that were seen for what the map says."""
+        # Unseen cells may end beams and block none: only so is nothing excluded by what was never seen.
         return cls(ternary.vacant, ternary.occupied, ~ternary.vacant, outside_blocks=False)
 
 
@@ -146,6 +150,7 @@ def _passable(obstacles: SureObstacles, drawn: Drawn, error_cells: float, bounds
             for old, path in before.items():
                 if number == 0 or least <= aside - old <= greatest:
                     side = old + int(np.sign(aside - old))
+                    # Two obstacles that touch at a corner are a wall: no beam slips through between them.
                     leaving = everywhere if side == old else open_at(behind, side) | open_at(line, old)
                     arriving = arriving | (path & leaving)
             paths[aside] = arriving & open_at(line, aside)

@@ -106,6 +106,7 @@ class _FannedReadings:
         bearing, range_cells, x, y, is_miss = (readings.rows / [1.0, *[resolution_m] * 3, 1.0]).T[:, :, None]
         error_cells = bounds.range_error_m / resolution_m
         away = np.hypot(x + range_cells * np.cos(bearing), y + range_cells * np.sin(bearing))
+        # A miss has no head and needs no grown map; 0 keeps it from asking for one more radius.
         steps = np.where(is_miss > 0.0, 0, head_radius_steps(away, error_cells, bounds.heading_error_rad))
         radii, radius = np.unique(steps, return_inverse=True)
         drawn, count = Drawn.of(readings, headings, resolution_m), headings.shape[1]
@@ -113,6 +114,7 @@ class _FannedReadings:
         which = np.where(is_miss > 0.0, -1, radius.reshape(-1, 1)) * np.ones(count)
         heading = np.arange(count) * np.ones_like(bearing)
         beams = np.column_stack((np.zeros(len(heads)), heading.ravel(), which.ravel(), heads)).astype(np.int32)
+        # Misses, too: the cut-off errs as much as any range.
         lengths = drawn.range_cells - error_cells
         line_count = int(min(sum(the_map.spec.shape), max(1.0, np.ceil(lengths.max()) + 1.0)))
         grown = [the_map.grown(int(number)) for number in radii]
@@ -121,6 +123,7 @@ class _FannedReadings:
     def fan_beams(self) -> Iterator[FanBeams]:
         """Yield them by fans, block by block."""
         directions, starts, fan = self._shared()
+        # Blocks bound the memory whatever the number of readings and headings is; their order changes no count.
         size = max(1, _WINDOWS_AT_ONCE // self.line_count)
         for first in range(0, len(directions), size):
             block = slice(first, first + size)
@@ -134,6 +137,7 @@ class _FannedReadings:
         """Return the directions and starts of the fans, and which fan each beam belongs to."""
         directions, starts = direction_keys(self.drawn.bearings_rad), start_keys(self.drawn.starts)
         _, direction = np.unique(directions, return_inverse=True)
+        # Pairs as single integers, which NumPy sorts sooner than rows.
         codes, start = np.unique(starts[:, 0] * (4 * STARTS_MAX) + starts[:, 1], return_inverse=True)
         _, one, fan = np.unique(direction * len(codes) + start, return_index=True, return_inverse=True)
         return directions[one], starts[one], fan.reshape(-1)

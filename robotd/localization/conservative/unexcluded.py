@@ -62,6 +62,7 @@ class UnexcludedStop:
         best, count, found = 0, 0, []
         for first, ranks in self._grids():
             best, count = max(best, ranks.best_rank), count + ranks.count_of_rank(least_rank)
+            # Too many to tell is the answer whatever the remaining headings would add, so their counting is saved.
             if count > POSES_TOLD_MAX:
                 return replace(PoseSet.nothing(best + 1), best_rank=best, is_all=False)
             poses = ranks.cells_of_rank(least_rank)

@@ -46,6 +46,7 @@ def count_all(
     for first, batch_rad in heading_batches(the_map, len(readings), headings_rad, memory_bytes):
         ranks = RankGrid(the_map, batch_rad, threads=threads)
         ranks.add(readings)
+        # The best so far is a bound for later headings, too: what is kept of each stays small.
         best = max(best, ranks.best_rank)
         poses = ranks.cells_of_rank(max(1, best - slack))
         found.append((poses + np.array([first, 0, 0]), ranks.rank_at(poses)))

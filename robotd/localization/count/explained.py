@@ -26,6 +26,7 @@ def explained_at(
     O(cells of all bodies).
     """
     obstacles = the_map.obstacles
+    # Only free cells are poses, for counting and search as well: the three have to agree.
     if not obstacles.free[cell]:
         return np.zeros(len(readings), np.bool_)
     drawn = Drawn.of(readings, turned(np.array([heading_rad])), the_map.spec.resolution_m)

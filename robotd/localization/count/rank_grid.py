@@ -92,6 +92,7 @@ class RankGrid:
         if len(readings) == 0:
             return
         total = self.readings + (-len(readings) if subtract else len(readings))
+        # First the room, which may be refused: then the counters are as they were, and the total, too.
         self._make_room(bits_of(total))
         self._count_with_room(readings, subtract=subtract)
         self.readings = total

@@ -70,6 +70,7 @@ class PoseBox:
     def __post_init__(self) -> None:
         """Refuse a box that holds nothing."""
         it = self.bounds
+        # As a negation, so that NaN is refused, too.
         if not (it.x_min_m <= it.x_max_m and it.y_min_m <= it.y_max_m and it.heading_min_rad <= it.heading_max_rad):
             raise ValueError(f"bounds in the wrong order: {it}")
 
@@ -186,6 +187,7 @@ def ranges_along(
 ) -> ExpectedRanges:
     """Do as :func:`expected_ranges` with the beams of :class:`Heads`."""
     spec, at = field.spec, np.empty((len(poses), 4))
+    # Grids count (row, col), the kernel takes x before y.
     at[:, :2] = spec.positions_at(poses[:, :2])[:, ::-1]
     np.cos(poses[:, 2], at[:, 2])
     np.sin(poses[:, 2], at[:, 3])
@@ -223,6 +225,7 @@ class _Units:
     """``float64[3, 3]``: what the map adds to it."""
 
     @staticmethod
+    # A map is refined on again and again, and these arrays would be made each time.
     @functools.lru_cache(maxsize=8)
     def of(spec: GridSpec, settings: RefinementSettings) -> "_Units":
         scale = np.array([spec.resolution_m, spec.resolution_m, 1.0])
@@ -250,6 +253,7 @@ def _distances(walls: Walls) -> NDArray[np.float64]:
     codes = np.arange(-128, 128)
     roots = np.sqrt(np.abs(codes))
     if walls is Walls.FACES:
+        # From the centre of a cell to the side of a wall's: half a cell less than to its centre, on either side.
         return np.where(codes > 0, roots - 0.5, 0.5 - roots)
     return np.where(codes > 0, roots, 0.0)
 

@@ -61,5 +61,6 @@ def climb(
             better = highest > heights[moving] + _BETTER
             moved = moving[better]
             poses[moved], heights[moved] = tried[better, which[better]], highest[better]
+            # A pose that finds nothing better rests until the steps become finer: trying it again would find the same.
             moving = moved
     return poses, heights

@@ -49,6 +49,7 @@ def _going_on(readings: Readings, model: ErrorModel) -> tuple[NDArray[np.float64
     """Return the density of each reading but the first two if the wall of the two before goes on, and where it can."""
     heads, is_hit, ahead = readings.heads_m, readings.is_hit, readings[2:]
     wall, last = heads[1:-1] - heads[:-2], heads[1:-1]
+    # Two heads in one place make no wall, but must not divide by nothing either.
     length = np.maximum(np.hypot(wall[:, 0], wall[:, 1]), 1e-9)
     way = np.stack((np.cos(ahead.bearing_rad), np.sin(ahead.bearing_rad)), axis=1)
     aslant = way[:, 0] * wall[:, 1] - way[:, 1] * wall[:, 0]

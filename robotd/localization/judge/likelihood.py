@@ -71,6 +71,7 @@ class Likelihood:
         own, skips = np.array(cells, np.uint8, order="C"), self.chances.skips.copy()
         here, there, part = (window.slices for window in influence(changed, SKIP_MAX, self.spec.shape))
         skips[here] = skips_of(np.ascontiguousarray(own[part]))[there]
+        # Counted in the window alone, on both sides of the change.
         more = _vacant(own[changed.slices]) - _vacant(self.chances.cells[changed.slices])
         chances = replace(self.chances, cells=own, skips=skips)
         return replace(self, chances=chances, vacant_cells=self.vacant_cells + more)
@@ -89,6 +90,7 @@ class Likelihood:
         model, resolution_m = self.model, self.spec.resolution_m
         bearing_rad, range_m = readings.bearing_rad, readings.range_m
         across_m = np.hypot(model.map_sigma_m, model.map_sigma_rad * range_m)
+        # A twelfth of the square is the variance of a wall that lies anywhere in its cell, all places being as likely.
         along_m = np.sqrt(model.range_sigma_m**2 + across_m**2 + resolution_m**2 / 12.0)
         x, y, *lengths = np.stack((readings.start_x_m, readings.start_y_m, range_m, along_m, across_m)) / resolution_m
         beams = np.stack((x, y, np.cos(bearing_rad), np.sin(bearing_rad), *lengths, readings.is_miss), axis=1)
@@ -108,6 +110,7 @@ class Likelihood:
         """
         at = np.column_stack((self.spec.positions_at(poses[:, :2]), np.cos(poses[:, 2]), np.sin(poses[:, 2])))
         densities = kernels.in_use().weigh.weigh_beams(self.chances, at, sight.beams)
+        # The kernel's densities are per cell; a miss has a chance, which is without unit.
         densities[:, sight.beams[:, 7] == 0.0] /= self.spec.resolution_m
         densities *= sight.seen_so_far[:, None]
         densities[:, :, IN_UNKNOWN] *= sight.unseen

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from robotd.grid.readings import Readings
 
 _COARSER = 1.15
+"""Factor by which the gap is widened at each try; every try goes through all the readings."""
 
 
 def spots_of(readings: Readings) -> NDArray[np.float64]:
@@ -38,6 +39,7 @@ def spread_out(readings: Readings, gap_m: float, most: int) -> NDArray[np.intp]:
 
     The gap is widened until no more than ``most`` are left. O(m log m) for each gap.
     """
+    # By bearing, neighbours come one after the other, so looking back at the last one chosen is enough.
     by_bearing = np.argsort(readings.bearing_rad, kind="stable")
     heads: list[tuple[float, float]] = [(x_m, y_m) for x_m, y_m in spots_of(readings[by_bearing]).tolist()]
     kept = _apart(heads, gap_m)

@@ -36,6 +36,7 @@ from robotd.localization.judge.shortlist import near, shortlist
 
 _GLANCE_STEPS = ((0.06, 0.026), (0.03, 0.012))
 _GLANCE_MOVES = 2
+"""A glance stops short of the top of a hill: its model is blurred (:func:`_blurred`) by as much."""
 _CLIMBERS_PER_PLACE = 3
 """Starts that are moved uphill, for each place that will be looked at: several may end on the same hill."""
 _LOOK_STEPS = ((0.04, 0.012), (0.02, 0.006), (0.01, 0.003))
@@ -137,11 +138,14 @@ def second_look(
     apart = shortlist(found, _in_order(scores), _TOGETHER_M, _TOGETHER_RAD, len(found))
     found, scores = found[apart], scores[apart]
     is_rival = ~near(found, found[0], settings.same_within_m, settings.same_within_rad)
+    # The best place is near to itself, and must stay.
     is_rival[0] = True
     found, scores = found[is_rival], scores[is_rival]
     _, aside = climb(hill, _around(found[0], settings), _ASIDE_STEPS, _ASIDE_MOVES)
     to_beat = float((likelihood.elsewhere_logs(hill.sight) * hill.weights).sum())
+    # Before any reading, each place has an equal share of the belief that the robot is on the map at all.
     to_beat += math.log(_places(likelihood, settings) * settings.off_map_share / (1.0 - settings.off_map_share))
+    # Belief alone was 0.9999 sure of the wrong one of two rooms that are alike (decision 16).
     contrast = _contrast(hill, found)
     on_walls = share_on_walls(likelihood, readings, found[0], settings.on_wall_m)
     least = settings.contrast_min if on_walls >= settings.on_walls_min else settings.contrast_off_walls_min
@@ -244,6 +248,7 @@ def _weigh(
     ``contrasts`` are what the best place has, and the least that it must have.
     """
     contrast, least = contrasts
+    # Less the greatest: an exponent above 700 overflows, and the shares stay the same.
     powers = np.exp(np.append(evidence, (aside, 0.0)) - max(float(evidence[0]), 0.0))
     shares = powers / powers.sum()
     is_sure = float(shares[0]) >= 1.0 - settings.doubt_max and contrast >= least

@@ -27,6 +27,7 @@ def shortlist(
 
     O(n log n + most x n).
     """
+    # Signed before the sign is turned: ranks come as unsigned numbers. Stable, for replays.
     left = np.argsort(-ranks.astype(np.int64), kind="stable")
     starts: list[int] = []
     while len(left) and len(starts) < most:

@@ -90,6 +90,7 @@ class Obstacles:
 
 
 def _blocking(ternary: TernaryMap, unknown: UnknownCells) -> NDArray[np.bool_]:
+    # What lies in the unknown stops a beam even where it cannot end one: nobody saw through it.
     return ternary.occupied if unknown is UnknownCells.FREE else ~ternary.vacant
 
 

@@ -46,6 +46,7 @@ def pieces_of(
     urgency = np.full(len(sizes), len(found))
     if first is not None:
         np.minimum.at(urgency, labels[first], np.arange(len(first)))
+    # The last key decides first. The label comes last of all, so that the order is the same in every replay.
     order = np.lexsort((np.arange(len(sizes)), -sizes, -best_ranks.astype(np.intp), urgency))
     members = np.argsort(labels, kind="stable")
     ends = np.cumsum(sizes)
@@ -119,6 +120,7 @@ def _join(count: int, links: NDArray[np.intp]) -> NDArray[np.intp]:
         if not apart.any():
             return root
         np.minimum.at(root, np.maximum(one, other)[apart], np.minimum(one, other)[apart])
+        # Chains are cut short at once: else joining a long corridor could take a round for each of its runs.
         while (root != root[root]).any():
             root = root[root]
 
@@ -128,4 +130,5 @@ def _go_round(headings_rad: tuple[float, ...]) -> bool:
     if len(headings_rad) < 3:
         return False
     steps = np.diff(headings_rad, append=headings_rad[0] + math.tau)
+    # Half a step to spare for rounding: a single heading left out would make it two steps.
     return bool(steps[-1] <= steps[:-1].max() * 1.5 and (steps > 0).all())

@@ -41,6 +41,7 @@ def centre_of(piece: PoseSet, spec: GridSpec, headings_rad: tuple[float, ...]) -
     best = piece.best
     x_m, y_m = spec.centre_of(float(best[:, 1].mean()), float(best[:, 2].mean()))
     angles = np.array(headings_rad)[best[:, 0]]
+    # Headings are averaged as directions: those on either side of half a turn would cancel as numbers.
     return Pose2(x_m, y_m, math.atan2(float(np.sin(angles).mean()), float(np.cos(angles).mean())))
 
 
@@ -66,6 +67,7 @@ def _headings_extent(used: NDArray[np.intp], headings_rad: tuple[float, ...]) ->
 
 def circle_of(cells: NDArray[np.intp], spec: GridSpec) -> Circle:
     """Return the smallest circle round cells ``intp[n, 2]``, ascending: the outermost of each row decide."""
+    # Cells between the ends of a row lie inside any circle round these, and would only cost time.
     first = np.flatnonzero(np.diff(cells[:, 0], prepend=-1))
     last = np.append(first[1:], len(cells)) - 1
     outermost = np.concatenate((cells[first], cells[last])).astype(np.float64)

@@ -47,6 +47,7 @@ def _through(a: Points, b: Points, c: Points | None = None) -> tuple[float, floa
         return float(a[0] + to_b[0] / 2), float(a[1] + to_b[1] / 2), float(np.hypot(*to_b)) / 2
     to_c = c - a
     twice_area = 2.0 * float(to_b[0] * to_c[1] - to_b[1] * to_c[0])
+    # In a line, two of the three decide, and they are tried as a diameter.
     if twice_area == 0.0:
         return None
     squares = np.array([to_b @ to_b, to_c @ to_c])

@@ -64,6 +64,7 @@ def errors_by_samples(
     sample_cells = np.repeat(np.hypot(*ray_steps(bearings_rad).T), counts)
     # In exact arithmetic this is the answer; rounding may make it the one next to it.
     errors: NDArray[np.float64] = np.ceil(ranges - left * sample_cells) + 1.0
+    # Downwards only: one was added above, so the guess is never too small.
     for _ in range(2):
         fewer = np.maximum(0.0, errors - 1.0)
         samples = np.ceil(np.clip(ranges - fewer, 0.0, reach) * shares)

@@ -115,6 +115,7 @@ def _flood_along_cols(sources: NDArray[np.bool_], aside: NDArray[np.intp], *, ou
     # The edge itself is a source a column beyond the last one, or there is none.
     edges = cols if outside else cols + len(aside)
     numbers = np.empty((rows, cols), np.int32)
+    # The order in which lines that slide sideways meet the cell centres; any order is right, only this one is O(cells).
     for col in np.argsort(anchors - drift, kind="stable").tolist():
         lines.move(col, anchors[col] + aside[: cols - col])
         numbers[:, col] = np.minimum(lines.first_set(col, int(anchors[col])), edges) - col
@@ -144,6 +145,7 @@ class _Lines:
         count = rows + self._top - int(anchors.min())
         self._shifts = np.full(cols, np.iinfo(np.intp).max)
         self._words = np.zeros((-(-cols // _WORD_BITS), count), np.uint64)
+        # A second level, so that a next set bit is found in two words however long the line is.
         self._filled = np.zeros(count, np.uint64)
         """Which words of a line have any bit set."""
 
@@ -185,6 +187,7 @@ class _Lines:
 
 def _lowest_bit(words: NDArray[np.uint64]) -> NDArray[np.intp]:
     """Return the number of the lowest bit set in each word, -1 where none is."""
+    # A single bit is a power of two, which a float holds exactly: its exponent is the number of the bit.
     lowest = words & (~words + _ONE)
     exponents = np.frexp(lowest.astype(np.float64))[1]
     return exponents.astype(np.intp) - 1

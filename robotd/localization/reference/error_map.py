@@ -30,6 +30,7 @@ class ErrorMap:
     @classmethod
     def of(cls, obstacles: Obstacles, spec: GridSpec) -> "ErrorMap":
         """Prepare obstacles, read from a map in whatever way, but grown by an error radius of 0."""
+        # Rounded up: of all whole error radii, the least that reaches.
         distances = np.ceil(distance_transform(obstacles.grown, outside=obstacles.outside_ends))
         packed = PackedMap.of(
             obstacles.free,

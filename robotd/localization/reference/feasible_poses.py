@@ -64,5 +64,6 @@ def blocked_set(
     met = np.zeros(blocking.shape, np.int32)
     offsets: Iterable[tuple[int, int]] = body.tolist()
     for row, col in offsets:
+        # Counted, not ORed: with `blocked_by` 2 a single cell that is grazed does not block.
         met += translated(blocking, row, col, outside=outside)
     return met >= blocked_by

@@ -57,6 +57,7 @@ def flood(
     """
     rows, cols = sources.shape
     open_cells = np.ones_like(sources) if obstacles is None else ~obstacles
+    # The rim is no cell to be flooded, so a step in the flattened grid cannot run over into the next row.
     dry = np.pad(open_cells, 1).reshape(-1)
     numbers = np.full(dry.shape, UNREACHED, np.int32)
     steps = {count: _neighbours(count, cols + 2) for count in metric.pattern}
@@ -105,6 +106,8 @@ def _neighbours(count: int, width: int) -> NDArray[np.intp]:
 def _without_doubles(cells: NDArray[np.intp], scratch: NDArray[np.int32]) -> NDArray[np.intp]:
     """Return each cell once, in O(cells); what was in ``scratch`` at these cells is overwritten."""
     order = np.arange(len(cells), dtype=np.int32)
+    # Of equal cells the last to write stays: it alone finds its own number again. Sorting would cost more than
+    # O(cells).
     scratch[cells] = order
     unique: NDArray[np.intp] = cells[scratch[cells] == order]
     return unique

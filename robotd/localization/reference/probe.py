@@ -46,6 +46,7 @@ def probe_of(
     """
     drawn = Drawn.of(Readings.of((reading,)), turned(np.array([heading_rad])), resolution_m)
     body, _ = drawn.bodies(drawn.body_lengths(error_radius_cells, reach_cells))
+    # The robot stands in its own cell: where the beam starts elsewhere, that has to be free all the same.
     if drawn.start_cells.any():
         body = np.concatenate((np.zeros((1, 2), np.int64), body))
     head_row, head_col = drawn.head_cells[0].tolist()

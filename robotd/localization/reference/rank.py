@@ -51,6 +51,7 @@ def rank_of(
 def loc_of(rank: NDArray[np.uint16], slack: int = 0) -> PoseSet:
     """Return loc, and the poses that explain up to this many readings fewer; none where nothing is explained."""
     best_rank = int(rank.max(initial=0))
+    # A pose that explains nothing is no answer, however much slack there is.
     least = max(1, best_rank - slack)
     poses = np.argwhere(rank >= least)
     return PoseSet(poses, rank[tuple(poses.T)], best_rank, least)

@@ -149,6 +149,7 @@ def headings_from_walls(
         settings: what counts as dominant, and how far off headings may be.
     """
     found = separated_orientation(readings, map_axis, settings)
+    # Rounded up, so that the outermost heading is no nearer than the error may be.
     steps = math.ceil(settings.heading_error_rad / step_rad - 1e-9)
     return tuple(sorted(wrap_rad(h + k * step_rad) for h in found.headings_rad for k in range(-steps, steps + 1)))
 
@@ -222,6 +223,7 @@ def _lines(sums: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.f
     xx, xy, yy = sums[3:] - np.array([x * x, x * y, y * y]) / n
     length = np.hypot(xx - yy, 2.0 * xy)
     total = xx + yy
+    # Through two points there always goes a perfectly straight line.
     enough = (n >= _FIT_POINTS_MIN) & (total > 0.0)
     straightness = np.divide(length, total, out=np.zeros_like(total), where=enough)
     return np.arctan2(2.0 * xy, xx - yy) / 2.0, straightness
@@ -236,6 +238,7 @@ def _dominant(angles_rad: NDArray[np.float64], weights: NDArray[np.float64], tol
     bin_rad = QUARTER_TURN_RAD / _HISTOGRAM_BINS
     bins = np.minimum((folded / bin_rad).astype(np.intp), _HISTOGRAM_BINS - 1)
     histogram = np.bincount(bins, weights, _HISTOGRAM_BINS)
+    # Bins only find the axis; its angle is the mean of what lies near, which no bin rounds.
     centres = np.linspace(0.0, QUARTER_TURN_RAD, _HISTOGRAM_BINS, endpoint=False) + bin_rad / 2.0
     held = (np.abs(_apart(centres[:, None], centres)) <= tolerance_rad) @ histogram
     best = float(centres[held.argmax()])

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _STEP_RAD = 0.00175
+"""A tenth of a degree, what the answer is wanted to."""
 _PEAK_SHARE = 0.3
 """The peak is what rises above the least by more than all but this share; its middle is less noisy than its top."""
 
@@ -35,6 +36,7 @@ def sharpest_direction(
     rise = crowding - (floor + (1.0 - _PEAK_SHARE) * (crowding[top] - floor))
     low = np.flatnonzero(rise <= 0.0)
     peak = slice(int(low[low < top].max(initial=-1)) + 1, int(low[low > top].min(initial=len(rise))))
+    # All directions are alike, as those of a single point: then the guess is as good as any.
     if not rise[top] > 0.0:
         return near_rad
     return float(np.average(directions[peak], weights=rise[peak]))

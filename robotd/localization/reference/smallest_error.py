@@ -76,6 +76,7 @@ def smallest_error_by_search(
     most = max(math.ceil(_range_cells(reading, binary)) for reading in readings) + sum(binary.spec.shape)
     too_small, enough = -1, 0
     found = _agreeing(binary, readings, heading_rad, enough, wanted)
+    # Doubled until it is enough: so the number of ranks is that of the digits of eps, however great it could be.
     while not found.size and enough < most:
         too_small, enough = enough, min(most, 2 * enough + 1)
         found = _agreeing(binary, readings, heading_rad, enough, wanted)
@@ -112,6 +113,7 @@ def errors_for_share(
     Raises:
         ValueError: there is no reading, one of them measured nothing, or the share is none.
     """
+    # The kernel keeps errors in sixteen bits; floats take what does not fit.
     if any(_range_cells(reading, binary) > RANGE_CELLS_MAX for reading in readings):
         return errors_for_share_reading_by_reading(binary, readings, heading_rad, share)
     return errors_on(ErrorMap.of_binary(binary), readings, heading_rad, share, threads=threads)
@@ -171,6 +173,7 @@ def errors_over_headings(
     which = np.zeros(best.shape, np.intp)
     for number, heading_rad in enumerate(headings_rad[1:], start=1):
         errors = errors_on(the_map, readings, heading_rad, share, threads=threads)
+        # Strictly, so that of equal slices the first stays.
         better = errors < best
         best[better], which[better] = errors[better], number
     return best, which
@@ -237,6 +240,7 @@ def _readings_wanted(readings: Sequence[RangeReading], share: float) -> int:
         raise ValueError("expected at least one reading")
     if not 0.0 < share <= 1.0:
         raise ValueError(f"share must lie in (0, 1], got {share}")
+    # A share such as 0.55 of 100 comes out just above 55 as a float, and must not ask for one reading more.
     return max(1, math.ceil(share * len(readings) - 1e-9))
 
 

@@ -143,6 +143,7 @@ def track(
     starts = search.starts()
     best = search.best_of([next(starts)])
     settled = best.share >= settings.settled_share and best.residual_m <= settings.settled_residual_m
+    # Starts are drawn from the lattice one by one, so a pose that is settled at once never pays for rivals.
     rivals = [] if settled else list(islice(starts, settings.rivals))
     if rivals:
         best = max(best, search.best_of(rivals), key=attrgetter("share"))
@@ -187,6 +188,7 @@ class _Search:
         step_m, wide = lattice.step_cells * self.field.spec.resolution_m, costs.shape[1]
         for _ in range(costs.size):
             row, col = divmod(int(costs.argmin()), wide)
+            # All that is left lies beside a start that was given: there are fewer starts than places.
             if costs[row, col] == _TAKEN:
                 return
             yield Pose2(
@@ -222,6 +224,7 @@ class _Search:
         settings = self.settings
         ways_m = ranges_along(self.field, self.heads.beams, poses.poses, settings.blocked_by).ranges_m
         explained: NDArray[np.bool_] = ways_m >= self.readings.range_m - settings.unblocked_within_m
+        # Misses have NaN here, which compares as false: nothing is asked of a head that they lack.
         explained &= ~(np.abs(poses.beyond_m) > settings.explained_within_m)
         return explained
 
@@ -235,6 +238,7 @@ def _steps(start: float, low: float, high: float, step: float) -> tuple[int, int
 def _costs(distances: NDArray[np.float64]) -> NDArray[np.int32]:
     """Return Tukey's cost of a head by code, ``int32[256]``, in thousandths of that of a head far from any wall."""
     left = np.maximum(1.0 - (distances / REACH_CELLS) ** 2, 0.0)
+    # Whole numbers, so that sums over the heads come out the same in any order.
     return np.rint(1000.0 * (1.0 - left**3)).astype(np.int32)
 
 

@@ -88,6 +88,7 @@ def best_poses(
         raise ValueError(f"a search counts {READINGS_MAX} readings, got {len(readings)}")
     shape = search_map.spec.shape
     window, spans = _spans(prior or CellWindow.whole(shape), shape)
+    # The kernel is promised one reading, one heading and one row at least.
     if len(readings) == 0 or len(headings_rad) == 0 or len(spans) == 0:
         return PoseSet.nothing(max(1, least_rank - slack))
     farthest_m = float(np.abs(readings.rows[:, 2:4]).max())

@@ -30,6 +30,7 @@ class CellDisk:
         """Return the window of a grid that holds the disk, and from which to before which column each row is in it."""
         first = max(0, math.ceil(self.row - self.radius))
         end = max(first, min(shape[0], math.floor(self.row + self.radius) + 1))
+        # In the outermost rows rounding may leave the square just below 0.
         halves = [math.sqrt(max(self.radius**2 - (row - self.row) ** 2, 0.0)) for row in range(first, end)]
         spans = [(max(0, math.ceil(self.col - h)), min(shape[1], math.floor(self.col + h) + 1)) for h in halves]
         left, right = min((span[0] for span in spans), default=0), max((span[1] for span in spans), default=0)
