@@ -16,7 +16,7 @@ from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 
 _LEASE_MAX_S = 1e9
-"""Far above what a client may ask for (:data:`.LeaseTime`); beyond it is what no daemon noted."""
+"""Far above what a client may ask for (``LeaseTime`` of the contract); beyond it is what no daemon noted."""
 _QUOTED = 80
 """This many characters of what was wrong are told."""
 
