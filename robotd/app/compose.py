@@ -59,8 +59,8 @@ def compose(
 
     With ``leases_end_by_causes`` leases do not run out by themselves, only by :meth:`Causes.repeat`: for replays.
     """
-    # One stream of nonces per device: who connects first must not change what the others draw.
     gaze = Gaze()
+    # One stream of nonces per device: who connects first must not change what the others draw.
     wirings = {
         name: Wiring(connect, journal, random.Random(f"{journal.header.session_seed}/{name}"), gaze)
         for name, connect in connects.items()

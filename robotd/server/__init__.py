@@ -1,1 +1,1 @@
-"""Commands and state over ZeroMQ, and the client for both."""
+"""Commands and state over ZeroMQ, and nothing of the engine."""
