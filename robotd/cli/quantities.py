@@ -24,6 +24,18 @@ def positive(text: str) -> float:
     return value
 
 
+def between(lowest: float, highest: float, unit: str) -> Callable[[str], float]:
+    """Return what reads a number of this unit within bounds, both included."""
+
+    def bounded(text: str) -> float:
+        value = number(text)
+        if not lowest <= value <= highest:
+            raise ArgumentTypeError(f"must be {lowest:g} to {highest:g} {unit}, got {text}")
+        return value
+
+    return bounded
+
+
 def within(kind: Any, field: str) -> Callable[[str], float]:
     """Return what reads a number that a field of a settings dataclass may hold."""
     bounds = bounds_of(kind)[field]

@@ -8,7 +8,7 @@ from functools import wraps
 from typing import Any, Generic, ParamSpec, Self, TypeVar, overload
 
 from robotd.client.mission_run import MissionEvent, final_estimate
-from robotd.contract.missions import DriveTo, Localize, MapStart, Mission, with_lease
+from robotd.contract.missions import DriveStraight, DriveTo, Localize, MapStart, Mission, Turn, with_lease
 from robotd.contract.request import Request
 from robotd.contract.requests import (
     Arm,
@@ -132,6 +132,8 @@ class Methods:
     make_map = CarriesOut(MapStart.of, _all)
     localize = CarriesOut(Localize, final_estimate)
     drive_to = CarriesOut(DriveTo, _all)
+    drive = CarriesOut(DriveStraight, _all)
+    turn = CarriesOut(Turn, _all)
     map_save = Asks(MapSave, _all)
     map_load = Asks(MapLoad.of, _all)
     map_discard = Asks(MapDiscard, _nothing)

@@ -6,9 +6,11 @@ differ, and stay, because clients and recordings know them.
 """
 
 import enum
-from typing import ClassVar, get_args
+import math
+from typing import Annotated, ClassVar, get_args
 
 import msgspec
+from msgspec import Meta
 
 from robotd.contract.answers import MissionStarted
 from robotd.contract.area import Area
@@ -33,6 +35,12 @@ class PriorHeading(enum.StrEnum):
     """What odometry says, give or take the setting ``heading_error_rad``."""
     UNKNOWN = "unknown"
     """Nothing: all headings are tried."""
+
+
+Distance = Annotated[float, Meta(ge=-10.0, le=10.0)]
+"""How far one ``drive`` may go: nothing plans it, so it is no longer than somebody oversees."""
+Turns = Annotated[float, Meta(ge=-20.0 * math.pi, le=20.0 * math.pi)]
+"""How far one ``turn`` may go: ten times round, which is enough to calibrate a scale by."""
 
 
 class MissionRequest(Request[MissionStarted], frozen=True):
@@ -98,7 +106,25 @@ class DriveTo(MissionRequest, frozen=True):
     lease_s: LeaseTime | None = None
 
 
-Mission = MapStart | Localize | DriveTo
+class DriveStraight(MissionRequest, frozen=True):
+    """Drive straight ahead, or back, as far as odometry says; no map is needed, and none is looked at."""
+
+    cmd, kind, doing, noted = "drive", "move", "moving", "DriveStraight"
+    distance_m: Distance
+    """Negative goes back."""
+    lease_s: LeaseTime | None = None
+
+
+class Turn(MissionRequest, frozen=True):
+    """Turn on the spot as far as odometry says, as often round as asked; no map is needed."""
+
+    cmd, kind, doing, noted = "turn", "turn", "turning", "Turn"
+    angle_rad: Turns
+    """Counter-clockwise; negative goes clockwise."""
+    lease_s: LeaseTime | None = None
+
+
+Mission = MapStart | Localize | DriveTo | DriveStraight | Turn
 
 
 def with_lease(mission: Mission, lease_s: float | None = None) -> Mission:

@@ -1,7 +1,6 @@
 """A stall of ours holds a mission that drives, leaves one that stands alone, and ends none: on the virtual clock."""
 
 import asyncio
-import threading
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -9,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from firmware_proto.common import Fault
-from robotd.app.replaying import ReplayReport, replay_recording
 from robotd.app.stalls import keep_going
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveTo, Legs, MapStart
+from robotd.contract.missions import DriveStraight, DriveTo, Legs, MapStart, Mission, Turn
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, RecordStart, RecordStop, Stop
+from robotd.core.angles import wrap_rad
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
 from robotd.mission.motion.steering import DrivingSettings
@@ -23,6 +22,7 @@ from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.living import LEASE_S, AtOnce, Living
+from tests.support.replayed import replayed
 
 pytestmark = pytest.mark.slow
 
@@ -47,14 +47,6 @@ async def going(live: Live, directory: Path) -> AsyncIterator[Living]:
     assert report.differences == ()
     assert report.digest == report.recorded_digest
     assert report.results > 0
-
-
-def replayed(file: Path) -> ReplayReport:
-    reports: list[ReplayReport] = []
-    thread = threading.Thread(target=lambda: reports.append(replay_recording(file)))
-    thread.start()
-    thread.join()
-    return reports[0]
 
 
 def stall(it: Living) -> bool:
@@ -118,6 +110,23 @@ async def test_a_mission_goes_on_after_a_stall(live: Live, tmp_path: Path, momen
         end = await ended(it, mission_id)
         assert end.phase is MissionPhase.DONE, end
         assert it.daemon.control.status.held is None
+
+
+@pytest.mark.parametrize(("moment", "mission"), [("driving", DriveStraight(1.0)), ("turning", Turn(9.0))])
+async def test_without_a_map_only_the_rest_of_the_way_is_gone_after_a_stall(
+    live: Live, tmp_path: Path, moment: str, mission: Mission
+) -> None:
+    async with going(live, tmp_path) as it:
+        before = it.robot.truth
+        mission_id = it.daemon.control.start(mission, LEASE_S)
+        await until(it, lambda: MOMENTS[moment](it))
+        assert stall(it)
+        assert it.daemon.control.status.held is not None
+        end = await ended(it, mission_id)
+        assert end.phase is MissionPhase.DONE, end
+        moved = before.inverse() @ it.robot.truth
+        asked = (1.0, 0.0, 0.0) if moment == "driving" else (0.0, 0.0, wrap_rad(9.0))
+        assert (moved.x_m, moved.y_m, moved.heading_rad) == pytest.approx(asked, abs=0.03)
 
 
 async def test_the_seventh_hold_within_a_minute_disarms_and_says_why(live: Live, tmp_path: Path) -> None:

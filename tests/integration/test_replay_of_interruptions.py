@@ -1,12 +1,10 @@
 """Recordings that begin late, and missions that end early, replay like any other."""
 
 import asyncio
-import threading
 from pathlib import Path
 
 import pytest
 
-from robotd.app.replaying import ReplayReport, replay_recording
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import Localize, MapStart
 from robotd.contract.modes import Mode
@@ -15,24 +13,9 @@ from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.living import Living
+from tests.support.replayed import check, replayed
 
 pytestmark = pytest.mark.slow
-
-
-def replayed(file: Path) -> ReplayReport:
-    """Replay on a thread: a loop cannot be started inside another."""
-    reports: list[ReplayReport] = []
-    thread = threading.Thread(target=lambda: reports.append(replay_recording(file)))
-    thread.start()
-    thread.join()
-    return reports[0]
-
-
-def check(report: ReplayReport) -> None:
-    assert report.differences == ()
-    assert report.complete
-    assert report.digest == report.recorded_digest
-    assert report.results > 0
 
 
 async def test_a_recording_started_late_begins_where_the_daemon_began(live: Live, tmp_path: Path) -> None:

@@ -16,8 +16,8 @@ from robotd.recording.reader import read
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot, own_board
 from tests.integration.conftest import Live
-from tests.integration.test_replay_of_interruptions import check, replayed
 from tests.support.living import Living
+from tests.support.replayed import check, replayed
 
 pytestmark = pytest.mark.slow
 

@@ -16,7 +16,7 @@ from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
 from robotd.config import Config
 from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.contract.missions import DriveTo, Legs, Localize, MapStart, Mission
+from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, MapStart, Mission, Turn
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, Clear, Stop
 from robotd.core.broadcast import Subscription
@@ -196,14 +196,19 @@ async def driving(rig: Rig) -> None:
     await rig.daemon.control.perform(Arm())
     use_blank_map(rig)
     mission_id = rig.start(DriveTo(*rig.robot.stops_m[0], Legs.STRAIGHT))
-    speed_mps = 0.0
+    await rig.keep_alive(mission_id, lambda _: rig.robot._body.velocity[0] > 0.2)
 
-    def fast(_: Event) -> bool:
-        nonlocal speed_mps
-        speed_mps = rig.robot._body.velocity[0]
-        return speed_mps > 0.2
 
-    await rig.keep_alive(mission_id, fast)
+async def going_back(rig: Rig) -> None:
+    """Without a map."""
+    await rig.daemon.control.perform(Arm())
+    await rig.keep_alive(rig.start(DriveStraight(-2.0)), lambda _: rig.robot._body.velocity[0] < -0.2)
+
+
+async def turning(rig: Rig) -> None:
+    """Without a map."""
+    await rig.daemon.control.perform(Arm())
+    await rig.keep_alive(rig.start(Turn(6.0)), lambda _: rig.robot._body.velocity[1] > 0.3)
 
 
 async def sweeping(rig: Rig) -> None:
@@ -309,7 +314,8 @@ async def daemon_is_killed(rig: Rig) -> None:
     await rig.end()
 
 
-ACTIVITIES = (idle, driving, sweeping, computing, preparing, arming, starting)
+MOVING = (driving, going_back, turning)
+ACTIVITIES = (idle, *MOVING, sweeping, computing, preparing, arming, starting)
 WRONGS: dict[str, tuple[Callable[[Rig], Awaitable[None]], Mode]] = {
     "stop": (stop, Mode.DISARMED),
     "garbled stop": (stop_is_garbled, Mode.DISARMED),
@@ -380,7 +386,7 @@ async def test_it_comes_to_rest(
     assert it.is_quiet
 
 
-@pytest.mark.parametrize("activity", [driving, sweeping, computing, preparing, starting])
+@pytest.mark.parametrize("activity", [*MOVING, sweeping, computing, preparing, starting])
 async def test_a_silent_client_loses_its_robot_when_the_lease_ends(
     activity: Callable[[Rig], Awaitable[None]], tmp_path: Path
 ) -> None:
@@ -408,5 +414,5 @@ async def test_a_killed_daemon_leaves_a_robot_that_stops_itself(
         await daemon_is_killed(it)
         await asyncio.sleep(REST_WITHIN_S)
         assert it.robot.at_rest
-        if activity is driving:
+        if activity in MOVING:
             assert board_of(it.robot, "drive").faults == Fault.DEADMAN

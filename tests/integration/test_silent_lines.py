@@ -2,7 +2,6 @@
 
 import asyncio
 import random
-import threading
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -11,7 +10,6 @@ import pytest
 
 from firmware_proto.common import BoardKind
 from firmware_proto.drive import OdometryReport
-from robotd.app.replaying import ReplayReport, replay_recording
 from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import Legs, MapStart
 from robotd.contract.modes import Mode
@@ -26,6 +24,7 @@ from robotd.sim.faults.of_flow import Silence
 from robotd.sim.faults.of_frames import frames_of
 from robotd.sim.robot import DEVICES
 from tests.support.bench import Bench, bench
+from tests.support.replayed import replayed
 
 pytestmark = pytest.mark.slow
 
@@ -56,17 +55,9 @@ async def mapping(directory: Path, silence_s: float = 1.0) -> AsyncIterator[Benc
         yield it
         await it.daemon.control.perform(RecordStop())  # what ends the daemon is in no replay
     (file,) = (directory / "recordings").glob("*.mcap")
-    report = _replayed(file)
+    report = replayed(file)
     assert report.differences == ()
     assert report.digest == report.recorded_digest
-
-
-def _replayed(file: Path) -> ReplayReport:
-    reports: list[ReplayReport] = []
-    thread = threading.Thread(target=lambda: reports.append(replay_recording(file)))
-    thread.start()
-    thread.join()
-    return reports[0]
 
 
 def fall_silent(it: Bench, devices: tuple[str, ...] = DEVICES) -> None:

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from robotd.contract.estimate import PoseEstimate
-from robotd.contract.missions import DriveTo, Localize, MapStart, Mission
+from robotd.contract.missions import DriveStraight, DriveTo, Localize, MapStart, Mission, Turn
 from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.mission.missions.by_odometry import run_straight, run_turning
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.driving import run_driving
 from robotd.mission.missions.localizing import pose_text, run_localizing
@@ -66,10 +67,20 @@ async def _drive(_: Host, context: MissionContext, mission: DriveTo, report: Rep
     return await run_driving(context, _place(context), mission, report)
 
 
+async def _straight(_: Host, context: MissionContext, mission: DriveStraight, report: Reporter) -> str:
+    return await run_straight(context, mission, report)
+
+
+async def _turn(_: Host, context: MissionContext, mission: Turn, report: Reporter) -> str:
+    return await run_turning(context, mission, report)
+
+
 _ROWS = (
     MissionRow(MapStart, _make_map, stops=lambda mission: 1 + len(mission.stops_m)),
     MissionRow(Localize, _localize, needs_base=False, pauses_prediction=True),
     MissionRow(DriveTo, _drive),
+    MissionRow(DriveStraight, _straight),
+    MissionRow(Turn, _turn),
 )
 MISSION_ROWS = {row.request: row for row in _ROWS}
 

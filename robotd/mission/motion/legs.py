@@ -13,11 +13,14 @@ from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import DeviceError
-from robotd.core.pose import STANDSTILL, Odometry, Twist2
+from robotd.core.pose import STANDSTILL, Odometry, Pose2, Twist2
 from robotd.core.silence import within
 from robotd.hardware.devices.drive import Drive
 from robotd.mission.motion.steering import DrivingSettings, distance_left_m, leg_twist, turn_rate_radps
 from robotd.mission.safety.hold import FellSilent, Hold, Interrupted
+
+_ABOUT_FACE = Pose2(0.0, 0.0, math.pi)
+"""Who goes backwards steers as one who looks back and goes ahead."""
 
 
 async def rotate_to(drive: Drive, heading_rad: float, settings: DrivingSettings, hold: Hold | None = None) -> Odometry:
@@ -43,25 +46,74 @@ async def rotate_to(drive: Drive, heading_rad: float, settings: DrivingSettings,
     )
 
 
-async def translate_to(
-    drive: Drive, x_m: float, y_m: float, settings: DrivingSettings, hold: Hold | None = None
+class TurnedSoFar:
+    """How far the base has turned, as often round as it did: a heading alone goes round and forgets."""
+
+    def __init__(self) -> None:
+        self.rad = 0.0
+        self._last_rad: float | None = None
+
+    def note(self, now: Odometry) -> None:
+        """Take the next odometry, less than half a turn after the last."""
+        heading_rad = now.in_odom.heading_rad
+        if self._last_rad is not None:
+            self.rad += wrap_rad(heading_rad - self._last_rad)
+        self._last_rad = heading_rad
+
+
+async def turn_by(
+    drive: Drive, angle_rad: float, turned: TurnedSoFar, settings: DrivingSettings, hold: Hold | None = None
 ) -> Odometry:
-    """Drive straight to a point in the ``odom`` frame that lies ahead.
+    """Turn on the spot until ``turned`` has come to ``angle_rad``. Same errors as :func:`rotate_to`."""
+
+    def left_rad(now: Odometry) -> float:
+        turned.note(now)
+        return abs(angle_rad - turned.rad)
+
+    return await _approach(
+        drive,
+        settings,
+        hold,
+        what="turn",
+        left=left_rad,
+        tolerance=settings.heading_tolerance_rad,
+        twist=lambda _: Twist2(0.0, turn_rate_radps(angle_rad - turned.rad, settings)),
+    )
+
+
+async def translate_to(
+    drive: Drive,
+    x_m: float,
+    y_m: float,
+    settings: DrivingSettings,
+    hold: Hold | None = None,
+    *,
+    backwards: bool = False,
+) -> Odometry:
+    """Drive straight to a point in the ``odom`` frame that lies ahead, or behind if it is to go ``backwards``.
 
     Raises:
         FellSilent: odometry fell silent.
         DeviceError: the base does not get nearer.
         Interrupted: the mission was held meanwhile.
     """
+
+    def facing(now: Odometry) -> Pose2:
+        return now.in_odom @ _ABOUT_FACE if backwards else now.in_odom
+
+    def twist(now: Odometry) -> Twist2:
+        ahead = leg_twist(facing(now), x_m, y_m, settings)
+        return Twist2(-ahead.speed_mps, ahead.turn_radps) if backwards else ahead
+
     return await _approach(
         drive,
         settings,
         hold,
         what="drive",
-        # Past the end it is over, however far: no set-point drives backwards.
-        left=lambda now: max(0.0, distance_left_m(now.in_odom, x_m, y_m)),
+        # Past the end it is over, however far: no set-point turns round.
+        left=lambda now: max(0.0, distance_left_m(facing(now), x_m, y_m)),
         tolerance=settings.position_tolerance_m,
-        twist=lambda now: leg_twist(now.in_odom, x_m, y_m, settings),
+        twist=twist,
     )
 
 

@@ -11,7 +11,7 @@ import pytest
 from robotd.cli.main import main
 from robotd.contract.area import Area
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveTo, Legs, Localize, MapStart, PriorHeading
+from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, MapStart, PriorHeading, Turn
 from robotd.core.errors import RequestTimeout
 from robotd.core.pose import IDENTITY, Pose2
 
@@ -22,6 +22,8 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
     main(["localize", "--heading-deg", "-270"])
     main(["localize", "--heading-unknown", "--within", "1", "-2", "0.5"])
     main(["drive-to", "1.5", "-2", "--legs", "straight"])
+    main(["drive", "-0.5"])
+    main(["turn", "-90"])
     main(["map", "start", "lab", "--stop", "1", "2", "--stop", "-3", "4", "--start", "1", "0", "180"])
     main(["map", "start", "lab"])
     assert [asked for asked in client.asked if asked != "close"] == [
@@ -30,6 +32,8 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
         Localize(math.radians(90)),
         Localize(heading=PriorHeading.UNKNOWN, within=Area(1.0, -2.0, 0.5)),
         DriveTo(1.5, -2.0, Legs.STRAIGHT),
+        DriveStraight(-0.5),
+        Turn(math.radians(-90)),
         MapStart.of("lab", ((1.0, 2.0), (-3.0, 4.0)), Pose2(1.0, 0.0, math.pi), Legs.PLANNED),
         MapStart.of("lab", (), IDENTITY, Legs.PLANNED),
     ]
@@ -74,7 +78,17 @@ def test_a_mission_that_fails_is_exit_code_1(
     assert "robotctl: drive failed: unreachable\n" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("words", [["localize"], ["drive-to", "1", "2"], ["map", "start", "a"], ["localize", "--json"]])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["localize"],
+        ["drive-to", "1", "2"],
+        ["drive", "1"],
+        ["turn", "90"],
+        ["map", "start", "a"],
+        ["localize", "--json"],
+    ],
+)
 def test_an_interrupt_stops_the_robot_first_and_then_says_so(
     client: Any, words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -276,7 +276,16 @@ NUMBERS = [
 
 
 def test_there_are_numbers_to_try() -> None:
-    assert {cmd for cmd, _, _ in NUMBERS} >= {"map_start", "localize", "drive_to", "renew", "map_load", "map_show"}
+    assert {cmd for cmd, _, _ in NUMBERS} >= {
+        "map_start",
+        "localize",
+        "drive_to",
+        "drive",
+        "turn",
+        "renew",
+        "map_load",
+        "map_show",
+    }
 
 
 @pytest.mark.parametrize("absurd", [math.nan, math.inf, -math.inf, 1e300, -1e6, 2**63])

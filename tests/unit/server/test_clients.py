@@ -19,7 +19,7 @@ from robotd.client import AsyncClient, Client
 from robotd.client.mission_run import MissionEvent
 from robotd.contract.estimate import PoseState
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
+from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, MapStart, Turn
 from robotd.core.errors import MissionError, RequestTimeout, ServerError, TransportError
 from robotd.core.pose import Pose2
 from tests.unit.server.conftest import stored_map
@@ -41,10 +41,13 @@ async def test_every_method_of_the_async_client(serving: Serving, tmp_path: Path
         assert phases(await robot.make_map("lab", ((1.0, 2.0),), Pose2(0.0, 1.0, 0.5), Legs.STRAIGHT))[-1] == "done"
         assert (await robot.localize(0.25, tie=False)).state is PoseState.LOCALIZED
         assert phases(await robot.drive_to(3.0, 4.0)) == ["started", "done"]
+        assert phases(await robot.drive(0.5)) == phases(await robot.turn(-1.5)) == ["started", "done"]
         assert control.asked == [
             MapStart.of("lab", ((1.0, 2.0),), Pose2(0.0, 1.0, 0.5), Legs.STRAIGHT),
             Localize(0.25, tie=False),
             DriveTo(3.0, 4.0),
+            DriveStraight(0.5),
+            Turn(-1.5),
         ]
         assert (await robot.map_save("lab")).name == "lab"
         assert (await robot.map_load("lab", 2, Pose2(1.0, 2.0, 0.0))).version == 2
@@ -69,6 +72,7 @@ async def test_every_method_of_the_sync_client(serving: Serving, tmp_path: Path)
             assert phases(robot.make_map("lab", ((1.0, 2.0),)))[-1] == "done"
             assert robot.localize(0.25, tie=False).state is PoseState.LOCALIZED
             assert phases(robot.drive_to(3.0, 4.0)) == ["started", "done"]
+            assert phases(robot.drive(0.5)) == phases(robot.turn(-1.5)) == ["started", "done"]
             assert robot.map_save("lab").name == "lab"
             assert robot.map_load("lab", 2, Pose2(1.0, 2.0, 0.0)).version == 2
             assert [entry.name for entry in robot.map_list()] == ["office"]
@@ -89,6 +93,8 @@ async def test_every_method_of_the_sync_client(serving: Serving, tmp_path: Path)
             MapStart("lab", ((1.0, 2.0),)),
             Localize(0.25, tie=False),
             DriveTo(3.0, 4.0),
+            DriveStraight(0.5),
+            Turn(-1.5),
         ]
 
 

@@ -8,12 +8,13 @@ from typing import cast
 
 import pytest
 
+from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2, Twist2
 from robotd.hardware.devices.drive import Drive
-from robotd.mission.motion.legs import drive_leg, next_odometry, rotate_to, settle
+from robotd.mission.motion.legs import TurnedSoFar, drive_leg, next_odometry, rotate_to, settle, translate_to, turn_by
 from robotd.mission.motion.steering import DrivingSettings
 
 SETTINGS = DrivingSettings()
@@ -75,6 +76,36 @@ async def test_it_turns_the_short_way() -> None:
         await rotate_to(drive, -3.0, SETTINGS)
         assert all(twist.turn_radps >= 0.0 for twist in one.told)
         assert abs(one.pose.heading_rad + 3.0) < 0.02
+
+
+@pytest.mark.parametrize("angle_rad", [0.005, 1.5, -1.5, math.pi, -7.0, 20.0])
+async def test_it_turns_as_often_round_as_it_should(angle_rad: float) -> None:
+    async with base() as (one, drive, _):
+        turned = TurnedSoFar()
+        end = await turn_by(drive, angle_rad, turned, SETTINGS)
+        assert turned.rad == pytest.approx(angle_rad, abs=SETTINGS.heading_tolerance_rad)
+        assert abs(wrap_rad(end.in_odom.heading_rad - angle_rad)) <= SETTINGS.heading_tolerance_rad
+        assert all(twist.turn_radps * angle_rad >= 0.0 for twist in one.told)
+
+
+async def test_a_turn_that_was_broken_off_goes_on_with_what_is_left() -> None:
+    async with base() as (_, drive, _telling):
+        turned = TurnedSoFar()
+        turn = turn_by(drive, 9.0, turned, SETTINGS)
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(turn, 4.0)
+        assert 3.0 < turned.rad < 5.0
+        await turn_by(drive, 9.0, turned, SETTINGS)
+        assert turned.rad == pytest.approx(9.0, abs=SETTINGS.heading_tolerance_rad)
+
+
+async def test_backwards_it_goes_with_its_back_ahead_and_steers_to_the_end() -> None:
+    async with base() as (one, drive, _):
+        one.pose = Pose2(0.0, 0.0, 0.05)
+        end = await translate_to(drive, -1.0, 0.0, SETTINGS, backwards=True)
+        assert end.in_odom.distance_m(Pose2(-1.0, 0.0, 0.0)) <= SETTINGS.position_tolerance_m
+        assert all(twist.speed_mps <= 0.0 for twist in one.told)
+        assert min(twist.speed_mps for twist in one.told) == -SETTINGS.speed_mps
 
 
 async def test_one_set_point_for_each_message_and_none_without() -> None:
