@@ -32,6 +32,8 @@ WORDS = {
     "drive-to": ("where", "drive to a place on the map in use, and stand there"),
     "drive": ("hands", "drive straight ahead, or back, by odometry; needs no map"),
     "turn": ("hands", "turn on the spot by odometry; needs no map"),
+    "look": ("hands", "point the head"),
+    "scan": ("hands", "take one sweep where it stands, without a map"),
     "sim": ("simulate", "simulate a robot in a room: its three boards, on pseudo-terminals"),
     "fake": ("simulate", "answer as the recorded boards did, on pseudo-terminals: run a fresh daemon on them"),
     "import": ("imports", "make a recorded building of somebody else's log"),

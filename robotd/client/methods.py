@@ -8,7 +8,7 @@ from functools import wraps
 from typing import Any, Generic, ParamSpec, Self, TypeVar, overload
 
 from robotd.client.mission_run import MissionEvent, final_estimate
-from robotd.contract.missions import DriveStraight, DriveTo, Localize, MapStart, Mission, Turn, with_lease
+from robotd.contract.missions import DriveStraight, DriveTo, Localize, Look, MapStart, Mission, Scan, Turn, with_lease
 from robotd.contract.request import Request
 from robotd.contract.requests import (
     Arm,
@@ -134,6 +134,8 @@ class Methods:
     drive_to = CarriesOut(DriveTo, _all)
     drive = CarriesOut(DriveStraight, _all)
     turn = CarriesOut(Turn, _all)
+    look = CarriesOut(Look, _all)
+    scan = CarriesOut(Scan, _all)
     map_save = Asks(MapSave, _all)
     map_load = Asks(MapLoad.of, _all)
     map_discard = Asks(MapDiscard, _nothing)

@@ -124,7 +124,25 @@ class Turn(MissionRequest, frozen=True):
     lease_s: LeaseTime | None = None
 
 
-Mission = MapStart | Localize | DriveTo | DriveStraight | Turn
+class Look(MissionRequest, frozen=True):
+    """Point the head; within its limits, which it knows itself."""
+
+    cmd, kind, doing, noted = "look", "look", "looking", "Look"
+    pan_rad: Heading
+    """Counter-clockwise from the robot's heading."""
+    tilt_rad: Heading
+    """Up from level."""
+    lease_s: LeaseTime | None = None
+
+
+class Scan(MissionRequest, frozen=True):
+    """Take one sweep where it stands; no map is needed, and none is changed."""
+
+    cmd, kind, doing, noted = "scan", "scan", "scanning", "Scan"
+    lease_s: LeaseTime | None = None
+
+
+Mission = MapStart | Localize | DriveTo | DriveStraight | Turn | Look | Scan
 
 
 def with_lease(mission: Mission, lease_s: float | None = None) -> Mission:

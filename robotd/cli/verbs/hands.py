@@ -1,4 +1,4 @@
-"""``drive`` and ``turn``: the robot moved by hand, so to speak. No map is needed, and none is looked at."""
+"""``drive``, ``turn``, ``look`` and ``scan``: the robot moved by hand, so to speak. No map is needed or looked at."""
 
 import argparse
 import math
@@ -6,7 +6,7 @@ import math
 from robotd.cli.motion import carry_out
 from robotd.cli.quantities import between
 from robotd.cli.verb import Verb
-from robotd.contract.missions import DriveStraight, Turn
+from robotd.contract.missions import DriveStraight, Look, Scan, Turn
 
 _FARTHEST_M = 10.0
 _FARTHEST_DEG = 3600.0
@@ -38,6 +38,23 @@ def _angle(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _look(arguments: argparse.Namespace) -> int:
+    return carry_out(arguments, Look(math.radians(arguments.pan_deg), math.radians(arguments.tilt_deg)))
+
+
+def _direction(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "pan_deg", type=between(-360.0, 360.0, "degrees"), metavar="PAN", help="counter-clockwise from ahead [degrees]"
+    )
+    parser.add_argument(
+        "tilt_deg", type=between(-360.0, 360.0, "degrees"), metavar="TILT", help="up from level [degrees]"
+    )
+
+
+def _scan(arguments: argparse.Namespace) -> int:
+    return carry_out(arguments, Scan())
+
+
 VERBS = (
     Verb(
         "drive",
@@ -53,6 +70,14 @@ VERBS = (
         "robotctl turn -90",
         _turn,
         _angle,
+        asks_daemon=True,
+    ),
+    Verb("look", "point the head", "robotctl look 30 -10", _look, _direction, asks_daemon=True),
+    Verb(
+        "scan",
+        "take one sweep where it stands, without a map",
+        "robotctl scan --json",
+        _scan,
         asks_daemon=True,
     ),
 )

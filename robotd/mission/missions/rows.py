@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from robotd.contract.estimate import PoseEstimate
-from robotd.contract.missions import DriveStraight, DriveTo, Localize, MapStart, Mission, Turn
+from robotd.contract.missions import DriveStraight, DriveTo, Localize, Look, MapStart, Mission, Scan, Turn
 from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.mission.missions.by_head import run_look, run_scan
 from robotd.mission.missions.by_odometry import run_straight, run_turning
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.driving import run_driving
@@ -75,12 +76,22 @@ async def _turn(_: Host, context: MissionContext, mission: Turn, report: Reporte
     return await run_turning(context, mission, report)
 
 
+async def _look(_: Host, context: MissionContext, mission: Look, report: Reporter) -> str:
+    return await looking_again(context, report, lambda: run_look(context, mission))
+
+
+async def _scan(_: Host, context: MissionContext, __: Scan, report: Reporter) -> str:
+    return await looking_again(context, report, lambda: run_scan(context, report))
+
+
 _ROWS = (
     MissionRow(MapStart, _make_map, stops=lambda mission: 1 + len(mission.stops_m)),
     MissionRow(Localize, _localize, needs_base=False, pauses_prediction=True),
     MissionRow(DriveTo, _drive),
     MissionRow(DriveStraight, _straight),
     MissionRow(Turn, _turn),
+    MissionRow(Look, _look, needs_base=False),
+    MissionRow(Scan, _scan, needs_base=False),
 )
 MISSION_ROWS = {row.request: row for row in _ROWS}
 

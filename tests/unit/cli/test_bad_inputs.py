@@ -123,9 +123,14 @@ def command(name: str, bad: Path, directory: Path) -> list[str]:
     (directory / "in.pgm").write_bytes(b"P5 2 1 255\n\0\xfe")
     others = [str(made.get(word, word)) for word in OTHERS.get(name, [])]
     if argument == "--runtime-dir":
-        others += {"map start": ["x"], "map load": ["x"], "drive-to": ["0", "0"], "drive": ["0"], "turn": ["0"]}.get(
-            verb, []
-        )
+        others += {
+            "map start": ["x"],
+            "map load": ["x"],
+            "drive-to": ["0", "0"],
+            "drive": ["0"],
+            "turn": ["0"],
+            "look": ["0", "0"],
+        }.get(verb, [])
     given = [argument, str(bad)] if argument.startswith("--") else [str(bad)]
     before = others if name == "exact readings" else []
     return [*verb.split(), *before, *given, *(others if not before else [])]

@@ -11,7 +11,7 @@ import pytest
 from robotd.cli.main import main
 from robotd.contract.area import Area
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, MapStart, PriorHeading, Turn
+from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, Look, MapStart, PriorHeading, Scan, Turn
 from robotd.core.errors import RequestTimeout
 from robotd.core.pose import IDENTITY, Pose2
 
@@ -24,6 +24,8 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
     main(["drive-to", "1.5", "-2", "--legs", "straight"])
     main(["drive", "-0.5"])
     main(["turn", "-90"])
+    main(["look", "90", "-10"])
+    main(["scan"])
     main(["map", "start", "lab", "--stop", "1", "2", "--stop", "-3", "4", "--start", "1", "0", "180"])
     main(["map", "start", "lab"])
     assert [asked for asked in client.asked if asked != "close"] == [
@@ -34,6 +36,8 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
         DriveTo(1.5, -2.0, Legs.STRAIGHT),
         DriveStraight(-0.5),
         Turn(math.radians(-90)),
+        Look(math.radians(90), math.radians(-10)),
+        Scan(),
         MapStart.of("lab", ((1.0, 2.0), (-3.0, 4.0)), Pose2(1.0, 0.0, math.pi), Legs.PLANNED),
         MapStart.of("lab", (), IDENTITY, Legs.PLANNED),
     ]

@@ -1,0 +1,54 @@
+"""The head pointed, and a sweep without a map, on a whole robot: they move the head alone, and they replay."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from robotd.contract.events import MissionPhase, MissionProgress, SweepDone
+from robotd.contract.missions import Look, Scan
+from robotd.contract.modes import Mode
+from robotd.contract.requests import Arm, RecordStart, RecordStop, Stop
+from robotd.core.reading import ReadingStatus
+from robotd.sim.buildings.world import load_world
+from robotd.sim.robot import SimulatedRobot
+from tests.integration.conftest import Live
+from tests.support.living import LEASE_S
+from tests.support.replayed import check, replayed
+
+
+async def test_the_head_looks_where_asked_and_a_scan_needs_no_map(live: Live, tmp_path: Path) -> None:
+    robot = SimulatedRobot(load_world("office"), seed=5)
+    async with live(robot, armed=False) as it:
+        await it.daemon.control.perform(RecordStart(str(tmp_path / "recordings" / "head.mcap")))
+        await it.daemon.control.perform(Arm())
+        before = robot.truth
+        _, looked = await it.do(Look(0.5, -0.1))
+        assert looked.phase is MissionPhase.DONE
+        words = looked.message.replace(",", "").split()
+        said_deg = float(words[3]), float(words[6])
+        assert said_deg == pytest.approx((math.degrees(0.5), math.degrees(-0.1)), abs=0.1)
+        assert robot._head.true_angles_rad == pytest.approx((0.5, -0.1), abs=0.01)
+        (sweep,) = [event.sweep for event in await it.done(Scan()) if isinstance(event, SweepDone)]
+        assert robot.truth.distance_m(before) < 0.01
+        assert len(sweep.readings) == 300
+        assert sum(reading.status is ReadingStatus.OK for reading in sweep.readings) > 150
+        assert it.daemon.supervisor.whereabouts.map_in_use is None
+        _, end = await it.do(Look(0.0, 6.0))
+        assert end.phase is MissionPhase.FAILED
+        assert "the head cannot look there: tilt must be" in end.message
+        assert it.daemon.supervisor.mode is Mode.IDLE
+        await it.daemon.control.perform(RecordStop())
+    check(replayed(tmp_path / "recordings" / "head.mcap"))
+
+
+@pytest.mark.parametrize("mission", [Look(2.0, 0.0), Scan()])
+async def test_a_stop_ends_it(live: Live, mission: Look | Scan) -> None:
+    async with live(SimulatedRobot(load_world("office"), seed=5)) as it:
+        mission_id = it.daemon.control.start(mission, LEASE_S)
+        await it.daemon.control.perform(Stop("enough"))
+        async for event in it.events:
+            if isinstance(event, MissionProgress) and event.mission_id == mission_id and event.is_last:
+                assert event.phase is MissionPhase.STOPPED
+                break
+        assert it.daemon.supervisor.mode is Mode.DISARMED
