@@ -30,7 +30,7 @@ SESSION_NICE = -10
 """Ten times the share of another session, as the unit's CPUWeight= has it beside another service."""
 DAEMON = ("-c", "import robotd.app; robotd.app.main()", "--log-level", "error", "--config")
 STALLING_DAEMON = ("-m", "tests.studies.safety.stalling")
-_PATIENCE_S = 30.0
+_PATIENCE_S = 60.0
 _ROOT = Path(__file__).parents[2]
 
 
