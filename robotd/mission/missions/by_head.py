@@ -26,7 +26,7 @@ async def run_look(context: MissionContext, mission: Look) -> str:
 
 
 async def run_scan(context: MissionContext, report: Reporter) -> str:
-    """Carry out a :class:`Scan`; return what to tell the client. Raises as a sweep does."""
+    """Sweep once and return what to tell the client. Raises as :meth:`MissionContext.sweep`."""
     report.at(MissionPhase.SWEEPING)
     sweep = await context.sweep(next(context.sweep_numbers))
     hits = sum(reading.status is ReadingStatus.OK for reading in sweep.readings)
