@@ -13,6 +13,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from robotd.app.replaying import replay_recording
 from robotd.cli.emulated import config_text
 from robotd.client import AsyncClient
@@ -137,7 +139,7 @@ class _Session:
         return {
             "arm": self._client.arm,
             "arm again": lambda: armed(self._client),
-            "map": lambda: self._mission(replace(new_map, stops_m=())),
+            "map": lambda: self._mission(msgspec.structs.replace(new_map, stops_m=())),
             "map and drive": lambda: self._mission(new_map),
             "localize": lambda: self._mission(Localize()),
             "drive": lambda: self._mission(DriveTo(*robot.stops_m[0], Legs.STRAIGHT)),
