@@ -43,7 +43,7 @@ class RequestLog:
 def in_words(request: Request[Any]) -> str:
     """Return a request with what it asks beyond the defaults.
 
-    >>> from robotd.contract.requests import DriveTo
+    >>> from robotd.contract.missions import DriveTo
     >>> in_words(DriveTo(1.5, 2.0))
     'drive_to x_m=1.5 y_m=2.0'
     """

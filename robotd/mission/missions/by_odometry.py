@@ -29,7 +29,7 @@ async def run_turning(context: MissionContext, mission: Turn, report: Reporter) 
     """Carry out a :class:`Turn`; return what to tell the client. Raises as :func:`run_straight`."""
     driving, drive, hold = context.settings.driving, context.robot.drive, context.hold
     report.at(MissionPhase.DRIVING)
-    turned = TurnedSoFar()  # once: a hold does not begin the turn anew
+    turned = TurnedSoFar()  # once: a hold does not begin the turn again
     await hold.through(lambda: turn_by(drive, mission.angle_rad, turned, driving, hold))
     turned.note(await _at_rest(context))
     return f"turned {math.degrees(turned.rad):.2f} deg, by odometry"
