@@ -22,6 +22,8 @@ Damaged bytes on a line are data: counted, and resynchronized. "No feasible pose
 results with their evidence. Exceptions are for what a caller cannot foresee.
 """
 
+from functools import partial
+
 
 class RobotdError(Exception):
     """Base of everything robotd raises on purpose."""
@@ -40,6 +42,10 @@ class ConfigError(RobotdError):
         self.problems: tuple[ConfigError, ...] = (self,)
         """Everything that is wrong, one line each."""
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Come out of another process as it went in."""
+        return partial(type(self), self.message, file=self.file, line=self.line, key=self.key), ()
+
 
 class ConfigErrors(ConfigError):
     """All that is wrong with one configuration; its text has a line for each problem."""
@@ -48,6 +54,10 @@ class ConfigErrors(ConfigError):
         super().__init__("\n".join(map(str, problems)), key="")
         self.file, self.line = problems[0].file, problems[0].line
         self.problems = problems
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Come out of another process as it went in."""
+        return type(self), (self.problems,)
 
 
 class TransportError(RobotdError):
@@ -77,6 +87,11 @@ class DeviceError(RobotdError):
         super().__init__(f"{device}: {code}" + (f": {message}" if message else ""))
         self.device = device
         self.code = code
+        self._given = device, code, message
+
+    def __reduce__(self) -> tuple[type["DeviceError"], tuple[str, str, str]]:
+        """Come out of another process as it went in: by default only the text would be handed on."""
+        return type(self), self._given
 
 
 class MissionError(RobotdError):
@@ -102,6 +117,10 @@ class ServerError(RobotdError):
         super().__init__(f"{code}: {message}")
         self.code = code
         self.message = message
+
+    def __reduce__(self) -> tuple[type["ServerError"], tuple[str, str]]:
+        """Come out of another process as it went in."""
+        return type(self), (self.code, self.message)
 
 
 class RequestTimeout(RobotdError):
