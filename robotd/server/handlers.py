@@ -5,6 +5,7 @@ from typing import Any
 
 from robotd import __version__
 from robotd.contract.answers import Done, ErrorCode, HelloResult, Renewed
+from robotd.contract.events import MissionProgress
 from robotd.contract.missions import Mission, with_lease
 from robotd.contract.plain import VERSION
 from robotd.contract.request import Request
@@ -13,6 +14,8 @@ from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import ConfigError, MapError, RobotdError, ServerError
 from robotd.server.control import Control
 from robotd.server.outcomes import Outcomes
+
+_TURNS_TO_THE_END = 50
 
 _CODES: tuple[tuple[type[RobotdError], ErrorCode], ...] = (
     (MapError, ErrorCode.NOT_FOUND),
@@ -70,9 +73,23 @@ class Handlers:
         )
 
     async def _renew(self, request: Renew) -> Renewed:
-        await asyncio.sleep(0)  # what was published before the request came has then been noted
-        progress = self._outcomes.latest(request.mission_id)
-        # When it is over there is no lease left to renew: to refuse would hide from the client how it ended.
-        if progress is None or not progress.is_last:
-            await self._control.perform(request)
+        try:
+            await asyncio.sleep(0)  # what was published before the request came has then been noted
+            progress = self._outcomes.latest(request.mission_id)
+            if progress is None or not progress.is_last:
+                await self._control.perform(request)
+        except RobotdError:
+            # Between a mission's last step and the word of it lie a few turns of the loop. When it is over there is no
+            # lease left to renew, and to refuse would hide from the client how it ended.
+            progress = await self._end_of(request.mission_id)
+            if progress is None:
+                raise
         return Renewed(progress)
+
+    async def _end_of(self, mission_id: int) -> MissionProgress | None:
+        for _ in range(_TURNS_TO_THE_END):
+            progress = self._outcomes.latest(mission_id)
+            if progress is not None and progress.is_last:
+                return progress
+            await asyncio.sleep(0)
+        return None
