@@ -17,6 +17,7 @@ from robotd.grid.growth import grown_by_disk
 from robotd.grid.image import FREE_GREY, OCCUPIED_GREY, trinary_from_cells
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION, SURELY_OCCUPIED
+from robotd.grid.turning import turned
 
 Cells = NDArray[np.uint8]
 
@@ -110,25 +111,11 @@ def _refurnished(grid: OccupancyGrid, randomness: np.random.Generator) -> Degrad
 
 def _turned(degrees: float) -> Callable[[OccupancyGrid, np.random.Generator], Degraded]:
     def turn(grid: OccupancyGrid, _: np.random.Generator) -> Degraded:
-        """Turn it about the origin of its frame; each new cell is what lies at its centre."""
-        angle_rad, spec = math.radians(degrees), grid.spec
-        by = Pose2(0.0, 0.0, angle_rad)
-        corners = [
-            by.transform(spec.origin_x_m + x * spec.resolution_m, spec.origin_y_m + y * spec.resolution_m)
-            for x in (0, spec.cols)
-            for y in (0, spec.rows)
-        ]
-        low, high = np.min(corners, axis=0), np.max(corners, axis=0)
-        cols, rows = np.ceil((high - low) / spec.resolution_m).astype(int).tolist()
-        to = GridSpec(spec.resolution_m, float(low[0]), float(low[1]), (rows, cols))
-        x_m = to.origin_x_m + (np.arange(cols) + 0.5) * to.resolution_m
-        y_m = to.origin_y_m + (np.arange(rows) + 0.5) * to.resolution_m
-        at_x_m, at_y_m = np.meshgrid(x_m, y_m)
-        cos, sin = math.cos(angle_rad), math.sin(angle_rad)
-        back = np.stack((cos * at_x_m + sin * at_y_m, cos * at_y_m - sin * at_x_m), axis=-1).reshape(-1, 2)
-        flat = spec.flat_at(back)
-        cells = np.where(flat >= 0, grid.cells.ravel()[np.maximum(flat, 0)], np.uint8(NO_INFORMATION))
-        return Degraded(OccupancyGrid(to, cells.reshape(rows, cols).astype(np.uint8), grid.settings), by)
+        """Turn it about the origin of its frame."""
+        by, spec = Pose2(0.0, 0.0, math.radians(degrees)), grid.spec
+        corner = GridSpec(spec.resolution_m, *by.transform(spec.origin_x_m, spec.origin_y_m), spec.shape)
+        cells, to = turned(grid.cells, corner, by.heading_rad)
+        return Degraded(OccupancyGrid(to, cells, grid.settings), by)
 
     return turn
 

@@ -18,15 +18,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.errors import MapError
-from robotd.core.grid_spec import MAX_SIDE_CELLS, GridSpec
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.image import FREE_THRESH, UNKNOWN_GREY, encode_pgm, trinary_from_cells
 from robotd.grid.map_yaml import map_yaml
 from robotd.grid.occupancy import GridSettings, OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
+from robotd.grid.turning import turned
 from robotd.interop.grey_image import IMAGE_MAX_BYTES, GreyImage, decode_grey, encode_png
 from robotd.interop.map_server_yaml import MapServerYaml
 
-__all__ = ["IMAGE_MAX_BYTES", "ImportedMap", "export_map", "import_map", "turned"]
+__all__ = ["IMAGE_MAX_BYTES", "ImportedMap", "export_map", "import_map"]
 
 _LEVELS = np.arange(256)
 _MUCH_WALL = 0.3
@@ -52,7 +53,10 @@ def import_map(described: MapServerYaml, picture: bytes) -> ImportedMap:
     notes = _notes(described, image, cells)
     spec = GridSpec(described.resolution_m, described.origin_x_m, described.origin_y_m, cells.shape)
     if described.yaw_rad != 0.0:
-        cells, spec = turned(cells, spec, described.yaw_rad)
+        try:
+            cells, spec = turned(cells, spec, described.yaw_rad)
+        except ValueError as error:
+            raise MapError(str(error)) from error
         notes = (
             *notes,
             f"it was turned by {math.degrees(described.yaw_rad):.3g} deg, so its walls are a cell uncertain",
@@ -99,43 +103,6 @@ def _notes(described: MapServerYaml, image: GreyImage, cells: NDArray[np.uint8])
     if not (cells < NO_INFORMATION).any():
         notes.append("it has no free cells: the robot can be nowhere on it")
     return tuple(notes)
-
-
-def turned(cells: NDArray[np.uint8], spec: GridSpec, yaw_rad: float) -> tuple[NDArray[np.uint8], GridSpec]:
-    """Return cells turned about the lower-left corner, on a grid along the axes that holds all of them.
-
-    Each new cell is what lies at its centre, and unknown where nothing does; a turn by quarters loses nothing.
-
-    Args:
-        cells: ``uint8[rows, cols]``, row 0 at the smallest y.
-        spec: where they would lie without the turn.
-        yaw_rad: counter-clockwise.
-
-    Raises:
-        MapError: it would be larger than any map.
-    """
-    cos, sin = _quarters(math.cos(yaw_rad)), _quarters(math.sin(yaw_rad))
-    rows, cols = spec.shape
-    corners = np.array([(0, 0), (cols, 0), (0, rows), (cols, rows)]) @ np.array([[cos, sin], [-sin, cos]])
-    low, high = np.floor(corners.min(axis=0) + 1e-9), np.ceil(corners.max(axis=0) - 1e-9)
-    width, height = (high - low).astype(int).tolist()
-    if max(width, height) > MAX_SIDE_CELLS:
-        raise MapError(f"turned it would have {width} x {height} cells; at most {MAX_SIDE_CELLS} a side")
-    x, y = np.meshgrid(low[0] + np.arange(width) + 0.5, low[1] + np.arange(height) + 0.5)
-    row, col = np.floor(-sin * x + cos * y).astype(int), np.floor(cos * x + sin * y).astype(int)
-    inside = (row >= 0) & (row < rows) & (col >= 0) & (col < cols)
-    found = np.full((height, width), NO_INFORMATION, np.uint8)
-    found[inside] = cells[row[inside], col[inside]]
-    origin = low * spec.resolution_m
-    return found, GridSpec(
-        spec.resolution_m, spec.origin_x_m + float(origin[0]), spec.origin_y_m + float(origin[1]), (height, width)
-    )
-
-
-def _quarters(value: float) -> float:
-    """Return a sine or cosine; that of a quarter turn exactly, as yaws are written with a few decimals."""
-    nearest = round(value)
-    return float(nearest) if abs(value - nearest) < 1e-9 else value
 
 
 def export_map(grid: OccupancyGrid, stem: str, mode: str) -> dict[str, bytes]:

@@ -18,7 +18,8 @@ from robotd.core.grid_spec import GridSpec
 from robotd.grid.image import encode_pgm
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
-from robotd.interop.map_server import export_map, import_map, turned
+from robotd.grid.turning import turned
+from robotd.interop.map_server import export_map, import_map
 from robotd.interop.map_server_yaml import decode_map_yaml
 
 WORDS: dict[str, Any] = {
