@@ -83,6 +83,7 @@ class Clear(Request[Done], frozen=True):
 class Renew(Request[Renewed], frozen=True):
     """Keep a mission's lease alive."""
 
+    # No renewal is noted any more; recordings from before hold them, and what they hold must be one to repeat.
     cmd, result, only_looks, is_noted, deadline_s = "renew", Renewed, True, True, 2.0
     mission_id: Number
 
