@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from robotd.config import Config, loads
-from robotd.grid.occupancy import BetweenBeams
+from robotd.grid.settings import BetweenBeams
 
 SINCE: dict[str, dict[str, Any]] = {
     "grid": {"between_beams": BetweenBeams.UNSEEN},

@@ -9,7 +9,7 @@ from robotd.config.chosen import ChosenBy
 from robotd.config.environment import runtime_dir
 from robotd.config.sections import MapsSettings, RecordingSettings
 from robotd.core.errors import ConfigError
-from robotd.grid.occupancy import GridSettings
+from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.board_drive import BoardDriveSettings
 from robotd.hardware.devices.board_pantilt import BoardPanTiltSettings
 from robotd.hardware.devices.board_rangefinder import BoardRangefinderSettings
@@ -23,14 +23,14 @@ from robotd.hardware.devices.settings import (
     ReportOptions,
 )
 from robotd.hardware.transport.address import connector
-from robotd.localization.fit.refinement import RefinementSettings
+from robotd.localization.fit.refinement_settings import RefinementSettings
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement
-from robotd.localization.judge.second_look import SecondLookSettings
+from robotd.localization.judge.second_look_settings import SecondLookSettings
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
-from robotd.planning.path import PlanningSettings
+from robotd.planning.settings import PlanningSettings
 from robotd.server.server import ServerSettings
 
 

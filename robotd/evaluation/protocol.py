@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from robotd.evaluation.degrade import KINDS, degrade
 from robotd.evaluation.division import Division, elsewhere, halves, interleaved
 from robotd.evaluation.recorded import Reach, map_of
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.logs.scan import RecordedLog
 
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from robotd.core.pose import IDENTITY
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.logs.scan import Scan
 
 _MARGIN_M = 0.5

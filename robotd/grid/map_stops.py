@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 from robotd.core.grid_spec import GridSpec
 from robotd.core.map_stop import MapStop
 from robotd.grid.arithmetic import arithmetic
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 
 _SEVERAL = "several"
 """In the place of an arithmetic: part of the stops were laid in by another one."""

@@ -21,7 +21,8 @@ from robotd.core.errors import MapError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.image import FREE_THRESH, UNKNOWN_GREY, encode_pgm, trinary_from_cells
 from robotd.grid.map_yaml import map_yaml
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.grid.tables import NO_INFORMATION
 from robotd.grid.turning import turned
 from robotd.interop.grey_image import IMAGE_MAX_BYTES, GreyImage, decode_grey, encode_png

@@ -13,7 +13,8 @@ from robotd.core.pose import Pose2
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
 from robotd.localization.count.explained import explained_at
-from robotd.localization.fit.refinement import PoseBox, RefinedPoses, RefinementSettings, refine
+from robotd.localization.fit.refinement import PoseBox, RefinedPoses, refine
+from robotd.localization.fit.refinement_settings import RefinementSettings
 from robotd.localization.judged_regions import JudgedRegion
 from robotd.localization.places.shapes import best_pose, centre_of, circle_of, cover_of, extent_of
 from robotd.localization.ready_map import ReadyMap

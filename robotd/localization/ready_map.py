@@ -16,8 +16,9 @@ from robotd.localization.count.limits import FEW_HEADINGS
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
-from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
+from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 from robotd.localization.search.bounded_search import SearchMap
 from robotd.localization.search.cell_disk import CellDisk
 from robotd.localization.settings import LocalizationSettings

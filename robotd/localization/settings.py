@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from robotd.core.bounds import Within, refuse_outside
-from robotd.localization.count.rank_grid import even_headings
-from robotd.localization.obstacles.beam_obstacles import UnknownCells
+from robotd.localization.even_headings import even_headings
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ import msgspec
 
 from robotd.core.errors import MapError
 from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import BetweenBeams, GridSettings
+from robotd.grid.settings import BetweenBeams, GridSettings
 from robotd.maps.stop_columns import StopColumns, columns_of, stops_of
 
 FORMAT = 1

@@ -14,7 +14,8 @@ from typing import Any
 
 from robotd.core.errors import MapError
 from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.maps.atomic import make_directory, publish_directory, remove_leftover, replace_file, withdraw_directory
 from robotd.maps.entry import UNSAVED, MapEntry, StoredMap
 from robotd.maps.lock import sole_writer

@@ -17,7 +17,8 @@ from robotd.core.grid_bytes import cell_bytes, cells_of
 from robotd.grid.image import encode_pgm, trinary_from_cells
 from robotd.grid.map_stops import MapStops
 from robotd.grid.map_yaml import map_yaml
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.maps.atomic import Buffer
 from robotd.maps.entry import MapEntry, StoredMap
 from robotd.maps.manifest import FileSum, Manifest, decode_manifest

@@ -8,18 +8,17 @@ disk meets no cell that is taken for an obstacle, whatever clearance is set.
 import enum
 import math
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.core.bounds import Within, refuse_outside
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
 from robotd.planning.distance_field import NEIGHBOURS, STEP_CELLS, distance_field
 from robotd.planning.line_of_sight import Position, centre_of, distances_of_leg, in_sight, pulled_straight
+from robotd.planning.settings import PlanningSettings
 from robotd.planning.traversable import free_cells, inflated, lone_hits
 
 _AT_CELLS = 1.0
@@ -27,22 +26,6 @@ _AT_CELLS = 1.0
 
 Cell = tuple[int, int]
 Point = tuple[float, float]
-
-
-@dataclass(frozen=True, slots=True)
-class PlanningSettings:
-    """The robot as the planner sees it."""
-
-    robot_radius_m: Annotated[float, Within(0.02, 3.0, "m")] = 0.3
-    """Radius of the disk that the robot fills."""
-    clearance_m: Annotated[float, Within(0.0, 2.0, "m")] = 0.1
-    """What to keep free round it for errors of the drive and of the map; the rounding to cells is seen to besides."""
-    gap_cells: Annotated[int, Within(0, 20, "cells")] = 2
-    """Unknown gaps up to so wide, between cells seen free, are taken for free."""
-
-    def __post_init__(self) -> None:
-        """Refuse impossible values."""
-        refuse_outside(self)
 
 
 @dataclass(frozen=True, slots=True)

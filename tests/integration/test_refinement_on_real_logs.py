@@ -9,12 +9,14 @@ import pytest
 from robotd.core.pose import Pose2
 from robotd.evaluation.division import interleaved
 from robotd.evaluation.recorded import Reach, map_of, readings_of
-from robotd.grid.occupancy import GridSettings
 from robotd.grid.readings import Readings
+from robotd.grid.settings import GridSettings
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.wall_field import WallField
-from robotd.localization.fit.refinement import PoseBox, RefinementSettings, refine
-from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
+from robotd.localization.fit.refinement import PoseBox, refine
+from robotd.localization.fit.refinement_settings import RefinementSettings
+from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 from robotd.localization.reference.tracking import Tracked, TrackingSettings, track
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk

@@ -22,7 +22,8 @@ from robotd.contract.requests import Arm, Clear, Stop
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES

@@ -9,7 +9,7 @@ from robotd.core.map_stop import MapStop
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import GridSettings
+from robotd.grid.settings import GridSettings
 
 SPEC = GridSpec(0.1, -1.5, -1.0, (20, 30))
 _STATUSES = tuple(ReadingStatus)

@@ -10,7 +10,8 @@ from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm
 from robotd.core.pose import Odometry
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.mission.map_requests import use_map
 from robotd.mission.motion.legs import next_odometry
 from robotd.sim.robot import own_board

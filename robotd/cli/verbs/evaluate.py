@@ -31,7 +31,7 @@ from robotd.evaluation.result import Result
 from robotd.evaluation.tally import Tally
 from robotd.evaluation.verdict import RIGHT_M, RIGHT_RAD
 from robotd.grid import kernels
-from robotd.grid.occupancy import GridSettings
+from robotd.grid.settings import GridSettings
 from robotd.logs.scan import RecordedLog, Scan
 from robotd.mission.compute import cores
 

@@ -4,7 +4,6 @@
 :mod:`robotd.localization.reference.feasible_poses`; how, by :mod:`robotd.grid.kernels`.
 """
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -197,8 +196,3 @@ class RankGrid:
 def bits_of(readings: int) -> int:
     """Return how many binary digits the counts of this many readings have."""
     return max(_BITS_AT_FIRST, readings.bit_length())
-
-
-def even_headings(count: int) -> tuple[float, ...]:
-    """Return theta slices all round, ``2 pi k / count`` ([BrownDonald2000]_ sec. 2.2.3)."""
-    return tuple(math.tau * k / count for k in range(count))

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from robotd.localization.fit.refinement import RefinementSettings
-from robotd.localization.judge.second_look import SecondLookSettings
+from robotd.localization.fit.refinement_settings import RefinementSettings
+from robotd.localization.judge.second_look_settings import SecondLookSettings
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,19 +19,18 @@ differences that are as small as such luck.
 
 import math
 from dataclasses import dataclass, replace
-from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robotd.contract.estimate import PoseState
-from robotd.core.bounds import Within, refuse_outside
 from robotd.grid.readings import Readings
 from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.judge.climbing import Hill, climb
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
 from robotd.localization.judge.patches import thinned, weights
+from robotd.localization.judge.second_look_settings import SecondLookSettings
 from robotd.localization.judge.shortlist import near, shortlist
 
 _GLANCE_STEPS = ((0.06, 0.026), (0.03, 0.012))
@@ -52,44 +51,6 @@ _ELSEWHERE_M, _ELSEWHERE_RAD = 1.0, 0.35
 _HOPELESS_SHARE, _HOPELESS = 0.5, 10.0
 """A place so far behind at a glance, for each independent reading and altogether, is not looked at: a glance errs by
 far less."""
-
-
-@dataclass(frozen=True, slots=True)
-class SecondLookSettings:
-    """What counts as one place, and how sure is sure."""
-
-    patch_m: Annotated[float, Within(0.001, 5.0, "m")] = 0.2
-    """Readings that end nearer to each other than this say partly the same."""
-    readings_max: Annotated[int, Within(1, 10_000)] = 120
-    """Of more readings only this many are looked at, those that end farthest apart."""
-    glance_readings_max: Annotated[int, Within(1, 10_000)] = 40
-    """The same for the first glance, at all places of the shortlist."""
-    starts_max: Annotated[int, Within(1, 100_000)] = 200
-    """Places at which the first glance is taken, those first that explain most readings."""
-    places_max: Annotated[int, Within(1, 10_000)] = 16
-    """Places that are looked at closely, those first that looked best at a glance."""
-    same_within_m: Annotated[float, Within(0.001, 5.0, "m")] = 0.3
-    """Poses nearer than this, and with headings nearer than ``same_within_rad``, are one place."""
-    same_within_rad: Annotated[float, Within(0.001, math.pi, "rad")] = 0.0873
-    """See ``same_within_m``."""
-    off_map_share: Annotated[float, Within(1e-6, 0.49, "of 1")] = 0.1
-    """Belief, before any reading, that the robot is not on the map."""
-    doubt_max: Annotated[float, Within(1e-6, 0.49, "of 1")] = 0.05
-    """All that is not the best place may have this share of the belief if the robot is to be called localized."""
-    contrast_min: Annotated[float, Within(0.0, 100.0)] = 1.28
-    """What the readings say for the best place, rather than any other, must be this many standard errors above 0: by
-    chance the wrong one of two places that are alike in truth reaches that once in ten times."""
-    on_walls_min: Annotated[float, Within(0.0, 1.0, "of 1")] = 0.9
-    """Where fewer of the hits end on walls, the robot may look at ground that nobody has mapped, which resembles some
-    wall of any building; then ``contrast_off_walls_min`` counts."""
-    contrast_off_walls_min: Annotated[float, Within(0.0, 100.0)] = 3.0
-    """The least contrast where many hits end on no wall: by chance it is reached once in 700 times."""
-    on_wall_m: Annotated[float, Within(0.001, 1.0, "m")] = 0.075
-    """A hit is on a wall that is no farther than this, or than a cell and a half."""
-
-    def __post_init__(self) -> None:
-        """Refuse impossible values."""
-        refuse_outside(self)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

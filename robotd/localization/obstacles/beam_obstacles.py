@@ -8,7 +8,6 @@
   meets ``blocked_by`` obstacle cells, 1 being the paper's definition.
 """
 
-import enum
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,17 +16,7 @@ from numpy.typing import NDArray
 from robotd.grid.growth import grown_by_disk, grown_by_disk_updated
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.window import CellWindow
-
-
-class UnknownCells(enum.StrEnum):
-    """What a cell is taken for that nobody has seen."""
-
-    OCCUPIED = "occupied"
-    """An obstacle, as in the paper."""
-    BLOCKS_ONLY = "blocks_only"
-    """It stops every beam, but no reading can end in it."""
-    FREE = "free"
-    """No obstacle; but the robot does not stand there either."""
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 
 
 @dataclass(frozen=True, slots=True, eq=False)

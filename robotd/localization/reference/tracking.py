@@ -29,15 +29,8 @@ from robotd.grid.kernels.cast.cast_kernel import REACH_CELLS
 from robotd.grid.kernels.fit.fit_kernel import Lattice
 from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
-from robotd.localization.fit.refinement import (
-    DISTANCES,
-    Heads,
-    PoseBox,
-    RefinedPoses,
-    RefinementSettings,
-    ranges_along,
-    refine_heads,
-)
+from robotd.localization.fit.refinement import DISTANCES, Heads, PoseBox, RefinedPoses, ranges_along, refine_heads
+from robotd.localization.fit.refinement_settings import RefinementSettings
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,8 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.motion.legs import drive_leg, next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
-from robotd.planning.path import Path, PlanningSettings, Unreachable, plan
+from robotd.planning.path import Path, Unreachable, plan
+from robotd.planning.settings import PlanningSettings
 
 
 async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: float, legs: Legs) -> Odometry:

@@ -9,7 +9,8 @@ from robotd.contract.missions import DriveStraight, DriveTo, Localize, Look, Map
 from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.mission.missions.by_head import run_look, run_scan
 from robotd.mission.missions.by_odometry import run_straight, run_turning
 from robotd.mission.missions.context import MissionContext, Reporter

@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass, field
 
-from robotd.grid.occupancy import GridSettings
+from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
-from robotd.planning.path import PlanningSettings
+from robotd.planning.settings import PlanningSettings
 
 
 @dataclass(frozen=True, slots=True)

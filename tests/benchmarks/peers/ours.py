@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from robotd.core.pose import Pose2
 from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
-from robotd.localization.count.rank_grid import even_headings
-from robotd.localization.fit.refinement import PoseBox, RefinementSettings, Walls, refine
+from robotd.localization.even_headings import even_headings
+from robotd.localization.fit.refinement import PoseBox, refine
+from robotd.localization.fit.refinement_settings import RefinementSettings, Walls
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.reference.tracking import Tracked, TrackingSettings, track
 from robotd.localization.search.bounded_search import SearchMap, best_poses

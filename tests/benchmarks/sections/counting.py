@@ -11,7 +11,8 @@ from robotd.grid import kernels
 from robotd.grid.kernels.draw.draw_kernel import BeamSettings, turned
 from robotd.grid.kernels.twins import TWINS
 from robotd.grid.readings import Readings
-from robotd.localization.count.rank_grid import RankGrid, even_headings
+from robotd.localization.count.rank_grid import RankGrid
+from robotd.localization.even_headings import even_headings
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
 

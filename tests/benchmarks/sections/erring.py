@@ -11,7 +11,7 @@ from robotd.grid.binary import BinaryMap
 from robotd.grid.readings import Readings
 from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles
 from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
-from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.even_headings import even_headings
 from robotd.localization.reference.smallest_error import (
     errors_for_share,
     errors_for_share_reading_by_reading,

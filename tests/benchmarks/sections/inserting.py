@@ -5,8 +5,9 @@ from functools import partial
 
 from robotd.grid import kernels
 from robotd.grid.kernels.twins import TWINS
-from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
+from robotd.grid.settings import GridSettings, UpdatePolicy
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
 

@@ -15,15 +15,8 @@ from robotd.grid.kernels.twins import TWINS
 from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
-from robotd.localization.fit.refinement import (
-    DISTANCES,
-    Heads,
-    PoseBox,
-    RefinementSettings,
-    Walls,
-    expected_ranges,
-    refine,
-)
+from robotd.localization.fit.refinement import DISTANCES, Heads, PoseBox, expected_ranges, refine
+from robotd.localization.fit.refinement_settings import RefinementSettings, Walls
 from robotd.localization.reference.tracking import Tracked, TrackingSettings, track
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed

@@ -14,7 +14,7 @@ from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
-from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.even_headings import even_headings
 from robotd.localization.fit.refinement import PoseBox, refine
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.search.bounded_search import SearchMap, best_poses

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from robotd.core.map_stop import MapStop
 from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import GridSettings
+from robotd.grid.settings import GridSettings
 from robotd.maps.stops_file import decode_stops, encode_stops
 from robotd.maps.store import MapStore
 from tests.benchmarks import workload

@@ -10,7 +10,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.grid.readings import Readings
 from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles
 from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
-from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.even_headings import even_headings
 from tests.support.conservative_cases import Case, case_of
 
 

@@ -15,7 +15,8 @@ from robotd.contract.requests import Arm, Clear, Stop
 from robotd.contract.topics import Topic, encode_frame, to_wire
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse

@@ -18,7 +18,8 @@ from robotd.core.clock import run_virtual
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
 from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Shot

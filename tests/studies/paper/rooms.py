@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.planning.path import PlanningSettings
+from robotd.planning.settings import PlanningSettings
 from robotd.planning.traversable import free_cells, inflated
 from robotd.sim.buildings.world import World, load_world
 from robotd.sim.physics.walls import Point, Walls, clearance_m

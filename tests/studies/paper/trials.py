@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
-from robotd.grid.occupancy import BetweenBeams, GridSettings, OccupancyGrid, OverRange, UpdatePolicy
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
+from robotd.grid.settings import BetweenBeams, GridSettings, OverRange, UpdatePolicy
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.places.pieces import pieces_of

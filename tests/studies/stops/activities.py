@@ -7,7 +7,8 @@ from collections.abc import Awaitable, Callable
 from robotd.app.compose import Daemon
 from robotd.contract.missions import DriveTo, Legs, MapStart
 from robotd.contract.requests import Arm
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie

@@ -2,7 +2,7 @@
 
 from robotd.app.as_recorded import SINCE, recorded_config
 from robotd.config import Config, effective_text
-from robotd.grid.occupancy import BetweenBeams
+from robotd.grid.settings import BetweenBeams
 
 
 def test_a_configuration_of_today_is_taken_as_it_is() -> None:

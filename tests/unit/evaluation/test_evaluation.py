@@ -18,7 +18,7 @@ from robotd.evaluation.job import Job, JobSettings, run
 from robotd.evaluation.recorded import Reach, map_of, readings_of
 from robotd.evaluation.result import Result
 from robotd.evaluation.verdict import CaseVerdict
-from robotd.grid.occupancy import GridSettings
+from robotd.grid.settings import GridSettings
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings

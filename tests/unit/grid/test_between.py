@@ -12,8 +12,9 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.between import APART_MAX_RAD, MARGIN_CELLS, between
-from robotd.grid.occupancy import BetweenBeams, GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
+from robotd.grid.settings import BetweenBeams, GridSettings
 from robotd.grid.tables import NO_INFORMATION
 
 SPEC = GridSpec(0.1, -6.0, -6.0, (120, 120))

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.grid import map_stops
 from robotd.grid.arithmetic import arithmetic
-from robotd.grid.occupancy import BetweenBeams, GridSettings, OccupancyGrid, OverRange, UpdatePolicy
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import BetweenBeams, GridSettings, OverRange, UpdatePolicy
 from tests.support.made_maps import SPEC, made_stops
 
 SETTINGS = [

@@ -13,7 +13,8 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.binary import BinaryMap
-from robotd.grid.occupancy import GridSettings, OccupancyGrid, OverRange, UpdatePolicy
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings, OverRange, UpdatePolicy
 
 SPEC = GridSpec(0.5, -3.0, -2.0, (9, 13))
 

@@ -14,7 +14,7 @@ from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.localization.fit.refinement import RefinementSettings, Walls
+from robotd.localization.fit.refinement_settings import RefinementSettings, Walls
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap

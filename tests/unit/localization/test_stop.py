@@ -15,7 +15,7 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
 from robotd.grid.window import CellWindow
-from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.even_headings import even_headings
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 from robotd.localization.stop import CountedStop, SearchedStop

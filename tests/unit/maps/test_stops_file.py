@@ -18,7 +18,7 @@ from robotd.core.map_stop import MapStop
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import GridSettings, UpdatePolicy
+from robotd.grid.settings import GridSettings, UpdatePolicy
 from robotd.maps.stops_file import READINGS_MAX, SETTINGS_SINCE, STOPS_MAX, decode_stops, encode_stops
 from tests.support.made_maps import made_stops
 

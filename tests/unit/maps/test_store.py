@@ -14,7 +14,8 @@ from hypothesis.extra.numpy import arrays
 
 from robotd.core.errors import MapError
 from robotd.core.grid_spec import GridSpec
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.maps.entry import MapEntry
 from robotd.maps.store import MapStore
 

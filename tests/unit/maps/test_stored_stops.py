@@ -14,7 +14,8 @@ from robotd.core.pose import IDENTITY
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid import map_stops
 from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings, UpdatePolicy
 from robotd.maps.manifest import FileSum, decode_manifest
 from robotd.maps.stops_file import encode_stops
 from robotd.maps.store import MapStore

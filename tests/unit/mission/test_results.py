@@ -8,7 +8,8 @@ from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepDone
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.mission.news import News
 from robotd.mission.results import map_result, result_of
 from robotd.mission.whereabouts.laying import lay

@@ -17,7 +17,8 @@ from robotd.core.broadcast import Broadcast, Subscription
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, MissionError, RobotdError, TransportError
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2, Twist2
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits

@@ -13,7 +13,8 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.planning.distance_field import distance_field
-from robotd.planning.path import Hindrance, Path, PlanningSettings, Unreachable, plan
+from robotd.planning.path import Hindrance, Path, Unreachable, plan
+from robotd.planning.settings import PlanningSettings
 
 SPEC = GridSpec(0.1, -1.0, -2.0, (30, 40))
 SETTINGS = PlanningSettings(robot_radius_m=0.2, clearance_m=0.1)

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.planning.path import Path, PlanningSettings, plan
+from robotd.planning.path import Path, plan
+from robotd.planning.settings import PlanningSettings
 
 _SHRUNK = 1.0 - 1e-6
 """The disk's rim may touch."""

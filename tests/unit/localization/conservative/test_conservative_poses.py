@@ -17,7 +17,7 @@ from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
 from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles, conservative_poses
 from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
-from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.even_headings import even_headings
 from tests.studies.conservative.run import is_lost, ranks_of
 from tests.support.conservative_cases import case_of
 

@@ -14,7 +14,7 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
 from robotd.localization.conservative import unexcluded
 from robotd.localization.conservative.unexcluded import UnexcludedStop
-from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.even_headings import even_headings
 from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.search.cell_disk import CellDisk

@@ -13,8 +13,9 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
 from robotd.localization.count.explained import explained_at
-from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
+from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 from robotd.localization.reference.feasible_poses import feasible_poses
 from robotd.localization.reference.probe import probe_of
 

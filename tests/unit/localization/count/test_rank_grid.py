@@ -16,9 +16,11 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
-from robotd.localization.count.rank_grid import RankGrid, even_headings
-from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
+from robotd.localization.count.rank_grid import RankGrid
+from robotd.localization.even_headings import even_headings
+from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 from robotd.localization.reference.feasible_poses import feasible_poses
 from robotd.localization.reference.probe import probe_of
 from robotd.localization.reference.rank import rank_of

@@ -12,14 +12,8 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
-from robotd.localization.fit.refinement import (
-    PoseBox,
-    RefinedPoses,
-    RefinementSettings,
-    Walls,
-    expected_ranges,
-    refine,
-)
+from robotd.localization.fit.refinement import PoseBox, RefinedPoses, expected_ranges, refine
+from robotd.localization.fit.refinement_settings import RefinementSettings, Walls
 
 SPEC = GridSpec(0.05, -1.0, 2.0, (120, 150))
 DRAWN = RefinementSettings(walls=Walls.FACES, map_error_m=0.0, map_error_rad=0.0)

@@ -13,13 +13,15 @@ from robotd.contract.estimate import PoseState
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
+from robotd.grid.settings import GridSettings
 from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.judge.climbing import Hill
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
-from robotd.localization.judge.second_look import SecondLook, SecondLookSettings, _contrast, second_look, share_on_walls
+from robotd.localization.judge.second_look import SecondLook, _contrast, second_look, share_on_walls
+from robotd.localization.judge.second_look_settings import SecondLookSettings
 from robotd.localization.judge.shortlist import near
 from robotd.sim.physics.walls import Walls, ray_cast
 

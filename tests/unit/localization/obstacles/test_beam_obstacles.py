@@ -11,7 +11,8 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.ternary import TernaryMap
-from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
+from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 from robotd.localization.reference.feasible_poses import feasible_poses
 from robotd.localization.reference.probe import probe_of
 

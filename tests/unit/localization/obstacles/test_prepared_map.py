@@ -16,8 +16,9 @@ from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
 from robotd.grid.window import CellWindow
 from robotd.localization.count.rank_grid import RankGrid
-from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
+from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 
 SPEC = GridSpec(0.1, -2.0, -1.0, (70, 150))
 RADIUS = 1.5

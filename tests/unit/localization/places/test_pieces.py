@@ -16,9 +16,10 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
-from robotd.localization.count.rank_grid import RankGrid, even_headings
+from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.describe import Situation, described
-from robotd.localization.fit.refinement import RefinementSettings
+from robotd.localization.even_headings import even_headings
+from robotd.localization.fit.refinement_settings import RefinementSettings
 from robotd.localization.judged_regions import JudgedRegion
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.places.pieces import connected_components, pieces_of

@@ -14,7 +14,8 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.distance import distance_transform
 from robotd.grid.ternary import TernaryMap
-from robotd.localization.obstacles.beam_obstacles import Obstacles, UnknownCells
+from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 from robotd.localization.reference.error_map import ErrorMap
 from robotd.localization.reference.feasible_poses import feasible_poses
 from robotd.localization.reference.probe import probe_of

@@ -13,7 +13,8 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
-from robotd.localization.fit.refinement import PoseBox, RefinementSettings, Walls, expected_ranges
+from robotd.localization.fit.refinement import PoseBox, expected_ranges
+from robotd.localization.fit.refinement_settings import RefinementSettings, Walls
 from robotd.localization.reference.tracking import NotHere, Tracked, TrackingSettings, track
 
 SPEC = GridSpec(0.05, -2.0, 1.0, (130, 170))

@@ -9,11 +9,13 @@ from robotd.core.pose import IDENTITY
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.binary import FREE_MAX
 from robotd.grid.latest import HIT, NOTHING, PASSED
-from robotd.grid.occupancy import GridSettings, OccupancyGrid, UpdatePolicy
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings, UpdatePolicy
 from robotd.mission.missions.driving import _plan
 from robotd.mission.whereabouts.laying import lay
 from robotd.mission.whereabouts.map_in_use import MapInUse
-from robotd.planning.path import Path, PlanningSettings
+from robotd.planning.path import Path
+from robotd.planning.settings import PlanningSettings
 
 WALLS_M = 2.5
 LEG_M = 1.0

@@ -6,7 +6,8 @@ import pytest
 
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
 from robotd.mission.whereabouts.whereabouts import Whereabouts

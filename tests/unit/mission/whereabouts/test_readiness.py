@@ -8,7 +8,8 @@ import pytest
 
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings

@@ -21,7 +21,7 @@ from robotd.grid.kernels.draw.draw_kernel import NO_HEAD, Beams, BeamSettings, t
 from robotd.grid.kernels.shared.packed_map import TILE_ROWS, WORD_CELLS, PackedMap, Words, pack
 from robotd.grid.kernels.twins import TWINS
 from robotd.grid.readings import Readings
-from robotd.localization.count.rank_grid import even_headings
+from robotd.localization.even_headings import even_headings
 from robotd.localization.reference.probe import probe_of
 from tests.support.kernel_tables import NATIVE, both, needs_native, using
 
