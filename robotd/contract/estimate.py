@@ -1,7 +1,8 @@
 """What the daemon says about where the robot is: a state and its regions, never a bare guess."""
 
 import enum
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
 from robotd.core.angles import wrap_rad
 from robotd.core.pose import Pose2
@@ -75,7 +76,7 @@ class Region:
     """Share of the belief that the second look gives to what lies in it."""
     pose: Pose2
     """Where in it the readings fit best, below the size of a cell, map frame."""
-    covariance: Covariance
+    covariance: Covariance = field(repr=False)
     """Of x, y [m] and heading [rad] of ``pose``, by rows: what is left of its error, the map's own included."""
     residual_m: float
     """How far the readings' ends lie from the walls at ``pose``: root of the weighted mean square."""
@@ -83,14 +84,14 @@ class Region:
     """Mean of its poses of greatest rank, map frame."""
     extent: Extent
     circle: Circle
-    cover: Cover
+    cover: Cover = field(repr=False)
     cells: int
     """Cells of the map that it holds."""
     poses: int
     """Cells, each counted with every heading."""
     best_rank: int
     """Readings explained at its best poses."""
-    explained: tuple[bool, ...]
+    explained: tuple[bool, ...] = field(repr=False)
     """Whether its best pose explains each reading, in the order of the estimate's ``bearings_rad``; that pose is one of
     greatest rank, and of these the one nearest to the centre."""
 
@@ -122,11 +123,21 @@ class PoseEstimate:
     """Share of being nowhere on this map."""
     contrast: float | None = None
     """Least contrast of the best place with any elsewhere on the map, in standard errors; None if there is no other."""
-    bearings_rad: tuple[float, ...] = ()
+    bearings_rad: tuple[float, ...] = field(default=(), repr=False)
     """Directions of the readings it is built from, robot frame, in the order in which they were made."""
     jumped_m: float | None = None
     """How far the first region lies from where odometry puts the robot, if that is farther than odometry errs: then the
     state is ``ambiguous`` until another look agrees. Else None."""
+
+    def __str__(self) -> str:
+        """Say in one line what people ask first."""
+        explained = f"{self.best_rank} of {self.readings} readings explained"
+        if self.best is not None:
+            heading_deg = math.degrees(self.best.heading_rad)
+            where = f" at x {self.best.x_m:.3f} m, y {self.best.y_m:.3f} m, heading {heading_deg:.1f} deg"
+            return f"{self.state}{where}; {explained}"
+        places = len(self.regions) + self.regions_left_out
+        return f"{self.state}{f': {places} places' if places else ''}; {explained}"
 
     def unexplained_rad(self, region: Region) -> tuple[float, ...]:
         """Return the directions of the readings that a region does not explain, robot frame."""

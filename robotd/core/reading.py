@@ -6,9 +6,10 @@ obstacle ([BrownDonald2000]_ sec. 2.2). Here it is a :class:`RangeReading`; 300 
 
 import enum
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from robotd.core.pose import Pose2
+from robotd.core.pose import IDENTITY, Pose2
 
 
 class ReadingStatus(enum.StrEnum):
@@ -59,7 +60,7 @@ class RangeReading:
         return self.range_m is not None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Sweep:
     """The readings of one stop, evenly round the robot, all in the robot frame of ``in_odom``."""
 
@@ -69,6 +70,30 @@ class Sweep:
     """Where the robot stood, by odometry, when the sweep began."""
     readings: tuple[RangeReading, ...]
 
+    @classmethod
+    def of(cls, bearings_rad: Iterable[float], ranges_m: Iterable[float], cutoff_m: float) -> "Sweep":
+        """Return the sweep of a scanner that stands where the robot stands, from two columns of equal length.
+
+        Ranges are read as ROS's REP 117 says: infinite, or not nearer than the cut-off, means that nothing was met up
+        to there; NaN that nothing was measured; zero or less, too near.
+
+        Raises:
+            ValueError: the columns differ in length, a bearing is not finite, or the cut-off is not positive.
+
+        >>> Sweep.of([0.0, 0.1, 0.2], [1.5, math.inf, math.nan], cutoff_m=6.0)
+        Sweep(3 readings: 1 ok, 1 miss, 1 not_measured)
+        """
+        if not (math.isfinite(cutoff_m) and cutoff_m > 0.0):
+            raise ValueError(f"cutoff_m must be positive, got {cutoff_m}")
+        beams = zip(map(float, bearings_rad), map(float, ranges_m), strict=True)
+        return cls(0, IDENTITY, tuple(_reading(*beam, float(cutoff_m)) for beam in beams))
+
+    def __repr__(self) -> str:
+        """Say how many readings there are of each kind: three hundred of them in full tell nobody anything."""
+        counts = ((self.count(status), status) for status in ReadingStatus)
+        told = ", ".join(f"{count} {status}" for count, status in counts if count)
+        return f"Sweep({len(self.readings)} readings{': ' if told else ''}{told})"
+
     def count(self, status: ReadingStatus) -> int:
         """Return how many readings ended with this status."""
         return sum(reading.status is status for reading in self.readings)
@@ -77,3 +102,15 @@ class Sweep:
     def measured(self) -> tuple[RangeReading, ...]:
         """The hits and misses, in order."""
         return tuple(reading for reading in self.readings if reading.range_m is not None)
+
+
+def _reading(bearing_rad: float, range_m: float, cutoff_m: float) -> RangeReading:
+    if not math.isfinite(bearing_rad):
+        raise ValueError(f"bearings must be finite, got {bearing_rad}")
+    if math.isnan(range_m):
+        return RangeReading(0, bearing_rad, ReadingStatus.NOT_MEASURED, None)
+    if range_m <= 0.0:
+        return RangeReading(0, bearing_rad, ReadingStatus.TOO_NEAR, None)
+    if range_m >= cutoff_m:
+        return RangeReading(0, bearing_rad, ReadingStatus.MISS, cutoff_m)
+    return RangeReading(0, bearing_rad, ReadingStatus.OK, range_m)

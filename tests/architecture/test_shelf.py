@@ -29,6 +29,7 @@ PROGRAMS = {
     "robotd.app",
     "robotd.cli.main",
     "robotd.client",
+    "robotd.library.map",  # which `import robotd` loads when it is asked for
     *(f"robotd.cli.verbs.{module}" for module, *_ in WORDS.values()),
     "robotd.grid.kernels.build",  # these three make what is compiled and generated
     "robotd.sim.firmware.build",

@@ -4,7 +4,7 @@ import argparse
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from robotd import config
 from robotd.cli.outputs import Kind, OutputPath, check, output_argument, write
@@ -28,56 +28,16 @@ _YAML = Kind("the yaml of a map", lambda head: head.startswith(b"image: "))
 def _import(arguments: argparse.Namespace) -> int:
     file: Path = arguments.file
     store = _store(arguments)
-    found = _read(arguments)
+    if arguments.resolution is None and file.suffix.lower() not in {".yaml", ".yml"}:
+        raise MapError(f"{file}: a picture says nothing of its size: give the yaml beside it, or --resolution")
+    read_map, _ = _interop()
+    found = read_map(file, arguments.resolution, tuple(arguments.origin))
     metadata = {"imported_from": file.name, "notes": list(found.notes)}
     entry = store.save(arguments.name or _name_of(file), found.grid, metadata, time.time_ns())
     for note in found.notes:
         complain(f"{file}: {note}")
     _tell(arguments, "imported", entry, str(entry.path), found.notes)
     return OK
-
-
-def _read(arguments: argparse.Namespace) -> "ImportedMap":
-    map_server, map_server_yaml = _needs_extra()
-    file: Path = arguments.file
-    try:
-        if file.suffix.lower() in {".yaml", ".yml"}:
-            described = map_server_yaml.decode_map_yaml(_bytes(file, map_server_yaml.YAML_MAX_BYTES))
-            picture = file.parent / described.image
-        else:
-            described, picture = _bare(arguments, map_server_yaml.MapServerYaml), file
-        read: ImportedMap = map_server.import_map(described, _bytes(picture, map_server.IMAGE_MAX_BYTES))
-    except MapError as error:
-        raise MapError(f"{file}: {error}") from error
-    return read
-
-
-def _bare(arguments: argparse.Namespace, described: Callable[..., Any]) -> Any:
-    """Describe a picture that has no yaml by what stands on the command line."""
-    if arguments.resolution is None:
-        raise MapError("a picture says nothing of its size: give the yaml beside it, or --resolution [m per pixel]")
-    x_m, y_m = arguments.origin
-    return described(
-        image=arguments.file.name,
-        resolution_m=arguments.resolution,
-        origin_x_m=x_m,
-        origin_y_m=y_m,
-        yaw_rad=0.0,
-        occupied_thresh=0.65,
-        free_thresh=0.196,
-        negate=False,
-        mode="trinary",
-    )
-
-
-def _bytes(file: Path, most: int) -> bytes:
-    try:
-        if file.exists() and not file.is_file():
-            raise MapError(f"{file.name} is no file")
-        with file.open("rb") as opened:
-            return opened.read(most + 1)  # one more than may be: its reader says that it is too long
-    except OSError as error:
-        raise MapError(f"{file.name} cannot be read: {error.strerror or error}") from error
 
 
 def _name_of(file: Path) -> str:
@@ -87,10 +47,10 @@ def _name_of(file: Path) -> str:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    map_server, _ = _needs_extra()
+    _, export_map = _interop()
     stored = _store(arguments).load(arguments.name, arguments.version)
     entry = stored.entry
-    files: dict[str, bytes] = map_server.export_map(stored.grid, entry.name, arguments.mode)
+    files = export_map(stored.grid, entry.name, arguments.mode)
     directory: OutputPath = arguments.directory
     for name in files:
         check(directory / name, _YAML if name.endswith(".yaml") else _IMAGE)
@@ -125,15 +85,17 @@ def _store(arguments: argparse.Namespace) -> MapStore:
     return MapStore(Path(tree.maps.dir), tree.grid, keep=tree.maps.keep)
 
 
-def _needs_extra() -> tuple[Any, Any]:
+def _interop() -> tuple[Callable[..., "ImportedMap"], Callable[..., dict[str, bytes]]]:
+    """Return ``read_map`` and ``export_map``, which need an extra."""
     try:
-        from robotd.interop import map_server, map_server_yaml  # noqa: PLC0415  # only here is the extra needed
+        from robotd.interop.map_server import export_map  # noqa: PLC0415  # only here is the extra needed
+        from robotd.interop.read_map import read_map  # noqa: PLC0415  # the same
     except ImportError as error:
         raise RobotdError(
             f"maps of other programs need Pillow and PyYAML ({error}): install the extra interop,"
             " pip install 'robotd[interop]', or pip install -e '.[interop]' in a clone"
         ) from error
-    return map_server, map_server_yaml
+    return read_map, export_map
 
 
 def _store_arguments(parser: argparse.ArgumentParser) -> None:
