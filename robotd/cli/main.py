@@ -33,6 +33,7 @@ WORDS = {
     "drive": ("hands", "drive straight ahead, or back, by odometry; needs no map"),
     "turn": ("hands", "turn on the spot by odometry; needs no map"),
     "look": ("hands", "point the head"),
+    "measure": ("hands", "measure the range where the head points"),
     "scan": ("hands", "take one sweep where it stands, without a map"),
     "sim": ("simulate", "simulate a robot in a room: its three boards, on pseudo-terminals"),
     "fake": ("simulate", "answer as the recorded boards did, on pseudo-terminals: run a fresh daemon on them"),

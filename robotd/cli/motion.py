@@ -1,62 +1,92 @@
 """Missions from the command line. Whatever interrupts one, the robot is stopped first and then people are told."""
 
 import argparse
-from collections.abc import Iterable
-from contextlib import closing
-from typing import Protocol
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from typing import Any
 
 from robotd.cli.connection import connect
 from robotd.cli.show.progress import MissionBars
 from robotd.cli.show.terminal import complain, out, print_json
-from robotd.cli.show.wording import as_json, estimate_in_words
-from robotd.cli.verb import FAILED, INTERRUPTED, OK
+from robotd.cli.show.wording import as_json
+from robotd.cli.verb import INTERRUPTED, OK, Verb
 from robotd.client import Client
 from robotd.client.mission_run import MissionEvent
-from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import MissionProgress, SweepProgress
 from robotd.contract.missions import Legs, Mission
-from robotd.core.errors import MissionError, RobotdError
+from robotd.core.errors import RobotdError
 
 
-class _Show(Protocol):
-    def __call__(self, event: MissionEvent, /) -> None: ...
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of a mission that was done."""
+
+    document: Any
+    """For programs."""
+    words: str
+    """For people; with line breaks where it is more than a line."""
+    code: int = OK
 
 
-def carry_out(arguments: argparse.Namespace, mission: Mission) -> int:
-    """Run a mission to its end, show how it gets on, and return the exit code; Ctrl-C stops the robot."""
+Conclude = Callable[[list[MissionEvent]], Outcome]
+"""Tells from all that happened what came of it; progress within sweeps is left out."""
+
+
+def last_word(events: list[MissionEvent]) -> Outcome:
+    """Conclude with what the mission said at its end."""
+    last = next(event for event in reversed(events) if isinstance(event, MissionProgress))
+    return Outcome(as_json(last), last.message)
+
+
+def carry_out(arguments: argparse.Namespace, mission: Mission, conclude: Conclude = last_word) -> int:
+    """Run a mission to its end, show how it gets on, and return the exit code; Ctrl-C stops the robot.
+
+    Raises:
+        MissionError: it was stopped, or it failed.
+    """
     with connect(arguments) as client:
         try:
-            return _follow(client, mission, as_lines=arguments.json)
+            return _follow(client, mission, conclude, arguments)
         except KeyboardInterrupt:
-            return _stop(client)
+            return stopped(client)
 
 
-def _follow(client: Client, mission: Mission, *, as_lines: bool) -> int:
-    with closing(client.run_mission(mission)) as events:
-        try:
-            if as_lines:
-                _show_each(events, lambda event: print_json(as_json(event)))
-                return OK
-            with MissionBars() as bars:
-                found = _show_each(events, bars.show)
-        except MissionError as error:
-            complain(f"robotctl: {error}")
-            return FAILED
-    if found is not None:
-        out().print(estimate_in_words(found))
-    return OK
+@contextmanager
+def shown(client: Client, mission: Mission) -> Iterator[Iterator[MissionEvent]]:
+    """Start a mission and yield what happens, with bars that show it."""
+    with closing(client.run_mission(mission)) as events, MissionBars() as bars:
+
+        def each() -> Iterator[MissionEvent]:
+            for event in events:
+                bars.show(event)
+                yield event
+
+        yield each()
 
 
-def _show_each(events: Iterable[MissionEvent], show: _Show) -> PoseEstimate | None:
-    """Show the events as they come and return what a localization among them found."""
-    found = None
-    for event in events:
-        show(event)
-        if isinstance(event, PoseEstimate) and event.final and event.state is not PoseState.PREDICTED:
-            found = event
-    return found
+def _follow(client: Client, mission: Mission, conclude: Conclude, arguments: argparse.Namespace) -> int:
+    if arguments.events:
+        with closing(client.run_mission(mission)) as events:
+            kept = [event for event in events if _tell(event)]
+    else:
+        with shown(client, mission) as events:
+            kept = [event for event in events if not isinstance(event, SweepProgress)]
+    outcome = conclude(kept)
+    if arguments.json and not arguments.events:
+        print_json(outcome.document)
+    elif not arguments.events:
+        out().print(outcome.words)
+    return outcome.code
 
 
-def _stop(client: Client) -> int:
+def _tell(event: MissionEvent) -> bool:
+    """Print an event for programs; return whether it is one to conclude from."""
+    print_json(as_json(event))
+    return not isinstance(event, SweepProgress)
+
+
+def stopped(client: Client) -> int:
     """Stop the robot, then say so; if it cannot be told, its lease will stop it, and that is said too."""
     try:
         client.stop("interrupted at the command line")
@@ -67,6 +97,24 @@ def _stop(client: Client) -> int:
     else:
         complain("interrupted: the robot was stopped and disarmed")
     return INTERRUPTED
+
+
+def mission_verb(
+    name: str,
+    summary: str,
+    example: str,
+    run: Callable[[argparse.Namespace], int],
+    arguments: Callable[[argparse.ArgumentParser], None],
+    *,
+    exit_codes: tuple[tuple[int, str], ...] = (),
+) -> Verb:
+    """Return a verb that carries out a mission: it can tell all that happens, too."""
+
+    def all_arguments(parser: argparse.ArgumentParser) -> None:
+        arguments(parser)
+        parser.add_argument("--events", action="store_true", help="print JSON: a line for all that happens on the way")
+
+    return Verb(name, summary, example, run, all_arguments, asks_daemon=True, exit_codes=exit_codes)
 
 
 def legs_argument(parser: argparse.ArgumentParser) -> None:

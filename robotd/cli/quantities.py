@@ -50,13 +50,15 @@ def within(kind: Any, field: str) -> Callable[[str], float]:
     return bounded
 
 
-def whole(lowest: int) -> Callable[[str], int]:
-    """Return what reads a whole number of at least ``lowest``."""
+def whole(lowest: int, highest: int | None = None) -> Callable[[str], int]:
+    """Return what reads a whole number of at least ``lowest``, and at most ``highest``."""
 
     def count(text: str) -> int:
         value = int(text)
         if value < lowest:
             raise ArgumentTypeError(f"must be at least {lowest}, got {text}")
+        if highest is not None and value > highest:
+            raise ArgumentTypeError(f"must be at most {highest}, got {text}")
         return value
 
     return count

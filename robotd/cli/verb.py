@@ -10,8 +10,15 @@ from robotd.cli.quantities import positive
 
 OK: Final = 0
 FAILED: Final = 1
+WRONG_USAGE: Final = 2
+LOST: Final = 3
+AMBIGUOUS: Final = 4
 BAD_CONFIG: Final = 78
 INTERRUPTED: Final = 130
+
+
+_ALWAYS = ((OK, "done"), (FAILED, "failed"), (WRONG_USAGE, "wrong usage"))
+_WITH_DAEMON = ((INTERRUPTED, "interrupted: the robot was stopped"),)
 
 
 def no_arguments(_: argparse.ArgumentParser) -> None:
@@ -33,11 +40,15 @@ class Verb:
     """Whether it needs a running daemon: such verbs take ``--runtime-dir`` and ``--timeout``."""
     prints_json: bool = True
     """Whether it takes ``--json``, which prints its answer; a verb that also writes it to a file has its own."""
+    exit_codes: tuple[tuple[int, str], ...] = ()
+    """What it may return beside the usual, and what that means."""
 
     def add_to(self, parser: argparse.ArgumentParser) -> None:
         """Give a fresh parser all about this verb."""
         parser.description = f"{self.summary[:1].upper()}{self.summary[1:]}."
-        parser.epilog = f"Example: {self.example}"
+        codes = sorted((*_ALWAYS, *(_WITH_DAEMON if self.asks_daemon else ()), *self.exit_codes))
+        said = ", ".join(f"{code} {meaning}" for code, meaning in codes)
+        parser.epilog = f"Example: {self.example}\nExit codes: {said}"
         self.arguments(parser)
         if self.prints_json:
             parser.add_argument("--json", action="store_true", help="print JSON instead of text for people")

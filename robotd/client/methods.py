@@ -7,8 +7,19 @@ from collections.abc import Awaitable, Callable, Coroutine
 from functools import wraps
 from typing import Any, Generic, ParamSpec, Self, TypeVar, overload
 
-from robotd.client.mission_run import MissionEvent, final_estimate
-from robotd.contract.missions import DriveStraight, DriveTo, Localize, Look, MapStart, Mission, Scan, Turn, with_lease
+from robotd.client.mission_run import MissionEvent, final_estimate, last_sweep, ranges_measured
+from robotd.contract.missions import (
+    DriveStraight,
+    DriveTo,
+    Localize,
+    Look,
+    MapStart,
+    Measure,
+    Mission,
+    Scan,
+    Turn,
+    with_lease,
+)
 from robotd.contract.request import Request
 from robotd.contract.requests import (
     Arm,
@@ -135,7 +146,8 @@ class Methods:
     drive = CarriesOut(DriveStraight, _all)
     turn = CarriesOut(Turn, _all)
     look = CarriesOut(Look, _all)
-    scan = CarriesOut(Scan, _all)
+    measure = CarriesOut(Measure, ranges_measured)
+    scan = CarriesOut(Scan, last_sweep)
     map_save = Asks(MapSave, _all)
     map_load = Asks(MapLoad.of, _all)
     map_discard = Asks(MapDiscard, _nothing)

@@ -7,13 +7,14 @@ progress as well, so a reader that missed the one hears the other.
 from robotd.client.feed import Gap
 from robotd.contract.answers import MissionStarted, Renewed
 from robotd.contract.estimate import PoseEstimate, PoseState
-from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepDone, SweepProgress
+from robotd.contract.events import MissionPhase, MissionProgress, RangeMeasured, Status, SweepDone, SweepProgress
 from robotd.contract.topics import Published, Topic
 from robotd.core.errors import MissionError, ServerError
+from robotd.core.reading import Sweep
 
 MISSION_TOPICS = (Topic.MISSION, Topic.SWEEP, Topic.POSE)
 """What a mission's client listens to."""
-MissionEvent = MissionProgress | SweepProgress | SweepDone | PoseEstimate | Status
+MissionEvent = MissionProgress | SweepProgress | SweepDone | RangeMeasured | PoseEstimate | Status
 """What a mission's client is told; a status when the mission is held, and when it goes on."""
 
 _RENEWALS_PER_LEASE = 4
@@ -127,3 +128,20 @@ def final_estimate(events: list[MissionEvent]) -> PoseEstimate:
         if isinstance(event, PoseEstimate) and event.final and event.state is not PoseState.PREDICTED:
             return event
     raise MissionError("the mission ended without an estimate")
+
+
+def ranges_measured(events: list[MissionEvent]) -> tuple[RangeMeasured, ...]:
+    """Return what was measured along the beam, in order."""
+    return tuple(event for event in events if isinstance(event, RangeMeasured))
+
+
+def last_sweep(events: list[MissionEvent]) -> Sweep:
+    """Return the sweep that was taken; the last, where one was taken again.
+
+    Raises:
+        MissionError: there is none.
+    """
+    for event in reversed(events):
+        if isinstance(event, SweepDone):
+            return event.sweep
+    raise MissionError("the mission ended without a sweep")

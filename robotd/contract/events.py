@@ -10,7 +10,7 @@ from robotd.contract.device_status import DeviceStatus
 from robotd.contract.estimate import PoseEstimate
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry
-from robotd.core.reading import Sweep
+from robotd.core.reading import ReadingStatus, Sweep
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +65,23 @@ class SweepDone:
     sweep: Sweep
 
 
+@dataclass(frozen=True, slots=True)
+class RangeMeasured:
+    """One measurement of the mission ``measure``, along the beam, wherever that points."""
+
+    time_ns: int
+    """When the light was sent."""
+    number: int
+    """Which of them, from 0."""
+    total: int
+    status: ReadingStatus
+    range_m: float | None
+    """Along the beam, the bias applied; of a miss, how far nothing was met, if the device says; None for every other
+    status."""
+    strength: int | None
+    """As the device counts it, which differs from model to model; None if it tells none."""
+
+
 class MissionPhase(enum.StrEnum):
     """What a mission is at."""
 
@@ -84,7 +101,7 @@ class MissionProgress:
     time_ns: int
     mission_id: int
     kind: str
-    """``map``, ``localize`` or ``drive``."""
+    """What the request calls its missions: ``map``, ``localize``, ``drive`` and so on."""
     phase: MissionPhase
     stop: int
     """Which stop, from 0; when it is done, how many."""
@@ -115,4 +132,4 @@ class MapChanged:
     """How many stops the map is made of by now; None if that is not known."""
 
 
-Event = Odometry | PoseEstimate | Status | SweepProgress | SweepDone | MissionProgress | MapChanged
+Event = Odometry | PoseEstimate | Status | SweepProgress | SweepDone | RangeMeasured | MissionProgress | MapChanged

@@ -140,9 +140,19 @@ class Scan(MissionRequest, frozen=True):
 
     cmd, kind, doing, noted = "scan", "scan", "scanning", "Scan"
     lease_s: LeaseTime | None = None
+    base_turns: bool = True
+    """Whether the base turns for the directions that the head does not reach; else they are left out."""
 
 
-Mission = MapStart | Localize | DriveTo | DriveStraight | Turn | Look | Scan
+class Measure(MissionRequest, frozen=True):
+    """Measure the range where the head points, once or some times; nothing moves."""
+
+    cmd, kind, doing, noted = "measure", "measure", "measuring", "Measure"
+    count: Annotated[int, Meta(ge=1, le=1000)] = 1
+    lease_s: LeaseTime | None = None
+
+
+Mission = MapStart | Localize | DriveTo | DriveStraight | Turn | Look | Scan | Measure
 
 
 def with_lease(mission: Mission, lease_s: float | None = None) -> Mission:

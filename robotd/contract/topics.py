@@ -12,7 +12,7 @@ from typing import Any
 import msgpack
 
 from robotd.contract.estimate import PoseEstimate
-from robotd.contract.events import Event, MapChanged, MissionProgress, Status, SweepDone, SweepProgress
+from robotd.contract.events import Event, MapChanged, MissionProgress, RangeMeasured, Status, SweepDone, SweepProgress
 from robotd.contract.plain import VERSION, from_plain, to_plain
 from robotd.core.errors import RemoteProtocolError
 from robotd.core.pose import Odometry
@@ -56,6 +56,7 @@ EVENTS: dict[type[Published], tuple[Topic, str]] = {
     Odometry: (Topic.ODOMETRY, "odometry"),
     SweepProgress: (Topic.SWEEP, "sweep_progress"),
     SweepDone: (Topic.SWEEP, "sweep_done"),
+    RangeMeasured: (Topic.SWEEP, "range_measured"),
     MapChanged: (Topic.MAP, "map_changed"),
     MissionProgress: (Topic.MISSION, "mission_progress"),
     Status: (Topic.STATUS, "status"),

@@ -74,3 +74,6 @@ class Odometry:
     """When it was measured, monotonic clock of this host [ns]."""
     in_odom: Pose2
     twist: Twist2
+    counts: tuple[int, int] | None = None
+    """What its encoders counted of translation and of rotation since the base was first seen, as they count; None if
+    that is not known."""

@@ -1,12 +1,13 @@
 """The head pointed, and a sweep without a map, on a whole robot: they move the head alone, and they replay."""
 
 import math
+import statistics
 from pathlib import Path
 
 import pytest
 
-from robotd.contract.events import MissionPhase, MissionProgress, SweepDone
-from robotd.contract.missions import Look, Scan
+from robotd.contract.events import MissionPhase, MissionProgress, RangeMeasured, SweepDone
+from robotd.contract.missions import Look, Measure, Scan
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, RecordStart, RecordStop, Stop
 from robotd.core.reading import ReadingStatus
@@ -42,8 +43,36 @@ async def test_the_head_looks_where_asked_and_a_scan_needs_no_map(live: Live, tm
     check(replayed(tmp_path / "recordings" / "head.mcap"))
 
 
-@pytest.mark.parametrize("mission", [Look(2.0, 0.0), Scan()])
-async def test_a_stop_ends_it(live: Live, mission: Look | Scan) -> None:
+async def test_ranges_are_measured_where_the_head_points_and_nothing_moves(live: Live, tmp_path: Path) -> None:
+    file = tmp_path / "recordings" / "measure.mcap"
+    robot = SimulatedRobot(load_world("office"), seed=5)
+    async with live(robot, armed=False) as it:
+        await it.daemon.control.perform(RecordStart(str(file)))
+        await it.daemon.control.perform(Arm())
+        await it.done(Look(0.7, 0.0))
+        before, aim = robot.truth, robot._head.true_angles_rad
+        said = await it.done(Measure(20))
+        assert (robot.truth, robot._head.true_angles_rad, robot._laser._on) == (before, aim, False)
+        await it.daemon.control.perform(RecordStop())
+    shots = [event for event in said if isinstance(event, RangeMeasured)]
+    assert [shot.number for shot in shots] == list(range(20))
+    there = robot._laser.true_range_m()
+    good = [shot.range_m for shot in shots if shot.status is ReadingStatus.OK and shot.range_m is not None]
+    assert statistics.median(good) == pytest.approx(there, abs=0.02)
+    check(replayed(file))
+
+
+async def test_a_scan_by_the_head_alone_leaves_the_base_where_it_stands(live: Live) -> None:
+    robot = SimulatedRobot(load_world("office"), seed=5)
+    async with live(robot) as it:
+        before = robot.truth
+        (sweep,) = [event.sweep for event in await it.done(Scan(base_turns=False)) if isinstance(event, SweepDone)]
+        assert robot.truth == before
+    assert 200 < len(sweep.readings) < 300
+
+
+@pytest.mark.parametrize("mission", [Look(2.0, 0.0), Scan(), Measure(1000)])
+async def test_a_stop_ends_it(live: Live, mission: Look | Scan | Measure) -> None:
     async with live(SimulatedRobot(load_world("office"), seed=5)) as it:
         mission_id = it.daemon.control.start(mission, LEASE_S)
         await it.daemon.control.perform(Stop("enough"))

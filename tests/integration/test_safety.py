@@ -15,8 +15,19 @@ from firmware_proto.framing import RawFrame, encode_frame
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
 from robotd.config import Config
-from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, MapStart, Mission, Turn
+from robotd.contract.events import Event, MissionPhase, MissionProgress, RangeMeasured, SweepProgress
+from robotd.contract.missions import (
+    DriveStraight,
+    DriveTo,
+    Legs,
+    Localize,
+    Look,
+    MapStart,
+    Measure,
+    Mission,
+    Scan,
+    Turn,
+)
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, Clear, Stop
 from robotd.core.broadcast import Subscription
@@ -212,6 +223,29 @@ async def turning(rig: Rig) -> None:
     await rig.keep_alive(rig.start(Turn(6.0)), lambda _: rig.robot._body.velocity[1] > 0.3)
 
 
+async def looking(rig: Rig) -> None:
+    """The head is on its way."""
+    await rig.daemon.control.perform(Arm())
+    rig.start(Look(2.5, 0.0))
+    await asyncio.sleep(SOON_S)
+    assert rig.robot._head.arrives_us is not None
+
+
+async def scanning(rig: Rig) -> None:
+    """Without a map."""
+    await rig.daemon.control.perform(Arm())
+    mission_id = rig.start(Scan())
+    await rig.keep_alive(mission_id, lambda event: isinstance(event, SweepProgress) and event.taken >= 20)
+
+
+async def measuring(rig: Rig) -> None:
+    """The laser is on, and nothing moves."""
+    await rig.daemon.control.perform(Arm())
+    mission_id = rig.start(Measure(1000))
+    await rig.keep_alive(mission_id, lambda event: isinstance(event, RangeMeasured) and event.number >= 5)
+    assert rig.robot._laser._on
+
+
 async def sweeping(rig: Rig) -> None:
     await rig.daemon.control.perform(Arm())
     mission_id = rig.start(MapStart.of("new", (), rig.robot.start))
@@ -316,6 +350,7 @@ async def daemon_is_killed(rig: Rig) -> None:
 
 
 MOVING = (driving, going_back, turning)
+BY_HEAD = (looking, scanning, measuring)
 ACTIVITIES = (idle, *MOVING, sweeping, computing, preparing, arming, starting)
 WRONGS: dict[str, tuple[Callable[[Rig], Awaitable[None]], Mode]] = {
     "stop": (stop, Mode.DISARMED),
@@ -359,6 +394,7 @@ async def check_arming_works_again(rig: Rig) -> None:
 needs_c = pytest.mark.skipif(find_spec("robotd.sim.firmware._native") is None, reason="there was no C compiler")
 CASES = [
     *((wrong, activity, Firmware.PYTHON) for wrong in WRONGS for activity in ACTIVITIES),
+    *((wrong, activity, Firmware.PYTHON) for wrong in ("stop", "bumper", "drive unplugged") for activity in BY_HEAD),
     *(pytest.param(wrong, driving, Firmware.C, marks=needs_c) for wrong in WRONGS if wrong != "bumper"),
 ]
 
@@ -387,7 +423,7 @@ async def test_it_comes_to_rest(
     assert it.is_quiet
 
 
-@pytest.mark.parametrize("activity", [*MOVING, sweeping, computing, preparing, starting])
+@pytest.mark.parametrize("activity", [*MOVING, scanning, measuring, sweeping, computing, preparing, starting])
 async def test_a_silent_client_loses_its_robot_when_the_lease_ends(
     activity: Callable[[Rig], Awaitable[None]], tmp_path: Path
 ) -> None:

@@ -5,8 +5,8 @@ from collections.abc import Awaitable, Callable
 import msgspec
 
 from firmware_proto.common import Fault
-from robotd.contract.events import Event, MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
+from robotd.contract.events import Event, MissionPhase, MissionProgress, RangeMeasured, Status, SweepProgress
+from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, MapStart, Measure, Scan, Turn
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm
 from robotd.core.pose import Odometry
@@ -18,6 +18,7 @@ from robotd.sim.robot import own_board
 from tests.support.bench import Bench
 
 _FAST_MPS = 0.2
+_FAST_RADPS = 0.3
 
 
 async def disarmed(bench: Bench) -> None:
@@ -62,6 +63,34 @@ async def driving(bench: Bench) -> None:
     await bench.until(_is_fast)
 
 
+async def going_back_by_hand(bench: Bench) -> None:
+    """At speed, backwards, without a map."""
+    await bench.daemon.control.perform(Arm())
+    bench.start(DriveStraight(-2.0))
+    await bench.until(lambda event: isinstance(event, Odometry) and event.twist.speed_mps < -_FAST_MPS)
+
+
+async def turning_by_hand(bench: Bench) -> None:
+    """In the middle of a turn, without a map."""
+    await bench.daemon.control.perform(Arm())
+    bench.start(Turn(12.0))
+    await bench.until(lambda event: isinstance(event, Odometry) and event.twist.turn_radps > _FAST_RADPS)
+
+
+async def scanning(bench: Bench) -> None:
+    """In the middle of a sweep, without a map."""
+    await bench.daemon.control.perform(Arm())
+    bench.start(Scan())
+    await bench.until(lambda event: isinstance(event, SweepProgress) and event.taken >= 10)
+
+
+async def measuring(bench: Bench) -> None:
+    """The laser is on, the head at rest."""
+    await bench.daemon.control.perform(Arm())
+    bench.start(Measure(1000))
+    await bench.until(lambda event: isinstance(event, RangeMeasured) and event.number >= 5)
+
+
 async def faulted(bench: Bench) -> None:
     """A fault is latched, and nobody has cleared it."""
     await bench.daemon.control.perform(Arm())
@@ -76,6 +105,10 @@ STATES: dict[str, Callable[[Bench], Awaitable[None]]] = {
     "map: drive": driving_for_a_map,
     "localize": localizing,
     "drive": driving,
+    "move": going_back_by_hand,
+    "turn": turning_by_hand,
+    "scan": scanning,
+    "measure": measuring,
     "fault": faulted,
 }
 

@@ -53,7 +53,7 @@ class MissionBars:
             self._mission = self._progress.add_task(step.kind, total=step.stops, note="")
         finished = step.stops if step.phase is MissionPhase.DONE else step.stop
         self._progress.update(self._mission, completed=finished, description=f"{step.kind}: {step.phase}".ljust(19))
-        if step.message:
+        if step.message and step.phase is not MissionPhase.DONE:  # its last word is the verb's answer
             self._progress.console.print(mission_in_words(step))
 
     def _reading(self, sweep: SweepProgress) -> None:

@@ -6,9 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 from robotd.contract.estimate import PoseEstimate, PoseState, Region
-from robotd.contract.events import MapChanged, MissionProgress, Status, SweepDone, SweepProgress
+from robotd.contract.events import MapChanged, MissionProgress, RangeMeasured, Status, SweepDone, SweepProgress
 from robotd.contract.topics import EVENTS, LogEntry, Published
 from robotd.core.pose import Odometry, Pose2
+from robotd.core.reading import ReadingStatus
 
 
 def as_json(event: Published) -> dict[str, Any]:
@@ -93,6 +94,32 @@ def sweep_in_words(sweep: SweepProgress) -> str:
     )
 
 
+def range_in_words(one: RangeMeasured) -> str:
+    """Return one measurement along the beam.
+
+    >>> range_in_words(RangeMeasured(0, 0, 1, ReadingStatus.OK, 1.5, 310))
+    '1.500 m, strength 310'
+    """
+    range_ = f"{one.range_m:.3f} m" if one.range_m is not None else ""
+    what = "" if one.status is ReadingStatus.OK else one.status.replace("_", " ")
+    strength = "" if one.strength is None else f"strength {one.strength}"
+    return ", ".join(filter(None, (what, range_, strength)))
+
+
+def odometry_in_words(now: Odometry, *, raw: bool = False) -> str:
+    """Return where the base is by its wheels; ``raw`` adds what its encoders counted.
+
+    >>> from robotd.core.pose import Twist2
+    >>> odometry_in_words(Odometry(0, Pose2(1.0, 0.0, 0.0), Twist2(0.5, 0.0), (27300, 0)), raw=True)
+    'odometry x 1.000 m, y 0.000 m, heading 0.0 deg, 0.50 m/s; counted 27300 of translation, 0 of rotation'
+    """
+    words = f"odometry {pose_in_words(now.in_odom)}, {now.twist.speed_mps:.2f} m/s"
+    if not raw:
+        return words
+    counted = "{} of translation, {} of rotation".format(*now.counts) if now.counts else "nothing that it tells"
+    return f"{words}; counted {counted}"
+
+
 def mission_in_words(step: MissionProgress) -> str:
     """Return a step of a mission."""
     where = f" stop {step.stop + 1} of {step.stops}" if step.stops > 1 and not step.is_last else ""
@@ -103,7 +130,8 @@ _WORDS: dict[type[Published], Callable[[Any], str]] = {
     PoseEstimate: estimate_in_words,
     SweepProgress: sweep_in_words,
     MissionProgress: mission_in_words,
-    Odometry: lambda event: f"odometry {pose_in_words(event.in_odom)}, {event.twist.speed_mps:.2f} m/s",
+    Odometry: odometry_in_words,
+    RangeMeasured: range_in_words,
     Status: lambda event: f"{event.mode}: {event.reason}",
     SweepDone: lambda event: (
         f"sweep {event.sweep.number} done: {len(event.sweep.measured)} of {len(event.sweep.readings)} measured"

@@ -1,12 +1,14 @@
-"""``drive``, ``turn``, ``look`` and ``scan``: the robot moved by hand, so to speak. No map is needed or looked at."""
+"""``drive``, ``turn``, ``look``, ``measure`` and ``scan``: the robot moved by hand, so to speak; no map is needed."""
 
 import argparse
 import math
 
-from robotd.cli.motion import carry_out
-from robotd.cli.quantities import between
-from robotd.cli.verb import Verb
-from robotd.contract.missions import DriveStraight, Look, Scan, Turn
+from robotd.cli.motion import Outcome, carry_out, last_word, mission_verb
+from robotd.cli.quantities import between, whole
+from robotd.cli.show.wording import as_json, range_in_words
+from robotd.client.mission_run import MissionEvent, ranges_measured
+from robotd.contract.events import SweepDone
+from robotd.contract.missions import DriveStraight, Look, Measure, Scan, Turn
 
 _FARTHEST_M = 10.0
 _FARTHEST_DEG = 3600.0
@@ -51,33 +53,45 @@ def _direction(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _measure(arguments: argparse.Namespace) -> int:
+    return carry_out(arguments, Measure(arguments.count), _measured)
+
+
+def _measured(events: list[MissionEvent]) -> Outcome:
+    ranges = ranges_measured(events)
+    lines = [range_in_words(one) for one in ranges]
+    if len(ranges) > 1:
+        lines.append(last_word(events).words)
+    return Outcome([as_json(one) for one in ranges], "\n".join(lines))
+
+
+def _count(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--count", type=whole(1, 1000), default=1, metavar="N", help="how often, at most 1000 (default: 1)"
+    )
+
+
 def _scan(arguments: argparse.Namespace) -> int:
-    return carry_out(arguments, Scan())
+    return carry_out(arguments, Scan(base_turns=not arguments.head_only), _swept)
+
+
+def _swept(events: list[MissionEvent]) -> Outcome:
+    done = next(event for event in reversed(events) if isinstance(event, SweepDone))
+    return Outcome(as_json(done), last_word(events).words)
+
+
+def _how_far_round(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--head-only", action="store_true", help="leave out what the head does not reach by itself")
 
 
 VERBS = (
-    Verb(
-        "drive",
-        "drive straight ahead, or back, by odometry; needs no map",
-        "robotctl drive 0.5",
-        _drive,
-        _distance,
-        asks_daemon=True,
+    mission_verb(
+        "drive", "drive straight ahead, or back, by odometry; needs no map", "robotctl drive 0.5", _drive, _distance
     ),
-    Verb(
-        "turn",
-        "turn on the spot by odometry; needs no map",
-        "robotctl turn -90",
-        _turn,
-        _angle,
-        asks_daemon=True,
-    ),
-    Verb("look", "point the head", "robotctl look 30 -10", _look, _direction, asks_daemon=True),
-    Verb(
-        "scan",
-        "take one sweep where it stands, without a map",
-        "robotctl scan --json",
-        _scan,
-        asks_daemon=True,
+    mission_verb("turn", "turn on the spot by odometry; needs no map", "robotctl turn -90", _turn, _angle),
+    mission_verb("look", "point the head", "robotctl look 30 -10", _look, _direction),
+    mission_verb("measure", "measure the range where the head points", "robotctl measure --count 20", _measure, _count),
+    mission_verb(
+        "scan", "take one sweep where it stands, without a map", "robotctl scan --json", _scan, _how_far_round
     ),
 )

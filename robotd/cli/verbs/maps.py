@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from robotd.cli.connection import connect
 from robotd.cli.emulated import odometry_argument
-from robotd.cli.motion import carry_out, legs_argument
+from robotd.cli.motion import carry_out, legs_argument, mission_verb
 from robotd.cli.outputs import PNG, output_argument
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import heading_of_deg, number, whole
@@ -197,13 +197,12 @@ def _show_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 VERBS = (
-    Verb(
+    mission_verb(
         "map start",
         "make a new map, stop by stop",
         "robotctl map start kitchen --stop 1.5 0 --stop 1.5 2",
         _start,
         _start_arguments,
-        asks_daemon=True,
     ),
     Verb("map save", "store the map in use", "robotctl map save", _save, _save_arguments, asks_daemon=True),
     Verb(

@@ -4,17 +4,19 @@ import argparse
 from dataclasses import asdict
 
 from robotd.cli.connection import connect
-from robotd.cli.motion import carry_out, legs_argument
+from robotd.cli.motion import Outcome, carry_out, legs_argument, mission_verb
 from robotd.cli.quantities import heading_of_deg, number
 from robotd.cli.show.terminal import out, print_json
-from robotd.cli.show.wording import as_json, estimate_in_words, in_words, region_in_words
-from robotd.cli.verb import OK, Verb
+from robotd.cli.show.wording import as_json, estimate_in_words, in_words, odometry_in_words, region_in_words
+from robotd.cli.verb import AMBIGUOUS, LOST, OK, Verb
 from robotd.client.feed import Gap
+from robotd.client.mission_run import MissionEvent, final_estimate
 from robotd.contract.area import Area
-from robotd.contract.estimate import PoseEstimate
+from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.missions import DriveTo, Legs, Localize, PriorHeading
-from robotd.contract.topics import Topic
+from robotd.contract.topics import Published, Topic
 from robotd.core.errors import RequestTimeout
+from robotd.core.pose import Odometry
 
 _PATIENCE_S = 3.0
 """How long to wait for what is published on joining, unless told otherwise."""
@@ -23,7 +25,13 @@ _PATIENCE_S = 3.0
 def _localize(arguments: argparse.Namespace) -> int:
     heading_rad = None if arguments.heading_deg is None else heading_of_deg(arguments.heading_deg)
     heading = PriorHeading.UNKNOWN if arguments.heading_unknown else PriorHeading.ODOMETRY
-    return carry_out(arguments, Localize(heading_rad, heading=heading, within=arguments.within))
+    return carry_out(arguments, Localize(heading_rad, heading=heading, within=arguments.within), _found)
+
+
+def _found(events: list[MissionEvent]) -> Outcome:
+    estimate = final_estimate(events)
+    code = {PoseState.LOST: LOST, PoseState.AMBIGUOUS: AMBIGUOUS}.get(estimate.state, OK)
+    return Outcome(as_json(estimate), estimate_in_words(estimate), code)
 
 
 def _known(parser: argparse.ArgumentParser) -> None:
@@ -89,9 +97,14 @@ def _watch(arguments: argparse.Namespace) -> int:
             if arguments.json:
                 print_json({"event": "gap", **asdict(event)} if isinstance(event, Gap) else as_json(event))
             else:
-                words = _gap_in_words(event) if isinstance(event, Gap) else in_words(event)
-                out().print(words)
+                out().print(_watched(event, raw=arguments.raw))
     return OK
+
+
+def _watched(event: Published | Gap, *, raw: bool) -> str:
+    if isinstance(event, Gap):
+        return _gap_in_words(event)
+    return odometry_in_words(event, raw=raw) if isinstance(event, Odometry) else in_words(event)
 
 
 def _gap_in_words(gap: Gap) -> str:
@@ -100,6 +113,7 @@ def _gap_in_words(gap: Gap) -> str:
 
 def _topics(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("topic", nargs="*", metavar="TOPIC", type=_topic, help=f"of {', '.join(Topic)} (default: all)")
+    parser.add_argument("--raw", action="store_true", help="with odometry, show what the encoders counted, too")
 
 
 def _topic(text: str) -> Topic:
@@ -109,24 +123,23 @@ def _topic(text: str) -> Topic:
 
 
 VERBS = (
-    Verb(
+    mission_verb(
         "localize",
         "sweep where it stands and say where that is on the map in use",
         "robotctl localize --heading-unknown --within 2 3 1.5",
         _localize,
         _known,
-        asks_daemon=True,
+        exit_codes=((LOST, "lost"), (AMBIGUOUS, "ambiguous")),
     ),
     Verb("pose", "print the newest pose estimate", "robotctl pose --json", _pose, asks_daemon=True),
     Verb(
         "watch", "print what happens, as it happens, until Ctrl-C", "robotctl watch pose sweep", _watch, _topics, True
     ),
-    Verb(
+    mission_verb(
         "drive-to",
         "drive to a place on the map in use, and stand there",
         "robotctl drive-to 2.5 -0.8",
         _drive_to,
         _goal,
-        asks_daemon=True,
     ),
 )

@@ -116,7 +116,7 @@ class BoardDrive(BoardDevice):
         check_twist(self.name, twist)
         boot_id = self._talk().boot_id
         in_odom = self._odometer.update(boot_id, report.translate_counts, report.rotate_counts, time_ns)
-        self._odometry.publish(Odometry(time_ns, in_odom, twist))
+        self._odometry.publish(Odometry(time_ns, in_odom, twist, self._odometer.counts))
 
     def _read_out(self, report: DriveReport) -> DriveReadout:
         pressed = (bit for bit in range(_BUMPERS) if report.bumpers & 1 << bit)

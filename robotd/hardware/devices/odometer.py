@@ -23,6 +23,8 @@ class Odometer:
         self._seen: tuple[int, int, int] | None = None
         self.in_odom: Pose2 = IDENTITY
         """Where the base is; the origin is where it was first seen."""
+        self.counts = (0, 0)
+        """What was counted of translation and rotation since then; it does not wrap."""
 
     def start_anew(self) -> None:
         """Take the next counts, whatever they are, for those of where the base is."""
@@ -30,14 +32,14 @@ class Odometer:
 
     def gained(self, boot_id: int, translate_counts: int, rotate_counts: int) -> tuple[float, float]:
         """Return the way [m] and the turn [rad] that a report of cumulative signed 32-bit counts, which wrap, adds."""
-        if self._seen is None or self._seen[0] != boot_id:
-            return 0.0, 0.0
-        way_m = _gained(self._seen[1], translate_counts) / self._calibration.counts_per_m
-        return way_m, _gained(self._seen[2], rotate_counts) / self._calibration.counts_per_rad
+        translated, rotated = self._counted(boot_id, translate_counts, rotate_counts)
+        return translated / self._calibration.counts_per_m, rotated / self._calibration.counts_per_rad
 
     def update(self, boot_id: int, translate_counts: int, rotate_counts: int) -> Pose2:
         """Return the pose after a report of cumulative signed 32-bit counts, which wrap."""
         way_m, turn_rad = self.gained(boot_id, translate_counts, rotate_counts)
+        translated, rotated = self._counted(boot_id, translate_counts, rotate_counts)
+        self.counts = (self.counts[0] + translated, self.counts[1] + rotated)
         self._seen = (boot_id, translate_counts, rotate_counts)
         half_rad = turn_rad / 2
         # An arc leaves its start at half the turn, along its chord; on a straight leg the two are one.
@@ -49,6 +51,11 @@ class Odometer:
         )
         return self.in_odom
 
+    def _counted(self, boot_id: int, translate_counts: int, rotate_counts: int) -> tuple[int, int]:
+        if self._seen is None or self._seen[0] != boot_id:
+            return 0, 0
+        return _gained(self._seen[1], translate_counts), _gained(self._seen[2], rotate_counts)
+
 
 class JudgedOdometer:
     """An odometer that believes no way which the base cannot have made in the time."""
@@ -57,6 +64,11 @@ class JudgedOdometer:
         self._device = device
         self._odometer = Odometer(calibration)
         self._time_ns = 0
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """What was counted of translation and rotation since the base was first seen."""
+        return self._odometer.counts
 
     def start_anew(self) -> None:
         """Believe the next counts: somebody has looked at the base since."""

@@ -243,7 +243,7 @@ class RflexDrive(VendorDevice[Message]):
         twist = Twist2(self._translated.speed / self._scales.counts_per_m, report.speed / self._scales.counts_per_rad)
         check_twist(self.NAME, twist)
         in_odom = self._odometer.update(self.sessions, self._translated.position, report.position, time_ns)
-        self._odometry.publish(Odometry(time_ns, in_odom, twist))
+        self._odometry.publish(Odometry(time_ns, in_odom, twist, self._odometer.counts))
         if not self._may_move and not twist.is_zero and self._calm.is_set():
             self.stop_now()  # it moves though nobody may let it
 

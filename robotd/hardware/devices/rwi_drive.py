@@ -148,7 +148,7 @@ class RwiDrive(VendorDevice[Message]):
                     _signed(counts[0] - counts_before[0]) / self._scales.counts_per_m / seconds,
                     _signed(counts[1] - counts_before[1]) / self._scales.counts_per_rad / seconds,
                 )
-                self._odometry.publish(Odometry(rotate.time_ns, in_odom, twist))
+                self._odometry.publish(Odometry(rotate.time_ns, in_odom, twist, self._odometer.counts))
                 self._say_stop_again(twist)
             before, counts_before = rotate, counts
             if polls % _BATTERY_EVERY_POLLS == 0:

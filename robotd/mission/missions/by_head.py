@@ -1,11 +1,13 @@
-"""The head pointed somewhere, and one sweep without a map."""
+"""The head pointed somewhere, ranges measured there, and one sweep without a map."""
 
 import math
+import statistics
 
-from robotd.contract.events import MissionPhase
-from robotd.contract.missions import Look
+from robotd.contract.events import MissionPhase, RangeMeasured
+from robotd.contract.missions import Look, Measure, Scan
 from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
+from robotd.hardware.devices.rangefinder import Shot
 from robotd.mission.missions.context import MissionContext, Reporter
 
 
@@ -25,10 +27,44 @@ async def run_look(context: MissionContext, mission: Look) -> str:
     return f"looks to pan {math.degrees(aim.pan_rad):.2f} deg, tilt {math.degrees(aim.tilt_rad):.2f} deg"
 
 
-async def run_scan(context: MissionContext, report: Reporter) -> str:
+async def run_measure(context: MissionContext, mission: Measure, report: Reporter) -> str:
+    """Carry out a :class:`Measure`; return what to tell the client.
+
+    A measurement that failed is a result, as in a sweep.
+
+    Raises:
+        DeviceError, LinkTimeout, TransportError: the rangefinder failed; what stops the robot puts the laser out.
+    """
+    report.at(MissionPhase.SWEEPING)
+    laser, shots = context.robot.rangefinder, list[Shot]()
+    await context.hold.through(lambda: laser.switch_laser(on=True))
+    holds = context.hold.count
+
+    async def shoot() -> Shot:
+        if context.hold.count != holds:
+            await laser.switch_laser(on=True)  # the stop put it out
+        return await laser.shoot(timeout_s=context.settings.sweep.shot_timeout_s)
+
+    for number in range(mission.count):
+        shot = await context.hold.through(shoot)
+        context.publish(RangeMeasured(shot.time_ns, number, mission.count, shot.status, shot.range_m, shot.strength))
+        shots.append(shot)
+    await laser.switch_laser(on=False)
+    return _shots_in_words(shots)
+
+
+def _shots_in_words(shots: list[Shot]) -> str:
+    ranges_m = [shot.range_m for shot in shots if shot.status is ReadingStatus.OK and shot.range_m is not None]
+    if not ranges_m:
+        return f"nothing measured: {shots[-1].status}"
+    spread = f", give or take {statistics.stdev(ranges_m):.4f} m" if len(ranges_m) > 1 else ""
+    return f"{statistics.fmean(ranges_m):.4f} m{spread}, {len(ranges_m)} of {len(shots)} measured"
+
+
+async def run_scan(context: MissionContext, mission: Scan, report: Reporter) -> str:
     """Sweep once and return what to tell the client. Raises as :meth:`MissionContext.sweep`."""
     report.at(MissionPhase.SWEEPING)
-    sweep = await context.sweep(next(context.sweep_numbers))
+    sweep = await context.sweep(next(context.sweep_numbers), base_turns=mission.base_turns)
     hits = sum(reading.status is ReadingStatus.OK for reading in sweep.readings)
     return f"{hits} of {len(sweep.readings)} readings met an obstacle"
 

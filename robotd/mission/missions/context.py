@@ -65,8 +65,10 @@ class MissionContext:
             self.robot, settings.head_mount, settings.rangefinder, settings.sweep, settings.driving, self.hold
         )
 
-    async def sweep(self, number: int, on_reading: Callable[[RangeReading], None] | None = None) -> Sweep:
-        """Take a sweep and publish its progress and its end."""
+    async def sweep(
+        self, number: int, on_reading: Callable[[RangeReading], None] | None = None, *, base_turns: bool = True
+    ) -> Sweep:
+        """Take a sweep and publish its progress and its end; arguments as of :meth:`Sweeper.sweep`."""
         counter = SweepCounter(number, self.settings.sweep.readings, self.publish)
 
         def note(reading: RangeReading) -> None:
@@ -74,7 +76,7 @@ class MissionContext:
             if on_reading is not None:
                 on_reading(reading)
 
-        sweep = await self.sweeper.sweep(number, note)
+        sweep = await self.sweeper.sweep(number, note, base_turns=base_turns)
         self.publish(SweepDone(now_ns(), sweep))
         return sweep
 

@@ -5,13 +5,23 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from robotd.contract.estimate import PoseEstimate
-from robotd.contract.missions import DriveStraight, DriveTo, Localize, Look, MapStart, Mission, Scan, Turn
+from robotd.contract.missions import (
+    DriveStraight,
+    DriveTo,
+    Localize,
+    Look,
+    MapStart,
+    Measure,
+    Mission,
+    Scan,
+    Turn,
+)
 from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
-from robotd.mission.missions.by_head import run_look, run_scan
+from robotd.mission.missions.by_head import run_look, run_measure, run_scan
 from robotd.mission.missions.by_odometry import run_straight, run_turning
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.driving import run_driving
@@ -81,8 +91,12 @@ async def _look(_: Host, context: MissionContext, mission: Look, report: Reporte
     return await looking_again(context, report, lambda: run_look(context, mission))
 
 
-async def _scan(_: Host, context: MissionContext, __: Scan, report: Reporter) -> str:
-    return await looking_again(context, report, lambda: run_scan(context, report))
+async def _scan(_: Host, context: MissionContext, mission: Scan, report: Reporter) -> str:
+    return await looking_again(context, report, lambda: run_scan(context, mission, report))
+
+
+async def _measure(_: Host, context: MissionContext, mission: Measure, report: Reporter) -> str:
+    return await run_measure(context, mission, report)
 
 
 _ROWS = (
@@ -93,6 +107,7 @@ _ROWS = (
     MissionRow(Turn, _turn),
     MissionRow(Look, _look, needs_base=False),
     MissionRow(Scan, _scan, needs_base=False),
+    MissionRow(Measure, _measure, needs_base=False),
 )
 MISSION_ROWS = {row.request: row for row in _ROWS}
 

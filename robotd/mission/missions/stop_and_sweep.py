@@ -73,10 +73,10 @@ class Sweeper:
     driving: DrivingSettings
     hold: Hold
 
-    async def sweep(self, number: int, on_reading: Callable[[RangeReading], None]) -> Sweep:
+    async def sweep(self, number: int, on_reading: Callable[[RangeReading], None], *, base_turns: bool = True) -> Sweep:
         """Take sweep ``number`` here; ``on_reading`` sees each reading as it is made.
 
-        Without a base only the directions are read that the head reaches by itself.
+        Without a base, or if it is not to turn, only the directions are read that the head reaches by itself.
 
         Raises:
             MissionError: the head pans too little, or too many readings failed; the robot stands, and the laser is off.
@@ -84,7 +84,7 @@ class Sweeper:
                 switches the laser off: a device that failed cannot be trusted to do it by itself.
         """
         parts = self._parts(await self.robot.pantilt.limits(), number)
-        if not self.robot.has_base:
+        if not (base_turns and self.robot.has_base):
             parts = parts[:1]
         start = await self.hold.through(lambda: standing(self.robot, self.settings.settle_s, self.driving))
         readings: list[RangeReading] = []

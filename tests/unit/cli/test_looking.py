@@ -10,7 +10,7 @@ import pytest
 from robotd.cli.main import main
 from robotd.cli.show.half_blocks import coloured, plain, shrink
 from robotd.client.feed import Gap
-from robotd.core.pose import Pose2
+from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
 
 
 def test_a_pose_is_its_state_and_all_its_regions(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
@@ -47,6 +47,15 @@ def test_what_is_watched_is_printed_as_it_comes(client: Any, capsys: pytest.Capt
     changed, gap = map(json.loads, capsys.readouterr().out.splitlines())
     assert (changed["event"], changed["cells"], changed["spec"]["shape"]) == ("map_changed", 36, [6, 6])
     assert gap == {"event": "gap", "topic": "pose", "missed": None}
+
+
+def test_counts_are_shown_raw(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    client.published = [Odometry(1, IDENTITY, STANDSTILL, (27300, -5)), Odometry(1, IDENTITY, STANDSTILL)]
+    assert main(["watch", "odometry", "--raw"]) == 0
+    first, second = capsys.readouterr().out.splitlines()
+    assert first.endswith("0.00 m/s; counted 27300 of translation, -5 of rotation")
+    assert second.endswith("counted nothing that it tells")
+    assert main(["watch", "odometry"]) == 0
 
 
 def test_maps_are_saved_loaded_and_listed(client: Any, capsys: pytest.CaptureFixture[str]) -> None:

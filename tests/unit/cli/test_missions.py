@@ -4,16 +4,31 @@ import json
 import math
 import os
 import signal
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from robotd.cli.main import main
 from robotd.contract.area import Area
-from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, Look, MapStart, PriorHeading, Scan, Turn
+from robotd.contract.estimate import PoseState
+from robotd.contract.events import MissionPhase, MissionProgress, RangeMeasured, SweepDone
+from robotd.contract.missions import (
+    DriveStraight,
+    DriveTo,
+    Legs,
+    Localize,
+    Look,
+    MapStart,
+    Measure,
+    PriorHeading,
+    Scan,
+    Turn,
+)
 from robotd.core.errors import RequestTimeout
 from robotd.core.pose import IDENTITY, Pose2
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from tests.unit.cli.conftest import ESTIMATE, MISSION_EVENTS
 
 
 def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
@@ -25,6 +40,8 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
     main(["drive", "-0.5"])
     main(["turn", "-90"])
     main(["look", "90", "-10"])
+    main(["measure"])
+    client.mission_events = (SweepDone(5, SWEEP), DONE)
     main(["scan"])
     main(["map", "start", "lab", "--stop", "1", "2", "--stop", "-3", "4", "--start", "1", "0", "180"])
     main(["map", "start", "lab"])
@@ -37,6 +54,7 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
         DriveStraight(-0.5),
         Turn(math.radians(-90)),
         Look(math.radians(90), math.radians(-10)),
+        Measure(),
         Scan(),
         MapStart.of("lab", ((1.0, 2.0), (-3.0, 4.0)), Pose2(1.0, 0.0, math.pi), Legs.PLANNED),
         MapStart.of("lab", (), IDENTITY, Legs.PLANNED),
@@ -57,8 +75,8 @@ def test_a_localization_ends_with_the_pose(client: Any, capsys: pytest.CaptureFi
     assert "240 hits, 40 misses, 20 rejected" in captured.err
 
 
-def test_a_mission_as_json_is_a_line_for_each_event(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["localize", "--json"]) == 0
+def test_all_that_happens_is_a_line_for_each_event(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["localize", "--events"]) == 0
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [line["event"] for line in lines] == [
         "mission_progress",
@@ -71,6 +89,59 @@ def test_a_mission_as_json_is_a_line_for_each_event(client: Any, capsys: pytest.
     assert lines[2]["best"] is None
     assert lines[4]["best"] == {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.0}
     assert lines[5]["phase"] == "done"
+
+
+def test_a_localization_as_json_is_its_estimate(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["localize", "--json"]) == 0
+    estimate = json.loads(capsys.readouterr().out)
+    assert (estimate["event"], estimate["state"], estimate["final"]) == ("pose_estimate", "localized", True)
+
+
+@pytest.mark.parametrize(("state", "code"), [(PoseState.LOST, 3), (PoseState.AMBIGUOUS, 4)])
+def test_lost_and_ambiguous_have_exit_codes_which_the_help_tells(
+    client: Any, state: PoseState, code: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = replace(ESTIMATE, state=state, best=None)
+    client.mission_events = (*MISSION_EVENTS[:4], found, MISSION_EVENTS[-1])
+    assert main(["localize"]) == code
+    with pytest.raises(SystemExit):
+        main(["localize", "--help"])
+    assert f"{code} {state}" in " ".join(capsys.readouterr().out.split())
+
+
+SWEEP = Sweep(3, IDENTITY, (RangeReading(1, 0.0, ReadingStatus.OK, 1.5),))
+MEASURED = (
+    RangeMeasured(1, 0, 2, ReadingStatus.OK, 1.5, 310),
+    RangeMeasured(2, 1, 2, ReadingStatus.WEAK, None, 7),
+)
+DONE = MissionProgress(6, 7, "measure", MissionPhase.DONE, 1, 1, "1.5000 m, 1 of 2 measured")
+
+
+def test_what_was_measured_is_printed(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    client.mission_events = (*MEASURED, DONE)
+    assert main(["measure", "--count", "2"]) == 0
+    assert client.asked[0] == Measure(2)
+    assert capsys.readouterr().out.splitlines() == [
+        "1.500 m, strength 310",
+        "weak, strength 7",
+        "1.5000 m, 1 of 2 measured",
+    ]
+    assert main(["measure", "--json"]) == 0
+    assert [one["range_m"] for one in json.loads(capsys.readouterr().out)] == [1.5, None]
+
+
+def test_a_scan_as_json_is_its_sweep(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    client.mission_events = (SweepDone(5, SWEEP), DONE)
+    assert main(["scan", "--json", "--head-only"]) == 0
+    assert client.asked[0] == Scan(base_turns=False)
+    assert json.loads(capsys.readouterr().out)["sweep"]["readings"][0]["range_m"] == 1.5
+
+
+@pytest.mark.parametrize("count", ["0", "1001", "x"])
+def test_how_often_to_measure_is_judged_before_anybody_is_asked(client: Any, count: str) -> None:
+    with pytest.raises(SystemExit):
+        main(["measure", "--count", count])
+    assert client.asked == []
 
 
 @pytest.mark.parametrize("as_json", [[], ["--json"]])
@@ -89,8 +160,12 @@ def test_a_mission_that_fails_is_exit_code_1(
         ["drive-to", "1", "2"],
         ["drive", "1"],
         ["turn", "90"],
+        ["look", "9", "0"],
+        ["measure"],
+        ["scan"],
         ["map", "start", "a"],
         ["localize", "--json"],
+        ["localize", "--events"],
     ],
 )
 def test_an_interrupt_stops_the_robot_first_and_then_says_so(
@@ -111,7 +186,7 @@ def test_an_interrupt_while_an_event_is_shown_stops_the_robot_too(client: Any, m
         raise KeyboardInterrupt
 
     monkeypatch.setattr("robotd.cli.motion.print_json", interrupt)
-    assert main(["localize", "--json"]) == 130
+    assert main(["localize", "--events"]) == 130
     assert client.asked[1] == ("stop", "interrupted at the command line")
 
 
@@ -144,7 +219,7 @@ def test_a_second_interrupt_ends_in_words_too(
 def test_being_ended_is_being_interrupted(client: Any, monkeypatch: pytest.MonkeyPatch, number: signal.Signals) -> None:
     before = signal.getsignal(number)
     monkeypatch.setattr("robotd.cli.motion.print_json", lambda document: os.kill(os.getpid(), number))
-    assert main(["localize", "--json"]) == 130
+    assert main(["localize", "--events"]) == 130
     assert client.asked[1] == ("stop", "interrupted at the command line")
     assert signal.getsignal(number) is before
 
@@ -153,6 +228,6 @@ def test_what_nohup_ignores_stays_ignored(client: Any, monkeypatch: pytest.Monke
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         monkeypatch.setattr("robotd.cli.motion.print_json", lambda document: os.kill(os.getpid(), signal.SIGHUP))
-        assert main(["localize", "--json"]) == 0
+        assert main(["localize", "--events"]) == 0
     finally:
         signal.signal(signal.SIGHUP, before)

@@ -14,8 +14,17 @@ import pytest
 from robotd.contract.answers import ConfigText, Done, MapEntryInfo, MapList, MissionStarted, RecordingFile, Renewed
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
-from robotd.contract.events import Event, MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.contract.missions import Mission
+from robotd.contract.events import (
+    Event,
+    MapChanged,
+    MissionPhase,
+    MissionProgress,
+    RangeMeasured,
+    Status,
+    SweepDone,
+    SweepProgress,
+)
+from robotd.contract.missions import Measure, Mission, Scan
 from robotd.contract.modes import Mode
 from robotd.contract.request import Request
 from robotd.contract.requests import (
@@ -38,7 +47,8 @@ from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import MapError, MissionError
 from robotd.core.grid_spec import GridSpec
-from robotd.core.pose import Pose2
+from robotd.core.pose import IDENTITY, Pose2
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.mission.safety.lease import Lease
 from robotd.server.server import Server, ServerSettings
 
@@ -173,7 +183,7 @@ class FakeControl:
         self.mission_id += 1
         self.begun.set()
         self._lease = Lease(lease_s, self._lease_expired)
-        self._mission = asyncio.create_task(self._run(self.mission_id))
+        self._mission = asyncio.create_task(self._run(self.mission_id, mission))
         return MissionStarted(self.mission_id, lease_s)
 
     def _renew(self, mission_id: int) -> Renewed:
@@ -195,11 +205,13 @@ class FakeControl:
     def _progress(self, mission_id: int, phase: MissionPhase, message: str = "") -> None:
         self.events.publish(MissionProgress(now_ns(), mission_id, "localize", phase, 0, 1, message))
 
-    async def _run(self, mission_id: int) -> None:
+    async def _run(self, mission_id: int, mission: Mission) -> None:
         try:
             self._progress(mission_id, MissionPhase.STARTED)
             for taken in (1, 2, 3):
                 self.events.publish(SweepProgress(now_ns(), 0, taken, 3, taken, 0, 0))
+            for event in _results_of(mission):
+                self.events.publish(event)
             self.events.publish(an_estimate(PoseState.AMBIGUOUS))
             await self.release.wait()
             self.events.publish(an_estimate(PoseState.LOCALIZED))
@@ -210,6 +222,14 @@ class FakeControl:
         finally:
             if self._lease is not None:
                 self._lease.end()
+
+
+def _results_of(mission: Mission) -> list[Event]:
+    if isinstance(mission, Measure):
+        return [RangeMeasured(9, number, mission.count, ReadingStatus.OK, 1.5, None) for number in range(mission.count)]
+    if isinstance(mission, Scan):
+        return [SweepDone(9, Sweep(3, IDENTITY, (RangeReading(9, 0.5, ReadingStatus.OK, 1.5),)))]
+    return []
 
 
 def an_estimate(state: PoseState, time_ns: int = 9) -> PoseEstimate:

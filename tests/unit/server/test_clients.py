@@ -19,7 +19,7 @@ from robotd.client import AsyncClient, Client
 from robotd.client.mission_run import MissionEvent
 from robotd.contract.estimate import PoseState
 from robotd.contract.events import MissionPhase, MissionProgress
-from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, MapStart, Turn
+from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, Look, MapStart, Measure, Scan, Turn
 from robotd.core.errors import MissionError, RequestTimeout, ServerError, TransportError
 from robotd.core.pose import Pose2
 from tests.unit.server.conftest import stored_map
@@ -42,12 +42,18 @@ async def test_every_method_of_the_async_client(serving: Serving, tmp_path: Path
         assert (await robot.localize(0.25, tie=False)).state is PoseState.LOCALIZED
         assert phases(await robot.drive_to(3.0, 4.0)) == ["started", "done"]
         assert phases(await robot.drive(0.5)) == phases(await robot.turn(-1.5)) == ["started", "done"]
+        assert phases(await robot.look(0.5, -0.1)) == ["started", "done"]
+        assert [one.range_m for one in await robot.measure(2)] == [1.5, 1.5]
+        assert (await robot.scan(base_turns=False)).number == 3
         assert control.asked == [
             MapStart.of("lab", ((1.0, 2.0),), Pose2(0.0, 1.0, 0.5), Legs.STRAIGHT),
             Localize(0.25, tie=False),
             DriveTo(3.0, 4.0),
             DriveStraight(0.5),
             Turn(-1.5),
+            Look(0.5, -0.1),
+            Measure(2),
+            Scan(base_turns=False),
         ]
         assert (await robot.map_save("lab")).name == "lab"
         assert (await robot.map_load("lab", 2, Pose2(1.0, 2.0, 0.0))).version == 2
@@ -73,6 +79,9 @@ async def test_every_method_of_the_sync_client(serving: Serving, tmp_path: Path)
             assert robot.localize(0.25, tie=False).state is PoseState.LOCALIZED
             assert phases(robot.drive_to(3.0, 4.0)) == ["started", "done"]
             assert phases(robot.drive(0.5)) == phases(robot.turn(-1.5)) == ["started", "done"]
+            assert phases(robot.look(0.5, -0.1)) == ["started", "done"]
+            assert [one.range_m for one in robot.measure(2)] == [1.5, 1.5]
+            assert robot.scan().number == 3
             assert robot.map_save("lab").name == "lab"
             assert robot.map_load("lab", 2, Pose2(1.0, 2.0, 0.0)).version == 2
             assert [entry.name for entry in robot.map_list()] == ["office"]
@@ -95,6 +104,9 @@ async def test_every_method_of_the_sync_client(serving: Serving, tmp_path: Path)
             DriveTo(3.0, 4.0),
             DriveStraight(0.5),
             Turn(-1.5),
+            Look(0.5, -0.1),
+            Measure(2),
+            Scan(),
         ]
 
 
