@@ -15,6 +15,7 @@
     ├── MapError               a stored map is missing or damaged; says what
     ├── TooLarge               it would take more memory than it may; says how much
     ├── RecordingError         a recording is missing or damaged; says what and where
+    ├── ChildError             a process that works for this one is gone, or is not what it should be; says why
     ├── ServerError            the server refused; carries its error code
     └── RequestTimeout         the server did not answer in time
 
@@ -108,6 +109,10 @@ class TooLarge(RobotdError):
 
 class RecordingError(RobotdError):
     """A recording is missing or damaged; the message says what and where."""
+
+
+class ChildError(RobotdError):
+    """A process that works for this one is gone, or is not what it should be; the message says why."""
 
 
 class ServerError(RobotdError):

@@ -1,0 +1,65 @@
+"""The child's side: what it was given at its birth, and how it shows that it lives."""
+
+import ctypes
+import os
+import resource
+import signal
+import socket
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from robotd.children.channel import Channel
+from robotd.children.pings import READY
+from robotd.children.sockets import SocketChannel
+from robotd.core.errors import ChildError
+
+_PR_SET_PDEATHSIG = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Birth:
+    """What a child was given."""
+
+    descriptors: tuple[int, ...]
+    """Of the channel by which it is watched, and of its lanes."""
+    arguments: tuple[str, ...]
+    """Of its own."""
+
+    def channels(self) -> tuple[Channel, list[Channel]]:
+        """Return the channel by which it is watched, and the lanes; on the running loop, once."""
+        life, *lanes = (SocketChannel(socket.socket(fileno=number)) for number in self.descriptors)
+        return life, list(lanes)
+
+
+def adopted(argv: Sequence[str]) -> Birth:
+    """Bind the life of this process to its parent's, and its memory to its bound; the first thing that a child does.
+
+    Args:
+        argv: as :func:`robotd.children.process.spawn` makes it, without the program's name.
+    """
+    parent, memory_bytes, descriptors, *arguments = argv
+    # Beside the end of the channel, which a child that computes would find out late: the kernel ends it.
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != int(parent):  # it went before we had asked for that
+        raise SystemExit(0)
+    # Only the parent decides when to end: of a terminal's Ctrl-C it hears as well, and stops the robot first.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
+    if int(memory_bytes):
+        resource.setrlimit(resource.RLIMIT_AS, (int(memory_bytes), int(memory_bytes)))
+    with suppress(OSError):  # where memory is short, the kernel shall take a child before the one that stops the robot
+        Path("/proc/self/oom_score_adj").write_text("500", encoding="ascii")
+    return Birth(tuple(int(number) for number in descriptors.split(",")), tuple(arguments))
+
+
+async def live(life: Channel, version: str) -> None:
+    """Say that this child is ready, and answer each ping, until the parent hangs up.
+
+    It runs on the loop that does the child's work: a loop that is stuck answers nothing, and the child is killed.
+    """
+    life.send(READY, version.encode())
+    with suppress(ChildError):
+        while True:
+            life.send(await life.receive())

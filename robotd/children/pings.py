@@ -1,0 +1,79 @@
+"""Whether a child is ready, of our version, and lives: asked by numbers, which it gives back."""
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NoReturn
+
+from robotd.children.channel import Channel
+from robotd.core.errors import ChildError
+from robotd.core.silence import within
+from robotd.core.text import printable_bytes
+
+READY = b"ready "
+"""What a child says first, before its version."""
+_NUMBER = 8
+"""Bytes of a ping."""
+
+
+@dataclass(frozen=True, slots=True)
+class Patience:
+    """How long to wait for a child."""
+
+    ready_s: float = 10.0
+    """Until it is ready: interpreters start slowly beside busy programs."""
+    silent_s: float = 1.0
+    """For the answer to a ping: what is stuck or stopped for so long is killed."""
+    between_s: float = 0.25
+    """From one ping to the next."""
+    goodbye_s: float = 0.5
+    """What a child has to end in by itself, once it was hung up on."""
+
+
+async def watch(life: Channel, version: str, patience: Patience, is_ready: Callable[[], None]) -> NoReturn:
+    """Watch over a child for as long as it is well.
+
+    Args:
+        life: the channel to it.
+        version: what it has to be.
+        patience: how long to wait for it. The time for which this process itself stood still does not count.
+        is_ready: called once it is ready.
+
+    Raises:
+        ChildError: it is not well; says how. It is then for the caller to kill it.
+    """
+    await _ready(life, version, patience.ready_s)
+    is_ready()
+    number = 0
+    while True:
+        number += 1
+        life.send(number.to_bytes(_NUMBER, "little"))
+        await _answered(life, number, patience.silent_s)
+        await asyncio.sleep(patience.between_s)
+
+
+async def _ready(life: Channel, version: str, within_s: float) -> None:
+    try:
+        async with within(within_s, of=""):
+            said = await life.receive()
+    except TimeoutError:
+        raise ChildError(f"it was not ready within {within_s:g} s") from None
+    if not said.startswith(READY):
+        raise ChildError(f"it began with {_shown(said)}, expected that it is ready")
+    if said != READY + version.encode():
+        raise ChildError(f"it is version {_shown(said[len(READY) :])}, this is {version}")
+
+
+async def _answered(life: Channel, number: int, within_s: float) -> None:
+    try:
+        async with within(within_s, of=""):
+            said = await life.receive()
+    except TimeoutError:
+        raise ChildError(f"it was silent for {within_s:g} s") from None
+    # One ping is under way at a time: any other number is an answer twice given, or to what was never asked.
+    if said != number.to_bytes(_NUMBER, "little"):
+        raise ChildError(f"it answered ping {number} with {_shown(said)}")
+
+
+def _shown(said: bytes) -> str:
+    return repr(printable_bytes(said[:40]))

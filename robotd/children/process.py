@@ -1,0 +1,134 @@
+"""A child as a process: started by exec, with one end of each lane in its hands, and ended for certain."""
+
+import asyncio
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Protocol
+
+from robotd.children.channel import Channel
+from robotd.children.sockets import SocketChannel
+from robotd.core.errors import ChildError
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """What to start."""
+
+    runs: tuple[str, ...]
+    """What Python shall run, ``("-m", "robotd.front")``; it begins with :func:`robotd.children.inside.adopted`."""
+    lanes: int = 1
+    """How many channels it has, beside the one by which it is watched."""
+    arguments: tuple[str, ...] = ()
+    memory_bytes: int = 0
+    """Bound of its address space; 0 is none."""
+    inherits: tuple[int, ...] = ()
+    """Descriptors that it finds open under the same numbers."""
+
+
+class Running(Protocol):
+    """A child that was started."""
+
+    @property
+    def life(self) -> Channel:
+        """Where it says that it is ready, and answers to pings."""
+
+    @property
+    def lanes(self) -> Sequence[Channel]:
+        """What it is talked to by."""
+
+    async def ended(self) -> str:
+        """Wait until it has ended, by whatever cause, and return that in words."""
+
+    def kill(self) -> None:
+        """End it at once, whatever it does."""
+
+    def close(self) -> None:
+        """Hang up on it, which it takes as the wish to end; by and by it does, or is killed."""
+
+
+class Process:
+    """A child that is a process."""
+
+    def __init__(self, process: "subprocess.Popen[bytes]", ends: Sequence[socket.socket]) -> None:
+        """Take over a process that was started, and our ends of its sockets."""
+        self._process = process
+        self.life, *self.lanes = (SocketChannel(end) for end in ends)
+        self._ended: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+        self._watch = os.pidfd_open(process.pid)
+        asyncio.get_running_loop().add_reader(self._watch, self._reap)
+
+    @property
+    def pid(self) -> int:
+        """Its number."""
+        return self._process.pid
+
+    async def ended(self) -> str:
+        """Wait until it has ended, and return how."""
+        return await asyncio.shield(self._ended)
+
+    def kill(self) -> None:
+        """End it at once: stopped, stuck or computing."""
+        if self._process.returncode is None:
+            self._process.kill()
+
+    def close(self) -> None:
+        """Hang up on it."""
+        for channel in (self.life, *self.lanes):
+            channel.close()
+
+    def _reap(self) -> None:
+        asyncio.get_running_loop().remove_reader(self._watch)
+        os.close(self._watch)
+        code = self._process.wait()  # it is a zombie: nothing is waited for
+        self._ended.set_result(_in_words(code))
+
+
+def spawn(program: Program) -> Process:
+    """Start a child.
+
+    By exec, never by a fork alone: the threads of this process hold locks that nobody would ever give back in a copy
+    of it.
+
+    Raises:
+        ChildError: it cannot be started: no memory, no descriptor, no process more.
+    """
+    try:
+        return _spawn(program)
+    except (OSError, subprocess.SubprocessError) as error:
+        raise ChildError(f"it cannot be started: {error}") from error
+
+
+def _spawn(program: Program) -> Process:
+    with ExitStack() as theirs, ExitStack() as ours:
+        near_ends, inherited = [], []
+        for _ in range(1 + program.lanes):
+            near, far = socket.socketpair()
+            near_ends.append(ours.enter_context(near))
+            inherited.append(theirs.enter_context(far).fileno())
+        # Safe path: what lies in the working directory must not be imported in place of what is installed.
+        command = [sys.executable, "-P", *program.runs, str(os.getpid()), str(program.memory_bytes)]
+        command += [",".join(map(str, inherited)), *program.arguments]
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=(*inherited, *program.inherits))
+        try:
+            running = Process(process, near_ends)
+        except BaseException:
+            process.kill()
+            process.wait()
+            raise
+        ours.pop_all()
+    return running
+
+
+def _in_words(code: int) -> str:
+    if code >= 0:
+        return f"it ended with exit code {code}"
+    try:
+        return f"it was ended by {signal.Signals(-code).name}"
+    except ValueError:
+        return f"it was ended by signal {-code}"
