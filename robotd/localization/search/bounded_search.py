@@ -33,17 +33,6 @@ class SearchMap:
     spec: GridSpec
     planes: Planes
 
-    @property
-    def has_bounds(self) -> bool:
-        """Whether the bounds of blocks hold: not where what lies outside both blocks and ends beams.
-
-        Then a head outside the map can be met as long as its body ends inside, an error radius before it. The planes of
-        blocks in C say of some such heads that they cannot (one single reading in a hundred, by trial), and a pose
-        would be lost; so that map, which is the paper's, is searched cell by cell.
-        """
-        ground = self.planes.ground
-        return not (ground.outside_ends and ground.outside_blocks)
-
     @classmethod
     def of(cls, obstacles: Obstacles, spec: GridSpec, error_radius_cells: float) -> "SearchMap":
         """Prepare a map whose obstacles were grown by this much; O(cells)."""
@@ -100,7 +89,7 @@ def best_poses(
         least_rank=least_rank,
         limit=limit,
         window=window,
-        by_blocks=search_map.has_bounds and window.size > _FEW_CELLS,
+        by_blocks=window.size > _FEW_CELLS,
         spans=spans,
         reach_cells=2 * (max(shape) + farthest_m / search_map.spec.resolution_m),
     )

@@ -171,7 +171,7 @@ static void deal_row(const bitmaps *maps, int32_t pool, int32_t key, int32_t row
     const int32_t block = floor_div(row, pool), each = 64 / pool, stride = pooled_stride(map, pool);
     const size_t size = phase_size(map, pool);
     const uint64_t *seen = bitmap_row(maps, maps->seen, row), ones = (UINT64_C(1) << each) - 1;
-    uint64_t *phase = pooled_phase(map, pool, key, row - block * pool, 0) + 2 * (ptrdiff_t)stride + (block + 8);
+    uint64_t *phase = pooled_phase(map, pool, key, row - block * pool, 0) + 2 * (ptrdiff_t)stride + (block + ABOVE);
     for (int32_t w = 0; w < maps->words; w++) {
         const int32_t first = (w - 1) * each; /* the first block of this word */
         if (first >= up(map->cols, pool) + up(BEYOND, pool))
@@ -271,11 +271,9 @@ static void fill_outside(const search_map *map)
     for (int32_t which = 0; which < 3; which++)
         memset(cell_plane(map, which), outside[which] ? 0xff : 0, size * sizeof *map->cells);
     for (int i = 0; i < POOLS; i++)
-        for (int32_t key = 0; key < map->keys; key++) {
-            uint64_t *first = pooled_phase(map, pools[i], key, 0, 0), *end = pooled_phase(map, pools[i], key + 1, 0, 0);
-            memset(first, far_heads(map, key) ? 0xff : 0,
-                   (size_t)(end - first + 2 * pooled_stride(map, pools[i])) * sizeof *first);
-        }
+        for (int32_t key = 0; key < map->keys; key++)
+            memset(pooled_phase(map, pools[i], key, 0, 0), far_heads(map, key) ? 0xff : 0,
+                   key_size(map, pools[i]) * sizeof *map->pooled);
 }
 
 void search_prepare(const search_map *map, int32_t row_first, int32_t row_last, int32_t col_first, int32_t col_last,

@@ -3,8 +3,8 @@
  * Cells: three bitmaps in columns of 16 cells, `cells[3][strips + 4][strip_rows]`: word w + 2 of row r + 16 holds columns
  * 16 w to 16 w + 15, so that a window of 16 x 16 cells anywhere is two loads of 16 rows and a shift. Around the map lie
  * what is outside. Pooled: for each key and each phase of a grid of blocks of pool x pool cells, a bit for each block,
- * `pooled[keys * pool * pool][words + 2][block_rows]` and two columns more. Near: the Chebyshev distance of each cell to
- * the nearest that blocks, `near[rows][cols]`, at most 63.
+ * `pooled[keys][pool * pool][words + 2][block_rows]`, and two columns more for each key. Near: the Chebyshev distance of
+ * each cell to the nearest that blocks, `near[rows][cols]`, at most 63.
  */
 #ifndef ROBOTD_SEARCH_PLANES_H
 #define ROBOTD_SEARCH_PLANES_H

@@ -44,15 +44,21 @@ static inline uint16_t *cell_plane(const search_map *map, int32_t which)
     return map->cells + (size_t)which * (size_t)(strips(map) + 4) * (size_t)strip_size(map);
 }
 
-/* Pooled: words of 64 blocks, eight rows of blocks before the map, at least ten after it. */
+/* Pooled: words of 64 blocks, two of them and ABOVE rows of blocks before the map. The two words after a phase are those
+ * before the next one, and the last phase of a key has its own: keys differ far outside, and a bit that two of them
+ * share would make a bound too low. Up to BEYOND cells outside, planes may differ from what they are farther away, since
+ * bodies end there inside the map; RIM is that in the smallest blocks. */
 #define POOLS 4
 static const int32_t pools[POOLS] = {16, 8, 4, 2};
-#define BEYOND                                                                                                         \
-    8 /* outside the map, no farther away, planes may differ from what they are far away: the reach of keys */
+#define BEYOND 8 /* the reach of keys */
+#define RIM (BEYOND / 2)
+#define TILE_HEIGHT 8             /* rows of blocks that are looked at together */
+#define ABOVE (TILE_HEIGHT + RIM) /* one row less would do, if no phase shifted the rim by up to a block */
+#define BELOW (RIM + TILE_HEIGHT)
 
 static inline int32_t block_rows(const search_map *map, int32_t pool)
 {
-    return up(up(map->rows, pool), 8) * 8;
+    return up(up(map->rows, pool), TILE_HEIGHT) * TILE_HEIGHT;
 }
 
 static inline int32_t block_words(const search_map *map, int32_t pool)
@@ -62,7 +68,7 @@ static inline int32_t block_words(const search_map *map, int32_t pool)
 
 static inline int32_t pooled_stride(const search_map *map, int32_t pool)
 {
-    return block_rows(map, pool) + 24;
+    return ABOVE + block_rows(map, pool) + BELOW;
 }
 
 static inline size_t phase_size(const search_map *map, int32_t pool)
@@ -70,9 +76,15 @@ static inline size_t phase_size(const search_map *map, int32_t pool)
     return (size_t)(block_words(map, pool) + 2) * (size_t)pooled_stride(map, pool);
 }
 
+/* Of all phases of a key. */
+static inline size_t key_size(const search_map *map, int32_t pool)
+{
+    return (size_t)(pool * pool) * phase_size(map, pool) + 2 * (size_t)pooled_stride(map, pool);
+}
+
 static inline size_t pooled_size(const search_map *map, int32_t pool)
 {
-    return (size_t)(map->keys * pool * pool) * phase_size(map, pool) + 2 * (size_t)pooled_stride(map, pool);
+    return (size_t)map->keys * key_size(map, pool);
 }
 
 static inline uint64_t *pooled_phase(const search_map *map, int32_t pool, int32_t key, int32_t row, int32_t col)
@@ -80,13 +92,25 @@ static inline uint64_t *pooled_phase(const search_map *map, int32_t pool, int32_
     uint64_t *first = map->pooled;
     for (int i = 0; pools[i] != pool; i++)
         first += pooled_size(map, pools[i]);
-    return first + (size_t)((key * pool + row) * pool + col) * phase_size(map, pool);
+    return first + (size_t)key * key_size(map, pool) + (size_t)(row * pool + col) * phase_size(map, pool);
 }
 
 /* Whether a head far outside can be met: not if it ends nothing, or if the body has been blocked before. */
 static inline int32_t far_heads(const search_map *map, int32_t key)
 {
     return map->outside_ends && !(map->outside_blocks && key > 0);
+}
+
+/* Whether 64 columns of blocks from one on lie farther outside than BEYOND, all of them. */
+static inline int far_words(int32_t words, int32_t word, uint64_t shift)
+{
+    return word < -2 || word > words || (word == -2 && shift < RIM) || (word == words && shift >= RIM);
+}
+
+/* The same for TILE_HEIGHT rows of them. */
+static inline int far_rows(int32_t rows, int32_t row)
+{
+    return row < -ABOVE || row >= rows + RIM;
 }
 
 #endif

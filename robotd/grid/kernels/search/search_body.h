@@ -19,13 +19,11 @@ static inline TARGET const uint64_t *NAME(place)(const grid *of, const pooled_be
                                                  uint64_t *shift)
 {
     const int32_t word = tile[0] + b->word, row = tile[1] + b->row;
-    *shift = b->shift;
-    if (word >= -1 && word <= of->words && row >= -8 && row <= of->rows + 2)
-        return b->phase + (ptrdiff_t)(word + 2) * of->stride + (row + 8);
-    const int outside = word < -2 || word > of->words || (word == -2 && b->shift < 2);
-    *shift = outside ? 2 : b->shift;
-    return b->phase + (ptrdiff_t)((outside ? of->words : word) + 2) * of->stride +
-           (row < -8 || row > of->rows + 2 ? of->rows + 10 : row + 8);
+    const int far = far_words(of->words, word, b->shift);
+    /* All that is far away is the same, and stands after the rim on the right and below. */
+    *shift = far ? RIM : b->shift;
+    return b->phase + (ptrdiff_t)((far ? of->words : word) + 2) * of->stride +
+           (far_rows(of->rows, row) ? of->rows + RIM : row) + ABOVE;
 }
 
 /* Bound the ranks of all blocks of a tile from above: how many heads may lie on what ends beams. */
