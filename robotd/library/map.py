@@ -14,7 +14,8 @@ from robotd.core.errors import MapError, RobotdError
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.core.reading import ReadingStatus, Sweep
-from robotd.grid.occupancy import GridSettings, OccupancyGrid
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
 from robotd.grid.tables import NO_INFORMATION
 from robotd.library.explanation import Explanation
 from robotd.localization.localizer import Localizer

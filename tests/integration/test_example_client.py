@@ -2,6 +2,8 @@
 
 import os
 import re
+import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -61,6 +63,22 @@ def test_the_example_client_has_about_thirty_lines() -> None:
 
 def test_the_python_on_the_page_of_the_api_works_as_it_stands(runtime_dir: Path) -> None:
     (program,) = re.findall(r"```python\n(.*?)```", (DOCS / "api.md").read_text(encoding="utf-8"), re.DOTALL)
-    assert "PoseEstimate(" in run(runtime_dir, "-c", program)
+    assert "localized at x" in run(runtime_dir, "-c", program)
     with Client(runtime_dir) as client:
         assert client.status().mode == "idle"
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="no Node.js here")
+def test_the_client_in_javascript_asks_listens_and_stops_the_robot_when_it_is_interrupted(runtime_dir: Path) -> None:
+    program = subprocess.Popen(
+        ["node", str(DOCS / "examples" / "client.mjs"), str(runtime_dir)], stdout=subprocess.PIPE, text=True
+    )
+    assert program.stdout is not None
+    with program, Client(runtime_dir) as client:
+        assert program.stdout.readline() == f"mode {client.status().mode}: {client.status().reason}\n"
+        # Whoever subscribes hears the newest pose at once.
+        assert re.match(r"(localized|predicted): x \d\.\d+ m, y \d\.\d+ m", program.stdout.readline())
+        program.send_signal(signal.SIGINT)
+        program.communicate(timeout=10)
+        assert program.returncode == 0
+        assert client.status().reason == "Ctrl-C in the example"

@@ -1,0 +1,23 @@
+"""``schema``: the wire as JSON Schema, for programs in other languages. It needs no daemon."""
+
+import argparse
+
+from robotd.cli.show.terminal import print_json
+from robotd.cli.verb import OK, Verb
+from robotd.contract.schema import wire_schema
+
+
+def _schema(_: argparse.Namespace) -> int:
+    print_json(wire_schema())
+    return OK
+
+
+VERBS = (
+    Verb(
+        "schema",
+        "print every request, reply and event as one JSON Schema, made from the types",
+        "robotctl schema > robotd-v1.schema.json",
+        _schema,
+        prints_json=False,
+    ),
+)
