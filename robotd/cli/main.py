@@ -45,7 +45,7 @@ WORDS = {
     ),
     "eval": ("evaluate", "tell how often localization is right, ambiguous, lost, or sure and wrong on real logs"),
     "config": ("configuration", "check and show configurations"),
-    "schema": ("schema", "print the wire as JSON Schema, for programs in other languages"),
+    "schema": ("schema", "print every request, reply and event as one JSON Schema, made from the types"),
     "exact": ("exact", "localize on a map of polygons by the exact combinatorial algorithm, without rounding"),
     "doctor": ("doctor", "say what this installation consists of, which kernels it uses and why, and what it can see"),
     "demo": ("demo", "show the main job, end to end, on a simulated robot"),

@@ -76,7 +76,7 @@ def test_the_client_in_javascript_asks_listens_and_stops_the_robot_when_it_is_in
     assert program.stdout is not None
     with program, Client(runtime_dir) as client:
         assert program.stdout.readline() == f"mode {client.status().mode}: {client.status().reason}\n"
-        # Whoever subscribes hears the newest pose at once.
+        # A new subscriber hears the newest pose at once.
         assert re.match(r"(localized|predicted): x \d\.\d+ m, y \d\.\d+ m", program.stdout.readline())
         program.send_signal(signal.SIGINT)
         program.communicate(timeout=10)

@@ -18,6 +18,5 @@ VERBS = (
         "print every request, reply and event as one JSON Schema, made from the types",
         "robotctl schema > robotd-v1.schema.json",
         _schema,
-        prints_json=False,
     ),
 )

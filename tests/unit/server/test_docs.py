@@ -136,7 +136,7 @@ async def test_the_program_on_the_page_runs(
     serving: Callable[..., AbstractAsyncContextManager[Any]], tmp_path: Path
 ) -> None:
     (program,) = re.findall(r"(?s)```python\n(.*?)```", TEXT)
-    assert "PoseState.LOCALIZED" in await run_program(serving, tmp_path, "-c", program)
+    assert "localized at x 1.000 m" in await run_program(serving, tmp_path, "-c", program)
 
 
 async def run_program(
