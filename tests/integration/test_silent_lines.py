@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from firmware_proto.common import BoardKind
-from firmware_proto.drive import OdometryReport
+from firmware_proto.drive import OdometryReport, SetVelocity
+from firmware_proto.framing import Deframer
 from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import Legs, MapStart
 from robotd.contract.modes import Mode
@@ -30,6 +31,8 @@ pytestmark = pytest.mark.slow
 
 STOPPED_S = 0.55
 """Odometry may be silent for half a second, and a report is due each 40 ms."""
+DEADMAN_S = 0.4
+"""Its set-points last so long, and none comes while no odometry does."""
 LOST_S = 1.1
 PATIENT_S = 10.0
 
@@ -42,8 +45,21 @@ class NoOdometry(Fault):
         return bytes(frames)
 
 
+class NoSetPoints(Fault):
+    """The base hears everything but how to move."""
+
+    def changed(self, data: bytes, way: Direction) -> bytes:
+        if way is Direction.FROM_BOARD:
+            return data
+        return bytes(b"".join(frame for frame in frames_of(data) if not _is_set_point(frame)))
+
+
 def _is_odometry(frame: bytes) -> bool:
     return any(isinstance(one.message, OdometryReport) for one in BoardWire(BoardKind.DRIVE).feed(b"\0" + frame))
+
+
+def _is_set_point(frame: bytes) -> bool:
+    return any(raw.type == SetVelocity.TYPE for raw in Deframer().feed(b"\0" + frame))
 
 
 @asynccontextmanager
@@ -111,7 +127,7 @@ MOMENTS: dict[str, Callable[[Bench], bool]] = {
 
 
 @pytest.mark.parametrize("moment", MOMENTS)
-@pytest.mark.parametrize("lasts_s", [0.2, 0.7, 0.85])
+@pytest.mark.parametrize("lasts_s", [0.2, 0.45, 0.7, 0.85])
 async def test_a_moment_without_a_word_ends_nothing(tmp_path: Path, moment: str, lasts_s: float) -> None:
     async with mapping(tmp_path) as it:
         await until(it, MOMENTS[moment])
@@ -121,8 +137,23 @@ async def test_a_moment_without_a_word_ends_nothing(tmp_path: Path, moment: str,
         assert it.mode is Mode.UNDER_WAY
         assert not is_held(it) or not it.daemon.robot.drive.is_driven
         mend(it)
+        await asyncio.sleep(0.1)
+        assert is_held(it) == (moment != "sweeping" and lasts_s > DEADMAN_S)
         end = await ended(it)
         assert end.phase is MissionPhase.DONE, end
+
+
+@pytest.mark.parametrize("moment", ["turning", "driving"])
+async def test_a_deadman_that_runs_out_though_the_base_was_heard_is_a_fault(tmp_path: Path, moment: str) -> None:
+    async with mapping(tmp_path) as it:
+        await until(it, MOMENTS[moment])
+        it.cables["drive"].set_fault(NoSetPoints(random.Random(1)))
+        await asyncio.sleep(DEADMAN_S + 0.1)
+        assert (it.mode, is_held(it)) == (Mode.FAULT, False)
+        mend(it)
+        await asyncio.sleep(1.0)
+        assert "drive: deadman" in (await ended(it)).message
+        await rests_unarmed(it)
 
 
 @pytest.mark.parametrize("moment", MOMENTS)

@@ -7,14 +7,15 @@ silence may last, the same bytes always lead to the same motion: replay depends 
 """
 
 import math
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import contextmanager
 
 from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Odometry, Pose2, Twist2
-from robotd.core.silence import within
+from robotd.core.silence import Silence, within
 from robotd.hardware.devices.drive import Drive
 from robotd.mission.motion.steering import DrivingSettings, distance_left_m, leg_twist, turn_rate_radps
 from robotd.mission.safety.hold import FellSilent, Hold, Interrupted
@@ -171,12 +172,13 @@ async def _approach(
     twist: Callable[[Odometry], Twist2],
 ) -> Odometry:
     """Send ``twist`` for each odometry message until ``left`` is within ``tolerance``; then stand."""
+    hold = Hold() if hold is None else hold
+    holds = hold.count
     nearest, nearest_ns = math.inf, 0
-    holds = hold.count if hold is not None else 0
-    with drive.odometry.subscribe() as stream:
+    with drive.odometry.subscribe() as stream, _led(hold, settings.setpoint_ttl_s) as set_points:
         async for now in _within(stream, settings.silence_s):
             # Before anything is said to the base: it was stopped for the hold, and stays so.
-            if hold is not None and hold.count != holds:
+            if hold.count != holds:
                 raise Interrupted
             remaining = left(now)
             if remaining <= tolerance:
@@ -188,7 +190,19 @@ async def _approach(
             elif now.time_ns - nearest_ns > settings.stall_s * NS_PER_S:
                 raise DeviceError(drive.name, "stalled", f"{what} is no nearer to its end for {settings.stall_s:g} s")
             drive.set_velocity(twist(now), settings.setpoint_ttl_s)
+            set_points.renew()
     raise AssertionError("a subscription never ends")
+
+
+@contextmanager
+def _led(hold: Hold, ttl_s: float) -> Iterator[Silence]:
+    """Let a hold know when no set-point was given for half the time that one lives; each renews what is yielded."""
+    # Half: its clock is another than ours, and what was under way was lost with what was not said.
+    silence = Silence(ttl_s / 2.0, hold.set_points_stay_away, of="set-points", begins=False)
+    try:
+        yield silence
+    finally:
+        silence.end()
 
 
 async def _within(stream: Subscription[Odometry], silence_s: float) -> AsyncIterator[Odometry]:

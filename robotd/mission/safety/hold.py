@@ -1,9 +1,9 @@
 """A mission is held: it was interrupted for a moment, the base was stopped, and the mission goes on by itself.
 
 The one way back to motion that needs no ``arm``, hence narrow: it begins only in a mission under way, and only because
-our own loop stood still, or because odometry fell silent on a line that is not lost; every stop, fault, lost device and
-expired lease ends it, and then only ``arm`` leads on; and it begins no more than :data:`HOLDS_A_MINUTE` times within a
-minute.
+our own loop stood still, or because odometry fell silent on a line that is not lost, and set-points with it; every
+stop, fault, lost device and expired lease ends it, and then only ``arm`` leads on; and it begins no more than
+:data:`HOLDS_A_MINUTE` times within a minute.
 """
 
 import asyncio
@@ -12,7 +12,7 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import NoReturn, TypeVar
 
-from robotd.core.clock import NS_PER_S
+from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import LinkTimeout, RobotdError
 
 T = TypeVar("T")
@@ -24,7 +24,7 @@ WELL_S = 1.0
 """A held mission goes on once the loop has turned for so long without a stall: a machine that was too busy once is
 likely to be so again within the second (decision 22)."""
 _MINUTE_NS = 60 * NS_PER_S
-_LATELY_NS = 2 * NS_PER_S
+LATELY_NS = 2 * NS_PER_S
 """What goes wrong this soon after a stall is put down to it: some things show late, as that a deadman ran out."""
 
 
@@ -46,7 +46,7 @@ class Stall:
 
     def is_recent(self, time_ns: int) -> bool:
         """Whether what happens at this time may have come of it."""
-        return time_ns - self.time_ns <= _LATELY_NS
+        return time_ns - self.time_ns <= LATELY_NS
 
 
 class Interrupted(Exception):  # no error: the step is taken again
@@ -70,6 +70,8 @@ class Hold:
         """Whether devices are being armed again."""
         self.count = 0
         """How often it began since start."""
+        self.unled_ns: int | None = None
+        """When a driven base was last found to have got no set-point for too long, because it told no odometry."""
         self.unwell_ns = 0
         """When it was last found that all is not well: the loop stood still, or the base was silent."""
         self.wait_for_base: Callable[[FellSilent], None] = _not_waited_for
@@ -90,6 +92,10 @@ class Hold:
         self.unwell_ns = time_ns
         self._over.clear()
         return True
+
+    def set_points_stay_away(self) -> None:
+        """Note that nobody leads a base that is driven: its deadman may run out, and does what it is for."""
+        self.unled_ns = now_ns()
 
     def end(self) -> None:
         """Let the mission go on, or end."""

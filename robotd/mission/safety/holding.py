@@ -1,6 +1,7 @@
 """What the supervisor does when a mission is interrupted for a moment: a hold, if the base is concerned, else nothing.
 
-Our own loop stood still while the base was driven; or odometry fell silent, though the line is not lost.
+Our own loop stood still while the base was driven; or odometry fell silent, though the line is not lost. Either keeps
+set-points away, and the base's deadman may run out before anything else is noticed: that is no fault of the base.
 """
 
 import asyncio
@@ -14,7 +15,7 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import LinkTimeout, RobotdError
 from robotd.core.silence import within
 from robotd.mission.safety.arming import Arming
-from robotd.mission.safety.hold import HOLDS_A_MINUTE, FellSilent, Hold, Stall
+from robotd.mission.safety.hold import HOLDS_A_MINUTE, LATELY_NS, FellSilent, Hold, Stall
 from robotd.mission.safety.modes import Occasion
 from robotd.mission.safety.stopper import Stopper
 
@@ -51,26 +52,25 @@ class Holding:
         if not stall.was_stopped:
             return
         if self._stopper.mode is Mode.UNDER_WAY:
-            self._hold_for(stall)
+            self._hold_for(str(stall))
         else:
             self._stopper.halt(Occasion.STOP, f"{stall}; {_NEXT_STEP}")
 
     def explains(self, status: DeviceStatus) -> bool:
         """Say whether a device is disarmed because of us, which ends nothing.
 
-        Either the mission is held, and it was stopped for that; or its deadman ran out while our loop stood still, and
-        that holds the mission.
+        Either the mission is held, and it was stopped for that; or its deadman ran out because our set-points stayed
+        away, and that holds the mission. Where they did not, it is a fault of the base or of its cable.
         """
-        stall = self._recent()
         if (
             status.link is not LinkState.READY
             or self._stopper.mode is not Mode.UNDER_WAY
             or status.faults not in {(), _DEADMAN}
         ):
             return False
-        if self.hold.cause is None and status.faults and stall is not None:
-            log.warning("%s: its deadman ran out while the loop stood still", status.name)
-            self._hold_for(stall)
+        if self.hold.cause is None and status.faults and (why := self._why_unled()) is not None:
+            log.warning("%s: its deadman ran out: %s", status.name, why)
+            self._hold_for(why)
             return True
         return self.hold.cause is not None
 
@@ -135,9 +135,9 @@ class Holding:
         if not self._begin(str(error), now_ns()):
             raise LinkTimeout(f"{error}, {_TOO_OFTEN}; {_NEXT_STEP}") from error
 
-    def _hold_for(self, stall: Stall) -> None:
-        if not self._begin(str(stall), stall.time_ns):
-            self._stopper.halt(Occasion.STOP, f"{stall}, {_TOO_OFTEN}; {_NEXT_STEP}")
+    def _hold_for(self, cause: str) -> None:
+        if not self._begin(cause, now_ns()):
+            self._stopper.halt(Occasion.STOP, f"{cause}, {_TOO_OFTEN}; {_NEXT_STEP}")
 
     def _begin(self, cause: str, time_ns: int) -> bool:
         """Stop and hold; False if that was so too often, and the mission must end."""
@@ -148,6 +148,13 @@ class Holding:
         self._stopper.robot.stop_now()
         self._stopper.publish_status()
         return True
+
+    def _why_unled(self) -> str | None:
+        """Return why set-points stayed away just now; None if they did not."""
+        stall, unled_ns = self._recent(), self.hold.unled_ns
+        if stall is None and (unled_ns is None or now_ns() - unled_ns > LATELY_NS):
+            return None
+        return "the base was silent, and so without set-points" if stall is None else str(stall)
 
     def _recent(self) -> Stall | None:
         return self._stall if self._stall is not None and self._stall.is_recent(now_ns()) else None

@@ -4,7 +4,8 @@ Real boards have processors of their own. A simulator that stood still for half 
 before it could read the set-points that wait, or send the odometry that brings the next ones: it would simulate a
 defect of this machine. So time lost stands still for the robot, and is made up for little by little afterwards. The
 boards' clocks fall behind meanwhile and catch up again, so the daemon, which goes by most of what it heard of a clock,
-keeps its idea of them.
+keeps its idea of them. The farther behind, the more quickly; but not before what waited on the lines was read: the
+set-points of a daemon that was well, or the stop of one that heard nothing.
 """
 
 import asyncio
@@ -19,7 +20,15 @@ BEAT_NS = 20_000_000
 CATCHING_UP = 1.5
 """This many simulated seconds pass in one while time is made up for; set-points still last until they are renewed."""
 MOST_BEHIND_NS = 300_000_000
-"""No further: a daemon takes a clock that stays half a second behind for a liar."""
+"""Farther behind it hurries: a daemon takes a clock that stays half a second behind for a liar."""
+HURRY_NS = 150_000_000
+"""In so long it makes up for two thirds of what is too much."""
+READING_NS = 40_000_000
+"""It does not hurry before nothing was late for so long: what waits on the lines is read meanwhile."""
+TOO_LONG_NS = 800_000_000
+"""After so long what is still too much is leapt over, for a daemon has patience with a clock for a second."""
+LEAP_NS = 200_000_000
+"""So far at once: half of what a set-point lives by default."""
 PATIENCE_S = 10.0
 """How long the lines of a simulated robot may be silent (``silence_s``): no cable of it can come off."""
 SLOWED = "this machine is busy: simulated time is slowed"
@@ -63,6 +72,9 @@ class SlowedTime:
         self._seen_ns = now_ns()
         self._due_ns = self._seen_ns + BEAT_NS
         self._behind_ns = 0
+        self._late_ns = 0
+        self._leaps_ns: int | None = None
+        """When it leaps unless it has made up for enough by then; None if it is not too far behind."""
 
     async def beat(self) -> NoReturn:
         """Let it be seen whether this process gets a processor."""
@@ -76,20 +88,44 @@ class SlowedTime:
         host_ns = now_ns()
         passed_ns, late_ns = host_ns - self._seen_ns, host_ns - self._due_ns
         self._seen_ns = host_ns
-        if late_ns > LATE_NS:
+        # What was late before the last look is counted already.
+        lost_ns = min(late_ns, passed_ns) if late_ns > LATE_NS else 0
+        self._make_up(passed_ns - lost_ns)
+        if lost_ns:
             self._due_ns = host_ns + BEAT_NS  # or the next look would count the same lateness again
-            self._lose(min(late_ns, passed_ns))  # what was late before the last look is counted already
-        else:
-            self._behind_ns = max(0, self._behind_ns - round(passed_ns * (CATCHING_UP - 1.0)))
+            self._lose(lost_ns)
+        self._bound()
         return host_ns - self._behind_ns
 
     def wait_s(self, until_ns: int) -> float:
         """See :class:`Time`."""
         left_ns = max(0, until_ns - self.now_ns())
-        return left_ns / (CATCHING_UP if self._behind_ns else 1.0) / NS_PER_S
+        return left_ns / self._rate() / NS_PER_S
+
+    def _rate(self) -> float:
+        """Return how many simulated seconds pass in one."""
+        if not self._behind_ns:
+            return 1.0
+        if self._seen_ns - self._late_ns < READING_NS:
+            return CATCHING_UP
+        return CATCHING_UP + max(0, self._behind_ns - MOST_BEHIND_NS) / HURRY_NS
+
+    def _make_up(self, passed_ns: int) -> None:
+        self._behind_ns = max(0, self._behind_ns - round(passed_ns * (self._rate() - 1.0)))
 
     def _lose(self, lost_ns: int) -> None:
-        self._behind_ns = min(self._behind_ns + lost_ns, MOST_BEHIND_NS)
+        self._behind_ns += lost_ns
+        self._late_ns = self._seen_ns
         if not self._has_said:
             self._has_said = True
             self._say(SLOWED)
+
+    def _bound(self) -> None:
+        """Leap a little if it has been too far behind for too long."""
+        if self._behind_ns <= MOST_BEHIND_NS:
+            self._leaps_ns = None
+        elif self._leaps_ns is None:
+            self._leaps_ns = self._seen_ns + TOO_LONG_NS
+        elif self._seen_ns >= self._leaps_ns:
+            self._leaps_ns = self._seen_ns + BEAT_NS
+            self._behind_ns = max(MOST_BEHIND_NS, self._behind_ns - LEAP_NS)
