@@ -58,6 +58,6 @@ class Verb:
                 "--timeout",
                 type=positive,
                 metavar="S",
-                help="longest wait for an answer [s] (default: 3 to 60, by what is asked)",
+                help="longest wait for an answer [s] (default: 10 to 60, by what is asked; 3 if no daemon is there)",
             )
         parser.set_defaults(run=self.run)

@@ -158,8 +158,11 @@ class AsyncClient(Methods, Awaiting):
         try:
             while not exchange.is_answered:
                 if data := exchange.due(_now_s()):
-                    with contextlib.suppress(zmq.Again):  # not connected: the next repeat may be
+                    try:
                         await self._commands.send(data)
+                        exchange.reached()
+                    except zmq.Again:  # not connected: the next repeat may be
+                        exchange.unreached(_now_s())
                 await asyncio.wait((answered,), timeout=exchange.wait_s(_now_s()))
                 if answered.done():
                     answered.result()
@@ -193,6 +196,7 @@ class AsyncClient(Methods, Awaiting):
     @contextlib.asynccontextmanager
     async def _follow(self, topics: tuple[Topic, ...]) -> AsyncIterator[AsyncSubscription]:
         """Subscribe, and go on only when it is certain that nothing published from now on is missed."""
+        await self.hello()  # nobody home is found out sooner than a slow daemon
         with self.subscribe(*topics, Topic.STATUS) as events:
             deadline_s = _now_s() + self._patience_s
             # The daemon greets with the status last: when it is here, the subscriptions before it are in force.

@@ -14,12 +14,24 @@ from robotd.core.errors import RemoteProtocolError, RequestTimeout, ServerError
 
 R = TypeVar("R")
 
+UNREACHED_S = 3.0
+"""So long a request waits for a daemon to connect to. One that is connected and does not answer is slow until the
+request's own time is over: what nobody else does for a busy machine, its clients must not undo."""
+
 
 class Exchange(Generic[R]):
     """One request and its answer."""
 
     def __init__(
-        self, request_id: int, request: Request[R], *, whom: str, now_s: float, retry_s: float, deadline_s: float
+        self,
+        request_id: int,
+        request: Request[R],
+        *,
+        whom: str,
+        now_s: float,
+        retry_s: float,
+        deadline_s: float,
+        unreached_s: float,
     ) -> None:
         self.id = request_id
         self._request = request
@@ -28,6 +40,8 @@ class Exchange(Generic[R]):
         self._retry_s = retry_s
         self._deadline_s = now_s + deadline_s
         self._next_s = now_s
+        self._unreached_s = unreached_s
+        self._unreached_since_s: float | None = now_s
         self._reply: Reply | None = None
 
     @property
@@ -39,18 +53,33 @@ class Exchange(Generic[R]):
         """Return the request if it is time to send it, for the first time or again.
 
         Raises:
-            RequestTimeout: there was no answer before the deadline.
+            RequestTimeout: there was no answer before the deadline, or nobody to ask.
         """
-        if now_s >= self._deadline_s:
+        if now_s >= self._ends_s:
             raise RequestTimeout(f"{self._request.cmd}: no answer from {self._whom}")
         if now_s < self._next_s:
             return None
         self._next_s = now_s + self._retry_s
         return self._data
 
+    def reached(self) -> None:
+        """Note that there was somebody to send it to."""
+        self._unreached_since_s = None
+
+    def unreached(self, now_s: float) -> None:
+        """Note that there was nobody."""
+        if self._unreached_since_s is None:
+            self._unreached_since_s = now_s
+
     def wait_s(self, now_s: float) -> float:
         """Return how long to wait for a frame at most."""
-        return max(0.0, min(self._next_s, self._deadline_s) - now_s)
+        return max(0.0, min(self._next_s, self._ends_s) - now_s)
+
+    @property
+    def _ends_s(self) -> float:
+        if self._unreached_since_s is None:
+            return self._deadline_s
+        return min(self._deadline_s, self._unreached_since_s + self._unreached_s)
 
     def answer(self, reply: Reply) -> None:
         """Take the answer."""
@@ -88,9 +117,15 @@ class Exchanges:
     def begin(self, request: Request[R], now_s: float) -> Exchange[R]:
         """Open an exchange."""
         self._number += 1
-        deadline_s = request.deadline_s if self._deadline_s is None else self._deadline_s
+        given_s = self._deadline_s
         exchange = Exchange(
-            self._number, request, whom=self._whom, now_s=now_s, retry_s=self._retry_s, deadline_s=deadline_s
+            self._number,
+            request,
+            whom=self._whom,
+            now_s=now_s,
+            retry_s=self._retry_s,
+            deadline_s=request.deadline_s if given_s is None else given_s,
+            unreached_s=UNREACHED_S if given_s is None else given_s,
         )
         self._open[exchange.id] = exchange
         return exchange

@@ -148,8 +148,11 @@ class Client(Methods, Blocking):
         try:
             while not exchange.is_answered:
                 if data := exchange.due(_now_s()):
-                    with contextlib.suppress(zmq.Again):  # not connected: the next repeat may be
+                    try:
                         self._commands.send(data)
+                        exchange.reached()
+                    except zmq.Again:  # not connected: the next repeat may be
+                        exchange.unreached(_now_s())
                 if self._commands.poll(_ms(exchange.wait_s(_now_s()))):
                     self._exchanges.accept(self._commands.recv())
             return exchange.result()
@@ -171,6 +174,7 @@ class Client(Methods, Blocking):
     @contextlib.contextmanager
     def _follow(self, topics: tuple[Topic, ...]) -> Iterator[Subscription]:
         """Subscribe, and go on only when it is certain that nothing published from now on is missed."""
+        self.hello()  # nobody home is found out sooner than a slow daemon
         with self.subscribe(*topics, Topic.STATUS) as events:
             deadline_s = _now_s() + self._patience_s
             # The daemon greets with the status last: when it is here, the subscriptions before it are in force.

@@ -16,5 +16,6 @@ class Request(msgspec.Struct, Generic[R], frozen=True, forbid_unknown_fields=Tru
     """Changes nothing, so a repeated request may be carried out again."""
     is_noted: ClassVar[bool] = False
     """Acts on the robot as soon as it is carried out: the journal notes it, and a replay performs it again."""
-    deadline_s: ClassVar[float] = 3.0
-    """How long a client waits for the answer, repeats included."""
+    deadline_s: ClassVar[float] = 10.0
+    """How long a client waits for the answer of a daemon that is there, repeats included: on a busy machine nothing is
+    quick."""

@@ -44,13 +44,13 @@ class GetStatus(Request[Status], frozen=True):
 class Arm(Request[Done], frozen=True):
     """Allow motion."""
 
-    cmd, result, is_noted, deadline_s = "arm", Done, True, 10.0
+    cmd, result, is_noted = "arm", Done, True
 
 
 class Disarm(Request[Done], frozen=True):
     """Stop and forbid motion: a stop, noted as one."""
 
-    cmd, result, deadline_s = "disarm", Done, 10.0
+    cmd, result = "disarm", Done
 
     @property
     def reason(self) -> str:
@@ -77,14 +77,14 @@ class Stop(Request[Done], frozen=True):
 class Clear(Request[Done], frozen=True):
     """Acknowledge latched faults; the robot stays disarmed."""
 
-    cmd, result, is_noted, deadline_s = "clear", Done, True, 10.0
+    cmd, result, is_noted = "clear", Done, True
 
 
 class Renew(Request[Renewed], frozen=True):
     """Keep a mission's lease alive."""
 
     # No renewal is noted any more; recordings from before hold them, and what they hold must be one to repeat.
-    cmd, result, only_looks, is_noted, deadline_s = "renew", Renewed, True, True, 2.0
+    cmd, result, only_looks, is_noted = "renew", Renewed, True, True
     mission_id: Number
 
 
@@ -138,7 +138,7 @@ class MapShow(Request[MapChanged], frozen=True):
 class RecordStart(Request[RecordingFile], frozen=True):
     """Start recording, into a new file of the daemon's or into this one, which lies below its ``recording.dir``."""
 
-    cmd, result, deadline_s = "record_start", RecordingFile, 10.0
+    cmd, result = "record_start", RecordingFile
     path: Annotated[str, Meta(min_length=1, max_length=1024, pattern=r"\A[^\x00]*\Z")] | None = None
 
 

@@ -6,14 +6,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.client.exchange import Exchanges
+from robotd.client.exchange import UNREACHED_S, Exchanges
 from robotd.client.feed import Feed, Gap, as_topics
 from robotd.client.mission_run import MissionRun, final_estimate
 from robotd.contract.answers import Done, MissionStarted, RecordingFile, Renewed
 from robotd.contract.envelope import NumberedRequest, decode_request, encode_error, encode_result
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepProgress
-from robotd.contract.requests import Arm, GetStatus, Hello, RecordStop
+from robotd.contract.request import Request
+from robotd.contract.requests import Arm, GetStatus, Hello, RecordStop, Renew, Stop
 from robotd.contract.topics import LogEntry, Topic, encode_frame, to_wire
 from robotd.core.errors import MissionError, RemoteProtocolError, RequestTimeout, ServerError
 
@@ -27,8 +28,26 @@ def test_a_request_is_repeated_under_its_number_until_the_deadline() -> None:
     sent = [(now_s, exchange.due(now_s)) for now_s in (100.0, 100.2, 100.5, 100.9, 101.0)]
     assert [now_s for now_s, data in sent if data] == [100.0, 100.5, 101.0]
     assert len({data for _, data in sent if data}) == 1
+    exchange.reached()
+    exchange.due(100.0 + GetStatus.deadline_s - 0.1)
     with pytest.raises(RequestTimeout, match="status"):
         exchange.due(100.0 + GetStatus.deadline_s)
+
+
+@pytest.mark.parametrize("request_", [GetStatus(), Renew(1), Arm(), Stop(), Hello()])
+def test_a_daemon_that_is_there_is_given_ten_seconds_and_one_that_is_not_three(request_: Request[Any]) -> None:
+    slow, absent, killed = (exchanges().begin(request_, 0.0) for _ in range(3))
+    for exchange in (slow, killed):
+        exchange.reached()
+    killed.unreached(1.0)
+    killed.unreached(2.0)
+    given_s = {}
+    for name, exchange in (("slow", slow), ("absent", absent), ("killed", killed)):
+        with pytest.raises(RequestTimeout, match="no answer"):  # noqa: PT012  # it raises at a time, not in a call
+            for tenths in range(200):
+                given_s[name] = tenths / 10.0
+                exchange.due(given_s[name])
+    assert given_s == {"slow": 10.0, "absent": UNREACHED_S, "killed": 1.0 + UNREACHED_S}
 
 
 def test_the_wait_ends_with_the_next_repeat_or_the_deadline() -> None:
