@@ -48,6 +48,10 @@ class Broadcast(Generic[T]):
         for subscription in self._subscriptions:
             subscription.offer(item)
 
+    def forget(self) -> None:
+        """Have no latest any more: it is known no longer whether it holds."""
+        self.latest = None
+
     @contextmanager
     def subscribe(self, depth: int = 256) -> Iterator[Subscription[T]]:
         """Open a subscription for the length of a ``with`` block."""

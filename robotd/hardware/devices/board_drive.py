@@ -13,7 +13,7 @@ from robotd.core.broadcast import Broadcast
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.hardware.devices.board_device import BoardDevice
-from robotd.hardware.devices.credible import check_battery, check_twist
+from robotd.hardware.devices.credible import battery_v, check_twist
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
 from robotd.hardware.devices.settings import BoardOptions, DriveSettings
@@ -72,6 +72,7 @@ class BoardDrive(BoardDevice):
     def link_lost(self, reason: str) -> None:
         """Note that there is no base, and why."""
         self._wanted = STANDSTILL
+        self._readouts.forget()
         super().link_lost(reason)
 
     def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
@@ -120,10 +121,8 @@ class BoardDrive(BoardDevice):
 
     def _read_out(self, report: DriveReport) -> DriveReadout:
         pressed = (bit for bit in range(_BUMPERS) if report.bumpers & 1 << bit)
-        battery_v = report.battery_mv / _MILLI
-        check_battery(self.name, battery_v)
         return DriveReadout(
             time_ns=self._host_ns(report.board_us),
-            battery_v=battery_v,
+            battery_v=battery_v(self.name, report.battery_mv / _MILLI),
             bumpers_rad=tuple(wrap_rad(bit * _BUMPER_STEP_RAD) for bit in pressed),
         )

@@ -51,10 +51,15 @@ def check_way(device: str, way_m: float, turn_rad: float, elapsed_s: float) -> N
         raise implausible(device, f"it moved {way_m:g} m and turned {turn_rad:g} rad in {elapsed_s:.3f} s")
 
 
-def check_battery(device: str, volts: float) -> None:
-    """Raise DeviceError if no battery of a robot has such a voltage."""
+def battery_v(device: str, volts: float) -> float | None:
+    """Return what a base says of its battery; None if it has not measured it yet, which all say as zero.
+
+    Raises:
+        DeviceError: no battery of a robot has such a voltage.
+    """
     if not 0.0 <= volts <= BATTERY_MAX_V:
         raise implausible(device, f"its battery is at {volts:g} V")
+    return volts or None
 
 
 def check_readback(device: str, readback: AimReadback, pan_rad: float, tilt_rad: float) -> None:

@@ -14,8 +14,8 @@ class DriveReadout:
 
     time_ns: int
     """When it was measured, or when a device without a clock said so; clock of this host."""
-    battery_v: float
-    """0.0 while it is not known: a base may tell of its bumpers first."""
+    battery_v: float | None
+    """None while it is not known: a base may tell of its bumpers first."""
     bumpers_rad: tuple[float, ...]
     """Directions of the pressed bumpers in the robot frame."""
 
@@ -29,7 +29,7 @@ class Drive(Device, Protocol):
 
     @property
     def readouts(self) -> Broadcast[DriveReadout]:
-        """Battery and bumpers, periodic and on change."""
+        """Battery and bumpers, periodic and on change; the latest is forgotten with the line."""
 
     @property
     def is_driven(self) -> bool:

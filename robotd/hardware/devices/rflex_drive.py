@@ -20,7 +20,7 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.core.silence import within
-from robotd.hardware.devices.credible import IMPLAUSIBLE, check_battery, check_twist, implausible
+from robotd.hardware.devices.credible import IMPLAUSIBLE, battery_v, check_twist, implausible
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
 from robotd.hardware.devices.settings import DriveSettings, ReportOptions
@@ -134,6 +134,11 @@ class RflexDrive(VendorDevice[Message]):
         self._new_set_point.set()
         super().stop_now()
 
+    def line_lost(self, reason: str) -> None:
+        """Note that there is no base, and why."""
+        self._readouts.forget()
+        super().line_lost(reason)
+
     async def _greet(self, dialogue: Dialogue[Message]) -> None:
         log.warning("%s: %s", self.NAME, NO_WATCHDOG)
         period_us = self._settings.telemetry_ms * _US_PER_MS
@@ -200,9 +205,8 @@ class RflexDrive(VendorDevice[Message]):
                 STATUS, is_a(SystemStatus), timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True
             )
             if isinstance(heard.message, SystemStatus):
-                volts = heard.message.centivolts / _CENTIVOLTS_PER_V
                 with contextlib.suppress(DeviceError), self._judging():
-                    check_battery(self.NAME, volts)
+                    volts = battery_v(self.NAME, heard.message.centivolts / _CENTIVOLTS_PER_V)
                     self._readouts.publish(DriveReadout(heard.time_ns, volts, ()))
             await asyncio.sleep(_STATUS_EVERY_S)
 

@@ -13,7 +13,7 @@ from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import DeviceError
 from robotd.core.pose import Odometry, Twist2
-from robotd.hardware.devices.credible import IMPLAUSIBLE, check_battery
+from robotd.hardware.devices.credible import IMPLAUSIBLE, battery_v
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
 from robotd.hardware.devices.settings import DriveSettings
@@ -96,6 +96,12 @@ class RwiDrive(VendorDevice[Message]):
         """Put the preformatted stop on the wire; see :meth:`VendorDevice.stop_now`."""
         self._directions = {"T": 0, "R": 0}
         super().stop_now()
+
+    def line_lost(self, reason: str) -> None:
+        """Note that there is no base, and why."""
+        self._readouts.forget()
+        self._bumpers_rad = ()
+        super().line_lost(reason)
 
     def _axis(self, axis: str, counts_per_s: float) -> list[bytes]:
         """Return the orders that give an axis a signed speed."""
@@ -192,14 +198,13 @@ class RwiDrive(VendorDevice[Message]):
         # Panel 0 begins straight ahead. Which way round they follow is not documented; the base counts clockwise.
         self._bumpers_rad = tuple(wrap_rad(-(panel + 0.5) * math.tau / _PANELS) for panel in panels)
         latest = self._readouts.latest
-        self._readouts.publish(DriveReadout(time_ns, latest.battery_v if latest else 0.0, self._bumpers_rad))
+        self._readouts.publish(DriveReadout(time_ns, latest.battery_v if latest else None, self._bumpers_rad))
         if switches != BUMPERS_NONE:
             self._latch("bumper", "the base was bumped")
 
     def _read_out(self, battery: Heard[Answer]) -> None:
-        volts = battery.message.value / _TENTHS_PER_V
         with contextlib.suppress(DeviceError), self._judging():
-            check_battery(self.NAME, volts)
+            volts = battery_v(self.NAME, battery.message.value / _TENTHS_PER_V)
             self._readouts.publish(DriveReadout(battery.time_ns, volts, self._bumpers_rad))
 
     async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:

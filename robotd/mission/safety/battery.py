@@ -6,14 +6,12 @@ from robotd.mission.robot import Robot
 
 
 def low_battery(drive: Drive, least_v: float) -> str | None:
-    """Say so if the base's battery is below ``least_v`` [V], None if it is not, or not known.
-
-    A base that has not measured its battery yet says zero.
-    """
+    """Say so if the base's battery is below ``least_v`` [V], None if it is not, or not known."""
     readout = drive.readouts.latest
-    if readout is None or drive.status.link is not LinkState.READY or not 0.0 < readout.battery_v < least_v:
+    volts = None if readout is None or drive.status.link is not LinkState.READY else readout.battery_v
+    if volts is None or volts >= least_v:
         return None
-    return f"{drive.name}: the battery is at {readout.battery_v:.1f} V, below {least_v:g} V"
+    return f"{drive.name}: the battery is at {volts:.1f} V, below {least_v:g} V"
 
 
 def faults_of(robot: Robot, battery_min_v: float) -> tuple[str, ...]:

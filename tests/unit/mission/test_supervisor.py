@@ -358,7 +358,7 @@ async def test_a_base_that_comes_back_stops_what_went_on_without_it() -> None:
 
 async def test_a_low_battery_stops_the_robot_until_it_is_cleared_and_cannot_be_cleared_while_it_is_low() -> None:
     async with rig(battery_min_v=22.0) as r:
-        r.drive.readouts.publish(DriveReadout(now_ns(), 0.0, ()))  # a base that has not measured it yet
+        r.drive.readouts.publish(DriveReadout(now_ns(), None, ()))  # a base that has not measured it yet
         r.drive.readouts.publish(DriveReadout(now_ns(), 22.0, ()))
         await turns()
         assert r.mode is Mode.IDLE

@@ -62,8 +62,9 @@ def test_no_head_has_such_limits(limits: tuple[float, float, float, float]) -> N
 @pytest.mark.parametrize("volts", [-0.1, 151.0, 429_496_729.5, math.nan])
 def test_no_battery_has_such_a_voltage(volts: float) -> None:
     with refused:
-        credible.check_battery("drive", volts)
-    credible.check_battery("drive", 48.0)
+        credible.battery_v("drive", volts)
+    assert credible.battery_v("drive", 48.0) == 48.0
+    assert credible.battery_v("drive", 0.0) is None
 
 
 def test_a_time_lies_neither_ahead_of_when_it_was_heard_nor_minutes_behind() -> None:

@@ -181,6 +181,17 @@ async def test_bump_switches_are_a_fault_and_say_where() -> None:
         assert readout.bumpers_rad == pytest.approx((-1.178,), abs=0.001)
 
 
+async def test_a_bump_before_the_first_voltage_tells_no_voltage() -> None:
+    async with base() as b:
+        await asyncio.sleep(0.5)
+        b.device.readouts.forget()  # as at its beginning; it is asked for the voltage every half minute
+        b.emulator._say("%BS FFFB")
+        await asyncio.sleep(0.2)
+        readout = b.device.readouts.latest
+        assert readout is not None
+        assert (readout.battery_v, len(readout.bumpers_rad)) == (None, 1)
+
+
 @pytest.mark.parametrize(("event", "fault"), [("%BLO", "battery"), ("%TERR 1", "servo"), ("%RC 2", "current")])
 async def test_what_the_base_complains_of_is_a_fault(event: str, fault: str) -> None:
     async with base() as b:
