@@ -52,5 +52,6 @@ class Explanation:
         if the_map.spec.contains(*cell):
             explained[measured] = explained_at(the_map.prepared, readings, cell, pose.heading_rad)
         at = np.array([[pose.x_m, pose.y_m, pose.heading_rad]])
-        expected_m[measured] = expected_ranges(the_map.walls, readings, at, the_map.settings.blocked_by).ranges_m[0]
+        as_drawn = the_map.meanings[0].walls
+        expected_m[measured] = expected_ranges(as_drawn, readings, at, the_map.settings.blocked_by).ranges_m[0]
         return cls(pose, explained, expected_m, heads_m)

@@ -12,6 +12,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
+from robotd.grid.wall_field import WallField
 from robotd.localization.count.explained import explained_at
 from robotd.localization.fit.refinement import PoseBox, RefinedPoses, refine
 from robotd.localization.fit.refinement_settings import RefinementSettings
@@ -30,6 +31,8 @@ class Situation:
     """What regions are described by: the map, the headings that were tried, and the readings."""
 
     the_map: ReadyMap
+    walls: WallField
+    """What the map means that the readings say it does."""
     headings_rad: tuple[float, ...]
     readings: Readings
     refinement: RefinementSettings
@@ -41,7 +44,7 @@ class Situation:
 
     def refined(self, boxes: Sequence[PoseBox]) -> RefinedPoses:
         """Return the pose in each box that fits the readings best."""
-        return refine(self.the_map.walls, self.readings, boxes, self.refinement)
+        return refine(self.walls, self.readings, boxes, self.refinement)
 
 
 def described(regions: Sequence[JudgedRegion], situation: Situation) -> tuple[Region, ...]:

@@ -20,7 +20,8 @@ from robotd.grid.readings import Readings
 from robotd.localization.claim import state_by_belief, state_by_proof
 from robotd.localization.describe import Situation, described
 from robotd.localization.judge.judgement import Judgement
-from robotd.localization.judge.second_look import SecondLook, second_look
+from robotd.localization.judge.likeliest import likeliest_look
+from robotd.localization.judge.second_look import SecondLook
 from robotd.localization.judged_regions import JudgedRegion, judged_regions
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.stop import Stop
@@ -78,10 +79,14 @@ class Localizer:
         # A handful of readings is explained nearly anywhere: saying nothing is better than naming half of the map.
         found = self.stop.best_poses() if len(readings) >= least else PoseSet.nothing()
         poses_m = found.in_metres(self.the_map.spec, self.stop.headings_rad)
-        look = second_look(self.the_map.likelihood, readings, poses_m, found.ranks, self.judgement.second_look)
+        meanings = self.the_map.meanings
+        likelihoods = [meaning.likelihood for meaning in meanings]
+        meant, look = likeliest_look(likelihoods, readings, poses_m, found.ranks, self.judgement.second_look)
         state = self._claimed(found, look)
         connected, left_out = self._connected(found, poses_m, look, state)
-        situation = Situation(self.the_map, self.stop.headings_rad, readings, self.judgement.refinement)
+        situation = Situation(
+            self.the_map, meanings[meant].walls, self.stop.headings_rad, readings, self.judgement.refinement
+        )
         regions = described(connected, situation)
         return PoseEstimate(
             time_ns=time_ns,

@@ -3,11 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from robotd.contract.area import Area
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.tables import NO_INFORMATION
 from robotd.grid.ternary import TernaryMap
-from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
 from robotd.localization.conservative.conservative_poses import ErrorBounds, SureObstacles
 from robotd.localization.conservative.conservative_rank import ConservativeMap
@@ -15,10 +18,10 @@ from robotd.localization.conservative.unexcluded import UnexcludedStop
 from robotd.localization.count.limits import FEW_HEADINGS
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.judge.error_model import ErrorModel
-from robotd.localization.judge.likelihood import Likelihood
+from robotd.localization.meaning import Meaning
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.prepared_map import PreparedMap
-from robotd.localization.obstacles.unknown_cells import UnknownCells
+from robotd.localization.obstacles.wall_cores import WallCores
 from robotd.localization.search.bounded_search import SearchMap
 from robotd.localization.search.cell_disk import CellDisk
 from robotd.localization.settings import LocalizationSettings
@@ -30,16 +33,16 @@ class ReadyMap:
     """What is worked out once for a map; it never changes, so it may be shared by threads."""
 
     ternary: TernaryMap
+    cores: WallCores
+    """How thick its walls are drawn."""
     settings: LocalizationSettings
     """How it was read."""
     prepared: PreparedMap
     """For counting."""
     searched: SearchMap
     """For the search."""
-    walls: WallField
-    """For refinement."""
-    likelihood: Likelihood
-    """For the second look."""
+    meanings: tuple[Meaning, ...]
+    """All that it may mean: what it says and, if its walls are thick, that only their cores stand."""
     sure: ConservativeMap | None
     """For the conservative mode; None if it is not asked for."""
 
@@ -72,38 +75,61 @@ class ReadyMap:
         cls, grid: OccupancyGrid, settings: LocalizationSettings, error_model: ErrorModel | None = None
     ) -> "ReadyMap":
         """Make a map ready. O(cells)."""
-        ternary = TernaryMap.from_grid(grid)
-        unknown, error_radius_cells = settings.unknown, settings.error_radius_cells(ternary.spec.resolution_m)
-        obstacles = Obstacles.of_map(ternary, unknown, error_radius_cells, blocked_by=settings.blocked_by)
+        return cls._of(grid, _cores_of(grid), settings, error_model or ErrorModel())
+
+    @classmethod
+    def _of(
+        cls, grid: OccupancyGrid, cores: WallCores, settings: LocalizationSettings, errors: ErrorModel
+    ) -> "ReadyMap":
+        ternary, before_cores = TernaryMap.from_grid(grid), cores.before_cores()
+        error_radius_cells = settings.error_radius_cells(grid.spec.resolution_m)
+        obstacles = Obstacles.of_map(
+            ternary,
+            settings.unknown,
+            error_radius_cells,
+            blocked_by=settings.blocked_by,
+            before_cores=before_cores,
+        )
         prepared = PreparedMap.of(obstacles, ternary.spec, error_radius_cells)
         searched = SearchMap.of(obstacles, ternary.spec, error_radius_cells)
-        # Heads are laid on cells that ended beams; what merely blocks only stops a beam that is cast.
-        walls = WallField.of(ternary.spec, ternary.occupied, obstacles.blocking)
-        likelihood = Likelihood.of(grid.spec, grid.cells, error_model or ErrorModel())
-        return cls(ternary, settings, prepared, searched, walls, likelihood, _sure(ternary, settings))
+        meanings = tuple(
+            Meaning.of(grid.spec, cells, obstacles.blocking, errors) for cells in cores.readings_of(grid.cells)
+        )
+        return cls(ternary, cores, settings, prepared, searched, meanings, _sure(ternary, settings))
 
     def updated(self, grid: OccupancyGrid, changed: CellWindow) -> "ReadyMap":
         """Return the map of a grid that differs from the one this is of in a window alone.
 
         The same as made from nothing; this one stays as it is. O(cells of the window, and of a rim round it), and a
-        copy of what is kept.
+        copy of what is kept; O(cells) where walls are thick, or are found to be so.
         """
         if changed.is_empty:
             return self
         ternary = self.ternary.updated(grid, changed)
-        prepared = self._prepared(ternary, self.settings.unknown, changed)
-        walls = self.walls.updated(ternary.occupied, prepared.obstacles.blocking, changed)
+        cores = self.cores.updated(ternary.occupied, changed)
+        if cores.depth_cells != self.cores.depth_cells:
+            return self._of(grid, cores, self.settings, self.meanings[0].likelihood.model)
+        changed, before_cores = changed.grown(cores.reach_cells, ternary.spec.shape), cores.before_cores()
+        prepared = self._prepared(ternary, before_cores, changed)
         # A disk reaches whole cells along a row or a column, so rounding its radius down loses none of them.
         radius_cells = int(self.prepared.error_radius_cells)
         searched = self.searched.updated(prepared.obstacles, changed.grown(radius_cells, ternary.spec.shape))
-        likelihood = self.likelihood.updated(grid.cells, changed)
-        sure = _sure(ternary, self.settings)
-        return ReadyMap(ternary, self.settings, prepared, searched, walls, likelihood, sure)
+        meanings = tuple(
+            meaning.updated(cells, prepared.obstacles.blocking, changed)
+            for meaning, cells in zip(self.meanings, cores.readings_of(grid.cells), strict=True)
+        )
+        return ReadyMap(ternary, cores, self.settings, prepared, searched, meanings, _sure(ternary, self.settings))
 
-    def _prepared(self, ternary: TernaryMap, unknown: UnknownCells, changed: CellWindow) -> PreparedMap:
-        radius_cells = self.prepared.error_radius_cells
-        obstacles = self.prepared.obstacles.updated(ternary, unknown, radius_cells, changed)
+    def _prepared(
+        self, ternary: TernaryMap, before_cores: NDArray[np.bool_] | None, changed: CellWindow
+    ) -> PreparedMap:
+        radius_cells, unknown = self.prepared.error_radius_cells, self.settings.unknown
+        obstacles = self.prepared.obstacles.updated(ternary, unknown, radius_cells, changed, before_cores)
         return self.prepared.updated(obstacles, changed.grown(int(radius_cells), ternary.spec.shape))
+
+
+def _cores_of(grid: OccupancyGrid) -> WallCores:
+    return WallCores.of(grid.cells > NO_INFORMATION, grid.spec.resolution_m)
 
 
 def _sure(ternary: TernaryMap, settings: LocalizationSettings) -> ConservativeMap | None:

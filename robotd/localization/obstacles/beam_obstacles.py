@@ -52,13 +52,22 @@ class Obstacles:
 
     @classmethod
     def of_map(
-        cls, ternary: TernaryMap, unknown: UnknownCells, error_radius_cells: float, *, blocked_by: int = 1
+        cls,
+        ternary: TernaryMap,
+        unknown: UnknownCells,
+        error_radius_cells: float,
+        *,
+        blocked_by: int = 1,
+        before_cores: NDArray[np.bool_] | None = None,
     ) -> "Obstacles":
-        """Read a three-valued map; ``OCCUPIED`` with ``blocked_by = 1`` is the paper's."""
+        """Read a three-valued map; ``OCCUPIED`` with ``blocked_by = 1`` is the paper's.
+
+        ``before_cores``, ``bool[rows, cols]``, are cells of thick walls that stop no beam, but may end one.
+        """
         unseen_ends = unknown is UnknownCells.OCCUPIED
         return cls(
             free=ternary.vacant,
-            blocking=_blocking(ternary, unknown),
+            blocking=_blocking(ternary, unknown, before_cores),
             grown=grown_by_disk(_ending(ternary, unknown), error_radius_cells, outside=unseen_ends),
             outside_blocks=unknown is not UnknownCells.FREE,
             outside_ends=unseen_ends,
@@ -66,7 +75,12 @@ class Obstacles:
         )
 
     def updated(
-        self, ternary: TernaryMap, unknown: UnknownCells, error_radius_cells: float, changed: CellWindow
+        self,
+        ternary: TernaryMap,
+        unknown: UnknownCells,
+        error_radius_cells: float,
+        changed: CellWindow,
+        before_cores: NDArray[np.bool_] | None = None,
     ) -> "Obstacles":
         """Read a map that differs from the one these are of in a window alone, in the same way as that one.
 
@@ -75,12 +89,13 @@ class Obstacles:
         grown = grown_by_disk_updated(
             self.grown, _ending(ternary, unknown), changed, error_radius_cells, outside=self.outside_ends
         )
-        return replace(self, free=ternary.vacant, blocking=_blocking(ternary, unknown), grown=grown)
+        return replace(self, free=ternary.vacant, blocking=_blocking(ternary, unknown, before_cores), grown=grown)
 
 
-def _blocking(ternary: TernaryMap, unknown: UnknownCells) -> NDArray[np.bool_]:
+def _blocking(ternary: TernaryMap, unknown: UnknownCells, before_cores: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
     # What lies in the unknown stops a beam even where it cannot end one: nobody saw through it.
-    return ternary.occupied if unknown is UnknownCells.FREE else ~ternary.vacant
+    blocking = ternary.occupied if unknown is UnknownCells.FREE else ~ternary.vacant
+    return blocking if before_cores is None else blocking & ~before_cores
 
 
 def _ending(ternary: TernaryMap, unknown: UnknownCells) -> NDArray[np.bool_]:

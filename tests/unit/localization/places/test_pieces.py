@@ -91,7 +91,9 @@ def regions_of(ranks: RankGrid, least_rank: int, most: int = 99) -> tuple[Region
     poses = ranks.cells_of_rank(least_rank)
     found = PoseSet(poses, ranks.rank_at(poses), ranks.best_rank, least_rank)
     pieces = pieces_of(found, ranks.headings_rad, most)
-    situation = Situation(ready_rooms(), ranks.headings_rad, Readings.none(), RefinementSettings())
+    rooms = ready_rooms()
+    walls = rooms.meanings[0].walls
+    situation = Situation(rooms, walls, ranks.headings_rad, Readings.none(), RefinementSettings())
     return described([JudgedRegion(piece) for piece in pieces.best], situation)
 
 

@@ -11,6 +11,7 @@ from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
 from robotd.localization.judge.error_model import ErrorModel
+from robotd.localization.meaning import Meaning
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.whereabouts import readiness
@@ -45,9 +46,14 @@ def arrays(ready: ReadyMap) -> list[Any]:
     return [
         *(planes.cells, planes.pooled, planes.near, planes.ground.free, planes.ground.blocking, planes.ground.grown),
         *(packed.free, packed.blocking, packed.grown, packed.tiles),
-        *(ready.likelihood.chances.cells, ready.likelihood.chances.skips, ready.likelihood.vacant_m2),
-        *(ready.walls.codes, ready.walls.skips, ready.ternary.occupied, ready.ternary.vacant),
+        *(value for one in ready.meanings for value in meant(one)),
+        *(ready.ternary.occupied, ready.ternary.vacant),
     ]
+
+
+def meant(meaning: Meaning) -> list[Any]:
+    chances = meaning.likelihood.chances
+    return [chances.cells, chances.skips, meaning.likelihood.vacant_m2, meaning.walls.codes, meaning.walls.skips]
 
 
 @pytest.fixture
