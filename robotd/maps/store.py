@@ -95,6 +95,68 @@ class MapStore:
         self._loaded = (name, loaded.entry.version)
         return loaded
 
+    def copy(self, name: str, new_name: str, version: int | None = None) -> MapEntry:
+        """Store a version once more under another name, as that map's next version; every byte is checked before.
+
+        Raises:
+            MapError: there is no such version, it is damaged, or the new name may not be one.
+        """
+        stored = self.load(name, version)
+        entry = stored.entry
+        return self.save(new_name, stored.grid, entry.metadata, entry.created_unix_ns, stored.stops)
+
+    def rename(self, name: str, new_name: str) -> tuple[MapEntry, ...]:
+        """Give a map another name: all of its versions, which are numbered from 1 again.
+
+        The old ones go when all new ones are there: whenever the power goes, every version is under one of the names.
+
+        Raises:
+            MapError: there is no such map, a version is damaged, the new name is taken or may not be one.
+        """
+        check_name(name)
+        check_name(new_name)
+        with _disk_errors(f"cannot rename map {name}"):
+            old = self._all_versions(name)
+            # One writer from the first look to the last: what was saved in between would go with the old name.
+            with sole_writer(self._root):
+                check_new_name(new_name, self._names())
+                if self._versions(new_name):
+                    raise MapError(f"there is a map {new_name!r} already: delete it first, or take another name")
+                for version in old:  # all are looked at before the first is written: half a map helps nobody
+                    self._load_version(name, version)
+                make_directory(self._root / new_name)
+                renamed = tuple(self._published(self._under(new_name, name, version)) for version in old)
+                self._withdraw(name, old)
+        return renamed
+
+    def _under(self, new_name: str, name: str, version: int) -> NewVersion:
+        stored = self._load_version(name, version)
+        entry = stored.entry
+        return NewVersion.of(new_name, stored.grid, stored.stops, entry.metadata, entry.created_unix_ns)
+
+    def delete(self, name: str, version: int | None = None) -> tuple[int, ...]:
+        """Remove a version of a map, or all of it, and return what went; a damaged one goes like any other.
+
+        Raises:
+            MapError: there is no such version, another writer would not end, or the disk refused.
+        """
+        check_name(name)
+        with _disk_errors(f"cannot delete map {name}"):
+            present = self._all_versions(name)
+            if version is not None and version not in present:
+                raise MapError(f"map {name} has no version {version}; it has {', '.join(map(str, present))}")
+            gone = present if version is None else (version,)
+            with sole_writer(self._root):
+                self._withdraw(name, gone)
+        return gone
+
+    def _withdraw(self, name: str, versions: tuple[int, ...]) -> None:
+        for version in versions:
+            withdraw_directory(self._root / name / str(version), self._leftover(name, version))
+        # What else lies beside the versions is not ours: then the directory stays, and is no map any more.
+        with contextlib.suppress(OSError):
+            (self._root / name).rmdir()
+
     def list(self) -> tuple[MapEntry, ...]:
         """Return every version of every map by its manifest, oldest first; the files are not checked.
 
@@ -123,6 +185,13 @@ class MapStore:
         kept = self._kept_like(new)
         if kept is not None:
             return self._marked(kept, new)
+        entry = self._published(new)
+        self._prune(name)
+        return entry
+
+    def _published(self, new: NewVersion) -> MapEntry:
+        """Write a version in the place after the last."""
+        name = new.name
         version = next_version(self._root / name)
         files, manifest = new.files(version)
         path = self._root / name / str(version)
@@ -134,13 +203,10 @@ class MapStore:
         # A disk that folds capitals, or the like, would have it under another name: then nothing is dropped for it.
         if version not in self._versions(name):
             raise MapError(f"map {name} was written, and {path} is not there: this file system keeps other names")
-        self._prune(name)
         return MapEntry.of(manifest, path)
 
     def _load_version(self, name: str, version: int | None) -> StoredMap:
-        versions = self._versions(name)
-        if not versions:
-            raise MapError(f"there is no map {name!r}; there is {', '.join(self._names()) or 'none at all'}")
+        versions = self._all_versions(name)
         # A map of two stops of five, kept by itself, must not take the place of one that somebody saved (decision 25).
         wanted = self._newest(name, versions) if version is None else version
         if wanted not in versions:
@@ -204,6 +270,13 @@ class MapStore:
             return bool(self._versions(name))
         except OSError:
             return True  # for all we know
+
+    def _all_versions(self, name: str) -> tuple[int, ...]:
+        """Return the versions of a map that must be there."""
+        versions = self._versions(name)
+        if not versions:
+            raise MapError(f"there is no map {name!r}; there is {', '.join(self._names()) or 'none at all'}")
+        return versions
 
     def _versions(self, name: str) -> tuple[int, ...]:
         return versions(self._root / name)

@@ -6,15 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robotd import config
 from robotd.cli.outputs import Kind, OutputPath, check, output_argument, write
 from robotd.cli.quantities import number, positive, whole
 from robotd.cli.show.terminal import complain, out, print_json
 from robotd.cli.verb import OK, Verb
-from robotd.core.errors import ConfigError, MapError, RobotdError
+from robotd.cli.verbs.map_store import store_arguments, store_of
+from robotd.core.errors import MapError, RobotdError
 from robotd.maps.entry import MapEntry
 from robotd.maps.manifest import is_name
-from robotd.maps.store import MapStore
 
 if TYPE_CHECKING:
     from robotd.interop.map_server import ImportedMap
@@ -27,7 +26,7 @@ _YAML = Kind("the yaml of a map", lambda head: head.startswith(b"image: "))
 
 def _import(arguments: argparse.Namespace) -> int:
     file: Path = arguments.file
-    store = _store(arguments)
+    store = store_of(arguments)
     if arguments.resolution is None and file.suffix.lower() not in {".yaml", ".yml"}:
         raise MapError(f"{file}: a picture says nothing of its size: give the yaml beside it, or --resolution")
     read_map, _ = _interop()
@@ -48,7 +47,7 @@ def _name_of(file: Path) -> str:
 
 def _export(arguments: argparse.Namespace) -> int:
     _, export_map = _interop()
-    stored = _store(arguments).load(arguments.name, arguments.version)
+    stored = store_of(arguments).load(arguments.name, arguments.version)
     entry = stored.entry
     files = export_map(stored.grid, entry.name, arguments.mode)
     directory: OutputPath = arguments.directory
@@ -72,19 +71,6 @@ def _tell(arguments: argparse.Namespace, what: str, entry: MapEntry, place: str,
     out().print(f"{what} {entry.name} version {entry.version}: {size}; {place}", markup=False)
 
 
-def _store(arguments: argparse.Namespace) -> MapStore:
-    if arguments.maps is not None:
-        return MapStore(arguments.maps)
-    file = arguments.config or config.default_path()
-    try:
-        tree = config.load(file)
-    except ConfigError:
-        if arguments.config is not None or file.exists():
-            raise
-        tree = config.Config()  # nothing was configured here, so a daemon would keep its maps where the default says
-    return MapStore(Path(tree.maps.dir), tree.grid, keep=tree.maps.keep)
-
-
 def _interop() -> tuple[Callable[..., "ImportedMap"], Callable[..., dict[str, bytes]]]:
     """Return ``read_map`` and ``export_map``, which need an extra."""
     try:
@@ -96,11 +82,6 @@ def _interop() -> tuple[Callable[..., "ImportedMap"], Callable[..., dict[str, by
             " pip install 'robotd[interop]', or pip install -e '.[interop]' in a clone"
         ) from error
     return read_map, export_map
-
-
-def _store_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--config", type=Path, metavar="FILE", help="a configuration of the daemon: where maps are")
-    parser.add_argument("--maps", type=Path, metavar="DIR", help="where maps are, whatever the configuration says")
 
 
 def _import_arguments(parser: argparse.ArgumentParser) -> None:
@@ -115,7 +96,7 @@ def _import_arguments(parser: argparse.ArgumentParser) -> None:
         metavar=("X", "Y"),
         help="of a picture alone: its lower-left corner on the map [m] (default: 0 0)",
     )
-    _store_arguments(parser)
+    store_arguments(parser)
 
 
 def _export_arguments(parser: argparse.ArgumentParser) -> None:
@@ -128,7 +109,7 @@ def _export_arguments(parser: argparse.ArgumentParser) -> None:
         default="trinary",
         help="trinary: three greys, which every program reads; scale: all 256 values; raw: 0 to 100 (default: trinary)",
     )
-    _store_arguments(parser)
+    store_arguments(parser)
 
 
 VERBS = (

@@ -19,7 +19,7 @@ from robotd.cli.quantities import heading_of_deg, number, whole
 from robotd.cli.show.half_blocks import can_draw_blocks, coloured, plain, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import OK, Verb
-from robotd.cli.verbs import map_files
+from robotd.cli.verbs import map_files, map_store
 from robotd.contract.answers import MapEntryInfo
 from robotd.contract.arguments import MapName
 from robotd.contract.events import MapChanged
@@ -225,4 +225,5 @@ VERBS = (
         asks_daemon=True,
     ),
     *map_files.VERBS,
+    *map_store.VERBS,
 )
