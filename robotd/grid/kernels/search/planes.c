@@ -13,6 +13,7 @@
 typedef struct {
     const search_map *map;
     int32_t words;                     /* of a row, margins included */
+    int32_t first, last;               /* the words that a change can reach; `seen` has one more, to widen from */
     uint64_t *blocking, *grown, *seen; /* [rows + 2 * MARGIN][words] */
 } bitmaps;
 
@@ -57,16 +58,16 @@ static uint64_t packed(const uint8_t *row, int32_t first, int32_t cols, uint64_t
     return word | outside << (cols - first);
 }
 
-static void pack_row(const search_map *map, const uint8_t *cells, int32_t row, int32_t outside, uint64_t *words)
+/* Words of a row from a first to before a last, of which the margins are outside. */
+static void pack_row(const search_map *map, const uint8_t *cells, int32_t row, int32_t outside, int32_t first,
+                     int32_t last, uint64_t *words)
 {
     const uint64_t beyond = outside ? ~(uint64_t)0 : 0;
-    const int32_t count = row_words(map);
-    for (int32_t w = 0; w < count; w++)
-        words[w] = beyond;
-    if (row < 0 || row >= map->rows)
-        return;
-    for (int32_t w = 1; w + 1 < count; w++)
-        words[w] = packed(cells + (size_t)row * (size_t)map->cols, 64 * (w - 1), map->cols, beyond);
+    const int is_inside = row >= 0 && row < map->rows;
+    for (int32_t w = first; w < last; w++)
+        words[w] = is_inside && w > 0 && w + 1 < row_words(map)
+                       ? packed(cells + (size_t)row * (size_t)map->cols, 64 * (w - 1), map->cols, beyond)
+                       : beyond;
 }
 
 /* Rows of 16 cells into the columns of a plane. */
@@ -76,7 +77,7 @@ static void fill_cells(const search_map *map, int32_t which, const uint8_t *cell
     uint16_t *plane = cell_plane(map, which);
     const int32_t stride = strip_size(map);
     for (int32_t row = first; row < last; row++) {
-        pack_row(map, cells, row, outside, row_bits);
+        pack_row(map, cells, row, outside, 0, row_words(map), row_bits);
         for (int32_t w = -2; w < strips(map) + 2; w++)
             plane[(size_t)(w + 2) * (size_t)stride + (size_t)(row + WINDOW)] =
                 (uint16_t)(row_bits[(w >> 2) + 1] >> (16 * (w & 3)));
@@ -107,37 +108,38 @@ static void offsets_of(const search_map *map, int32_t key, offsets *of)
 /* seen = grown & ~(every cell where a body of this key may have ended is blocking). */
 static void look_back(const bitmaps *maps, const offsets *of, int32_t row)
 {
-    const int32_t words = maps->words;
+    const int32_t words = maps->words, first = maps->first, last = clamp(maps->last + 1, 0, words);
     const uint64_t beyond = maps->map->outside_blocks ? ~(uint64_t)0 : 0;
     uint64_t *seen = bitmap_row(maps, maps->seen, row);
     const uint64_t *grown = bitmap_row(maps, maps->grown, row);
-    memset(seen, of->count ? 0xff : 0, (size_t)words * sizeof *seen);
+    memset(seen + first, of->count ? 0xff : 0, (size_t)(last - first) * sizeof *seen);
     for (int32_t i = 0; i < of->count; i++) {
         const uint64_t *from = bitmap_row(maps, maps->blocking, row + of->at[i][0]);
         const int32_t c = of->at[i][1];
-        for (int32_t w = 0; w < words; w++) {
+        for (int32_t w = first; w < last; w++) {
             const uint64_t left = w > 0 ? from[w - 1] : beyond, right = w + 1 < words ? from[w + 1] : beyond;
             seen[w] &= c == 0 ? from[w] : c > 0 ? from[w] >> c | right << (64 - c) : from[w] << -c | left >> (64 + c);
         }
     }
-    for (int32_t w = 0; w < words; w++)
+    for (int32_t w = first; w < last; w++)
         seen[w] = grown[w] & ~seen[w];
 }
 
 /* Every cell becomes the OR of the 2 step x 2 step cells from it on, where it was that of step x step. */
 static void widen(const bitmaps *maps, int32_t first, int32_t last, int32_t step, uint64_t outside)
 {
-    const int32_t words = maps->words;
+    const int32_t end = clamp(maps->last, 0, maps->words - 1);
     for (int32_t row = first; row < last; row++) {
         uint64_t *seen = bitmap_row(maps, maps->seen, row);
-        for (int32_t w = 0; w + 1 < words; w++)
+        for (int32_t w = maps->first; w < end; w++)
             seen[w] |= seen[w] >> step | seen[w + 1] << (64 - step);
-        seen[words - 1] |= seen[words - 1] >> step | outside << (64 - step);
+        /* Of a word that is not the last of its row the end is wrong now: it is the one more, and nobody deals it. */
+        seen[end] |= seen[end] >> step | outside << (64 - step);
     }
     for (int32_t row = first; row + step < last; row++) {
         uint64_t *seen = bitmap_row(maps, maps->seen, row);
         const uint64_t *below = bitmap_row(maps, maps->seen, row + step);
-        for (int32_t w = 0; w < words; w++)
+        for (int32_t w = maps->first; w <= end; w++)
             seen[w] |= below[w];
     }
 }
@@ -172,7 +174,7 @@ static void deal_row(const bitmaps *maps, int32_t pool, int32_t key, int32_t row
     const size_t size = phase_size(map, pool);
     const uint64_t *seen = bitmap_row(maps, maps->seen, row), ones = (UINT64_C(1) << each) - 1;
     uint64_t *phase = pooled_phase(map, pool, key, row - block * pool, 0) + 2 * (ptrdiff_t)stride + (block + ABOVE);
-    for (int32_t w = 0; w < maps->words; w++) {
+    for (int32_t w = maps->first; w < maps->last; w++) {
         const int32_t first = (w - 1) * each; /* the first block of this word */
         if (first >= up(map->cols, pool) + up(BEYOND, pool))
             break;
@@ -197,10 +199,11 @@ static void fill_pooled(const bitmaps *maps, int32_t first, int32_t last)
     const int32_t low = -2 * WINDOW, high = (up(map->rows, WINDOW) + 1) * WINDOW;
     first = clamp(first - RING - WINDOW, low, high);
     last = clamp(last + RING, low, high);
-    const int32_t deepest = last + WINDOW;
+    const int32_t deepest = last + WINDOW, words = maps->words;
+    const int32_t left = clamp(maps->first - 1, 0, words), right = clamp(maps->last + 2, 0, words);
     for (int32_t row = first - RING; row < deepest + RING; row++) {
-        pack_row(map, map->blocking, row, map->outside_blocks, bitmap_row(maps, maps->blocking, row));
-        pack_row(map, map->grown, row, map->outside_ends, bitmap_row(maps, maps->grown, row));
+        pack_row(map, map->blocking, row, map->outside_blocks, left, right, bitmap_row(maps, maps->blocking, row));
+        pack_row(map, map->grown, row, map->outside_ends, left, right, bitmap_row(maps, maps->grown, row));
     }
     for (int32_t key = 0; key < map->keys; key++) {
         const uint64_t outside = far_heads(map, key) ? ~(uint64_t)0 : 0;
@@ -281,7 +284,14 @@ void search_prepare(const search_map *map, int32_t row_first, int32_t row_last, 
 {
     const int32_t box[4] = {row_first, row_last, col_first, col_last};
     const size_t size = (size_t)bitmap_size(map);
-    const bitmaps maps = {map, row_words(map), scratch, scratch + size, scratch + 2 * size};
+    const int32_t words = row_words(map);
+    const bitmaps maps = {map,
+                          words,
+                          clamp(floor_div(col_first - RING - WINDOW, 64) + 1, 0, words),
+                          clamp(floor_div(col_last + RING, 64) + 2, 0, words),
+                          scratch,
+                          scratch + size,
+                          scratch + 2 * size};
     if (row_first == 0 && row_last == map->rows && col_first == 0 && col_last == map->cols)
         fill_outside(map);
     fill_cells(map, FREE, map->free, 0, row_first, row_last, scratch);
