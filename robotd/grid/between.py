@@ -30,28 +30,25 @@ def between(readings: Readings, resolution_m: float) -> Readings:
         readings: in any order.
         resolution_m: side of a cell; beams are filled in until two lie in each cell where they end.
     """
-    one = readings[np.argsort(readings.bearing_rad, kind="stable")].rows
-    other = np.roll(one, -1, axis=0)
+    order = np.argsort(readings.bearing_rad, kind="stable")
+    one = readings.rows[order]
+    other = np.concatenate((one[1:], one[:1]))
     apart_rad = np.mod(other[:, 0] - one[:, 0], 2 * math.pi)
     # Nearer than where they are a cell apart, the beams themselves have crossed every cell between them.
     begin_m = resolution_m / np.maximum(apart_rad, 1e-9)
     end_m = np.minimum(one[:, 1], other[:, 1]) - MARGIN_CELLS * resolution_m
-    together = (apart_rad > 0.0) & (apart_rad <= APART_MAX_RAD) & (end_m > begin_m)
-    one, other, apart_rad, begin_m, end_m = (
-        column[together] for column in (one, other, apart_rad, _FULL * begin_m, end_m)
-    )
-    parts = np.ceil(_BEAMS_PER_CELL * apart_rad * end_m / resolution_m).astype(int)  # 3 or more: they are cells apart
-    pair = np.repeat(np.arange(len(one)), parts - 1)
-    if not len(pair):
-        return Readings.none()
-    first = np.concatenate(([0], np.cumsum(parts - 1)[:-1]))
-    share = (np.arange(len(pair)) - first[pair] + 1) / parts[pair]
-    bearing_rad, begin_m = one[pair, 0] + share * apart_rad[pair], begin_m[pair]
-    filled = np.empty((len(pair), 5))
+    pair = np.flatnonzero((apart_rad > 0.0) & (apart_rad <= APART_MAX_RAD) & (end_m > begin_m))
+    parts = np.ceil(_BEAMS_PER_CELL * apart_rad[pair] * end_m[pair] / resolution_m)  # 3 or more: they are cells apart
+    added = parts.astype(int) - 1
+    pair, parts, first = (np.repeat(column, added) for column in (pair, parts, np.cumsum(added) - added))
+    share = (np.arange(1, len(pair) + 1) - first) / parts
+    begin_m, bearing_rad = _FULL * begin_m.take(pair), one[:, 0].take(pair) + share * apart_rad.take(pair)
+    # `take` of whole rows is four times as fast as an index of some columns.
+    nearer = one.take(pair, axis=0)
+    filled = nearer + share[:, None] * (other.take(pair, axis=0) - nearer)
     filled[:, 0] = bearing_rad
-    filled[:, 1] = end_m[pair] - begin_m
-    start_m = one[pair, 2:4] + share[:, None] * (other[pair, 2:4] - one[pair, 2:4])
-    filled[:, 2] = start_m[:, 0] + begin_m * np.cos(bearing_rad)
-    filled[:, 3] = start_m[:, 1] + begin_m * np.sin(bearing_rad)
+    filled[:, 1] = end_m.take(pair) - begin_m
+    filled[:, 2] += begin_m * np.cos(bearing_rad)
+    filled[:, 3] += begin_m * np.sin(bearing_rad)
     filled[:, 4] = 1.0
     return Readings(filled)

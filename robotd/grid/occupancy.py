@@ -14,8 +14,6 @@ from robotd.grid.readings import Readings
 from robotd.grid.settings import BetweenBeams, GridSettings, OverRange, UpdatePolicy
 from robotd.grid.tables import NO_INFORMATION, lower_table, raise_table
 
-_AS_IT_IS = np.arange(256, dtype=np.uint8)
-
 
 class OccupancyGrid:
     """8-bit cells, 0 surely vacant to 255 surely occupied, and the two tables that change them."""
@@ -36,9 +34,6 @@ class OccupancyGrid:
         )
         self._raise = raise_table(self.settings.raise_alpha)
         self._lower = lower_table(self.settings.lower_alpha)
-        self._presume = np.arange(256, dtype=np.uint8)
-        """What becomes of a cell between two beams: something where nothing was known, else nothing."""
-        self._presume[NO_INFORMATION] = self._lower[NO_INFORMATION]
 
     def insert(self, sweep: Sweep, map_from_robot: Pose2) -> NDArray[np.intp]:
         """Update the cells by the readings of a stop; what lies outside the grid is ignored.
@@ -59,14 +54,16 @@ class OccupancyGrid:
 
     def _insert(self, readings: Readings, map_from_robot: Pose2) -> NDArray[np.intp]:
         tables, at_once = (self._lower, self._raise), self.settings.policy is UpdatePolicy.PER_SWEEP
-        insert_sweep = kernels.in_use().insert.insert_sweep
-        changed = insert_sweep(self.cells, readings.rows, map_from_robot, self.spec, tables, at_once=at_once)
-        if self.settings.between_beams is BetweenBeams.UNSEEN:
-            return changed
-        tables, filled = (self._presume, _AS_IT_IS), between(readings, self.spec.resolution_m)
-        presumed = insert_sweep(self.cells, filled.rows, map_from_robot, self.spec, tables, at_once=True)
-        # No cell is in both: what a beam crossed is no longer unseen. Two runs in order are what this sort is best at.
-        return np.sort(np.concatenate((changed, presumed)), kind="stable")
+        is_filled = self.settings.between_beams is not BetweenBeams.UNSEEN
+        return kernels.in_use().insert.insert_sweep(
+            self.cells,
+            readings.rows,
+            map_from_robot,
+            self.spec,
+            tables,
+            at_once=at_once,
+            between=between(readings, self.spec.resolution_m).rows if is_filled else None,
+        )
 
     def digest(self) -> str:
         """Return the SHA-256 of placement and cells, in hexadecimal: equal exactly if the maps are."""

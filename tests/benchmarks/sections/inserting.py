@@ -7,7 +7,7 @@ from robotd.grid import kernels
 from robotd.grid.kernels.twins import TWINS
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
-from robotd.grid.settings import GridSettings, UpdatePolicy
+from robotd.grid.settings import BetweenBeams, GridSettings, UpdatePolicy
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
 
@@ -30,3 +30,5 @@ def timings() -> Iterator[Timing]:
         yield timed(
             f"{title}: insert(), again and again", partial(grid.insert, sweep, workload.TRUTH), 200, goal_ms=0.1
         )
+        paper = OccupancyGrid(workload.SPEC, settings=GridSettings(policy=policy, between_beams=BetweenBeams.UNSEEN))
+        yield timed(f"{title}: insert(), nothing between beams", partial(paper.insert, sweep, workload.TRUTH), 200)

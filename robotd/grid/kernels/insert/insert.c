@@ -96,10 +96,23 @@ static void draw(const insert_job *job, int32_t i)
     job->hits[i] = ends_inside && !(r[4] > 0.0) ? (int64_t)end_row * job->cols + (int64_t)end_col : -1;
 }
 
+/* Lower the cells that no beam has met, of those that a beam runs through. */
+static void presume(const insert_job *job, const beam *b)
+{
+    uint32_t cells[RUN];
+    const uint8_t lowered = job->lower[job->unseen];
+    for (int64_t k = b->first; k < b->last; k += RUN) {
+        const int32_t count = b->last - k < RUN ? (int32_t)(b->last - k) : RUN;
+        find_cells(b, k, count, job->cols, cells);
+        for (int32_t i = 0; i < count; i++)
+            job->cells[cells[i]] = job->cells[cells[i]] == job->unseen ? lowered : job->cells[cells[i]];
+    }
+}
+
 /* Every beam after the other: the last one through a cell has the last word. */
 static void one_by_one(const insert_job *job, const beam *beams)
 {
-    for (int32_t i = 0; i < job->count; i++) {
+    for (int32_t i = 0; i < job->measured; i++) {
         uint8_t *hit = job->hits[i] >= 0 ? job->cells + job->hits[i] : NULL;
         const uint8_t raised = hit ? job->higher[*hit] : 0; /* whether the beam runs through its own end or not */
         run_through(&beams[i], job->cols, job->lower, job->cells, job->cells);
@@ -111,9 +124,9 @@ static void one_by_one(const insert_job *job, const beam *beams)
 /* Each cell once, from the value it had before; a hit beats all misses. */
 static void at_once(const insert_job *job, const beam *beams)
 {
-    for (int32_t i = 0; i < job->count; i++)
+    for (int32_t i = 0; i < job->measured; i++)
         run_through(&beams[i], job->cols, job->lower, job->before, job->cells);
-    for (int32_t i = 0; i < job->count; i++)
+    for (int32_t i = 0; i < job->measured; i++)
         if (job->hits[i] >= 0)
             job->cells[job->hits[i]] = job->higher[job->before[job->hits[i]]];
 }
@@ -174,5 +187,7 @@ int64_t insert_sweep(const insert_job *job)
         at_once(job, drawn);
     else
         one_by_one(job, drawn);
+    for (int32_t i = job->measured; i < job->count; i++)
+        presume(job, drawn + i);
     return differences(job->cells, job->before, first, last, job->changed);
 }

@@ -22,6 +22,7 @@ class InsertKernel(Protocol):
         tables: tuple[UpdateTable, UpdateTable],
         *,
         at_once: bool,
+        between: NDArray[np.float64] | None = None,
     ) -> NDArray[np.intp]:
         """Change cells by two tables: those that beams run through, and those they end in.
 
@@ -32,6 +33,8 @@ class InsertKernel(Protocol):
             spec: where the cells are.
             tables: for cells that a beam runs through, and for the one that it ends in, which is not one of them.
             at_once: change each cell at most once, a hit beats all misses; else one beam after the other.
+            between: ``float64[n, 5]``, beams that nobody measured, all of them misses: after the readings they change
+                the cells that no beam has met, and no others; see :mod:`robotd.grid.between`.
 
         Returns:
             Flat indices of the cells whose value changed, ascending. O(beams x cells a beam).

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.kernels.shared.library import ffi, floats, lib, longs, octets
-from robotd.grid.tables import UpdateTable
+from robotd.grid.tables import NO_INFORMATION, UpdateTable
 
 
 def insert_sweep(
@@ -19,12 +19,16 @@ def insert_sweep(
     tables: tuple[UpdateTable, UpdateTable],
     *,
     at_once: bool,
+    between: NDArray[np.float64] | None = None,
 ) -> NDArray[np.intp]:
     """See :class:`.InsertKernel`.
 
     Raises:
         ValueError: the cells are read-only.
     """
+    measured = len(readings)
+    if between is not None:
+        readings = np.concatenate((readings, between))
     (rows, cols), count, heading_rad = cells.shape, len(readings), map_from_robot.heading_rad
     bearings_rad = heading_rad + readings[:, 0]
     ahead, beams, hits = np.empty((2, count)), np.empty((count, 6)), np.empty(count, np.int64)
@@ -40,6 +44,7 @@ def insert_sweep(
     job.robot_x_m, job.robot_y_m = map_from_robot.x_m, map_from_robot.y_m
     job.robot_sin, job.robot_cos = math.sin(heading_rad), math.cos(heading_rad)
     job.readings, job.ahead, job.count, job.all_at_once = floats(readings), floats(ahead), count, at_once
+    job.measured, job.unseen = measured, NO_INFORMATION
     job.lower, job.higher = octets(tables[0]), octets(tables[1])
     job.beams, job.before = floats(beams), octets(before)
     job.hits, job.changed = longs(hits), longs(changed)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.ray import ray_cells
-from robotd.grid.tables import UpdateTable
+from robotd.grid.tables import NO_INFORMATION, UpdateTable
 
 
 def insert_sweep(
@@ -20,6 +20,7 @@ def insert_sweep(
     tables: tuple[UpdateTable, UpdateTable],
     *,
     at_once: bool,
+    between: NDArray[np.float64] | None = None,
 ) -> NDArray[np.intp]:
     """See :class:`.InsertKernel`."""
     rays, (lower, higher), before = _Rays.of(readings, map_from_robot, spec), tables, cells.copy()
@@ -41,6 +42,10 @@ def insert_sweep(
             flat[vacant] = lower[flat[vacant]]
             if hit >= 0:
                 flat[hit] = higher[flat[hit]]
+    if between is not None:
+        rays = _Rays.of(between, map_from_robot, spec)
+        _, passed = ray_cells(rays.starts, rays.bearings_rad, rays.lengths_cells, spec.shape)
+        flat[passed[flat[passed] == NO_INFORMATION]] = lower[NO_INFORMATION]
     return np.flatnonzero(cells != before)
 
 
