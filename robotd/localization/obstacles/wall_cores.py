@@ -85,33 +85,35 @@ def _thicknesses(walls: NDArray[np.bool_], thickest: int, window: CellWindow) ->
     """Return how many wall cells of a window are 0, 1, ... ``thickest`` cells thick, along rows or columns."""
     # So far outside the window nothing is looked at: a wall that is cut off there is too thick in any case.
     seen = window.grown(thickest, walls.shape)
-    part = np.ascontiguousarray(walls[seen.slices])
-    thick = np.minimum(_runs(part), _runs(np.ascontiguousarray(part.T)).T)
-    row, col = window.first_row - seen.first_row, window.first_col - seen.first_col
-    rows, cols = window.shape
-    of_window = thick[row : row + rows, col : col + cols]
-    return np.bincount(of_window[(of_window > 0) & (of_window <= thickest)], minlength=thickest + 1)
+    rows, cols = np.nonzero(walls[seen.slices])
+    height, width = seen.shape
+    # A line is one cell longer here than in the map, so that no run goes on from its end to the next one.
+    by_column = np.argsort(cols * (height + 1) + rows)
+    thick = _runs(rows * (width + 1) + cols)
+    down = np.empty_like(thick)
+    down[by_column] = _runs((cols * (height + 1) + rows)[by_column])
+    np.minimum(thick, down, out=thick)
+    rows, cols = rows + seen.first_row, cols + seen.first_col
+    is_inside = (rows >= window.first_row) & (rows < window.end_row)
+    is_inside &= (cols >= window.first_col) & (cols < window.end_col)
+    return np.bincount(thick[is_inside & (thick <= thickest)], minlength=thickest + 1)
 
 
-def _runs(walls: NDArray[np.bool_]) -> NDArray[np.int32]:
-    """Return how many wall cells lie side by side in the row of each, ``int32[rows, cols]``; 0 where there is none."""
-    # Between the rows of the flat array lies a cell that is no wall, so no run goes on from one to the next.
-    flat = np.pad(walls, ((0, 0), (1, 1))).ravel()
-    ends = np.flatnonzero(flat[1:] != flat[:-1])
-    lengths = (ends[1::2] - ends[::2]).astype(np.int32)
-    runs = np.zeros(walls.shape, np.int32)
-    runs[walls] = np.repeat(lengths, lengths)
-    return runs
+def _runs(places: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return how many of ascending numbers follow each other without a gap where each of them stands, ``intp[n]``."""
+    begins = np.flatnonzero(np.diff(places, prepend=-2) != 1)
+    lengths = np.diff(begins, append=len(places))
+    return np.repeat(lengths, lengths)
 
 
 def _core(walls: NDArray[np.bool_], depth: int) -> NDArray[np.bool_]:
     """Return walls less ``depth`` cells on each side, but of thinner ones their middle.
 
-    The first steps of Lantuejoul's skeleton: what a step would take off whole, and the next cannot give back, stays.
+    The first steps of Lantuejoul's skeleton: what a step takes off whole stays; farther than a corner is from what is left, that is.
     """
     core, step = np.zeros_like(walls), walls
     for cells in range(1, depth + 1):
         inner = ~grown_by_disk(~walls, float(cells))
-        core |= step & ~grown_by_disk(inner, 1.0)
+        core |= step & ~grown_by_disk(inner, 2.0)
         step = inner
     return core | step
