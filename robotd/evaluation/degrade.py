@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
+from robotd.evaluation.hand_drawn import hand_drawn
 from robotd.grid.growth import grown_by_disk
 from robotd.grid.image import FREE_GREY, OCCUPIED_GREY, trinary_from_cells
 from robotd.grid.occupancy import OccupancyGrid
@@ -135,6 +136,10 @@ def _unknown_free(grid: OccupancyGrid, _: np.random.Generator) -> Degraded:
     return _with(grid, np.where(grid.cells == NO_INFORMATION, np.uint8(255 - FREE_GREY), grid.cells))
 
 
+def _drawn_by_hand(grid: OccupancyGrid, _: np.random.Generator) -> Degraded:
+    return _with(grid, hand_drawn(grid))
+
+
 KINDS: dict[str, Callable[[OccupancyGrid, np.random.Generator], Degraded]] = {
     "thicker-1": _thickened(1),
     "thicker-2": _thickened(2),
@@ -148,5 +153,6 @@ KINDS: dict[str, Callable[[OccupancyGrid, np.random.Generator], Degraded]] = {
     "turned-30deg": _turned(30.0),
     "scaled-1percent": _scaled(1.01),
     "unknown-free": _unknown_free,
+    "hand-drawn": _drawn_by_hand,
 }
 """By the word for it on the command line."""

@@ -109,7 +109,8 @@ def _runs(places: NDArray[np.intp]) -> NDArray[np.intp]:
 def _core(walls: NDArray[np.bool_], depth: int) -> NDArray[np.bool_]:
     """Return walls less ``depth`` cells on each side, but of thinner ones their middle.
 
-    The first steps of Lantuejoul's skeleton: what a step takes off whole stays; farther than a corner is from what is left, that is.
+    The first steps of Lantuejoul's skeleton: what a step would take off whole stays. Two cells, as corners are farther
+    from what is left than sides are, and specks there stand in the way of beams.
     """
     core, step = np.zeros_like(walls), walls
     for cells in range(1, depth + 1):
