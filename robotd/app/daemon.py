@@ -14,21 +14,25 @@ from robotd import __version__
 from robotd.app.callbacks import stopping_on_errors
 from robotd.app.compose import Daemon, compose, serial_connectors
 from robotd.app.ending import Ending
+from robotd.app.health import Notifier, feed_watchdog, watchdog_s
+from robotd.app.lock import lock_directory
 from robotd.app.stall_guard import guarded
 from robotd.app.stalls import Stalls, keep_going
+from robotd.children.child import Child
 from robotd.config import Config, default_path, effective_text, load
 from robotd.contract.modes import Mode
 from robotd.contract.requests import RecordStart, RecordStop, Stop
 from robotd.core.clock import now_ns, run_counting, wall_offset_ns
+from robotd.core.endpoints import Endpoints
 from robotd.core.errors import ConfigError, RobotdError
 from robotd.core.log import LONGEST_LINE, configure
 from robotd.core.text import printable
+from robotd.front.heart_side import HeartSide
+from robotd.front.supervised import front_of
 from robotd.grid import kernels
 from robotd.mission.compute import ThreadCompute
 from robotd.recording.entries import CAUSES_ARE_NOTED, SILENCES_ARE_NOTED, RecordingHeader
 from robotd.recording.preroll import PrerollJournal
-from robotd.server.health import Notifier, feed_watchdog, watchdog_s
-from robotd.server.server import Server
 
 EXIT_CONFIG = 78
 """EX_CONFIG of sysexits.h: the service manager does not try again, for that makes no file better."""
@@ -88,6 +92,8 @@ async def run(config: Config) -> int:
             incomplete.
     """
     with ExitStack() as stack:
+        # First of all: the one that has it is the only daemon here, and may open the lines.
+        stack.enter_context(lock_directory(Endpoints(Path(config.server.runtime_dir)).runtime_dir))
         journal = new_journal(config)
         compute = ThreadCompute()
         stack.callback(compute.close)
@@ -116,24 +122,25 @@ def _halt(daemon: Daemon, reason: str) -> None:
 
 
 async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
-    server = Server(config.server, daemon.control)
     notifier = Notifier.of()
+    side = HeartSide(daemon.control, config.server)
+    front = front_of(side, partial(_without_clients, daemon, notifier))
     async with asyncio.TaskGroup() as group:
-        serving = group.create_task(server.run(), name="server")
-        await server.serving.wait()  # then this is the only daemon here, and may open the lines
+        serving = group.create_task(front.run(), name="front")
         if config.recording.from_start:
             await daemon.control.perform(RecordStart())
         parts = {name: group.create_task(part, name=name) for name, part in daemon.parts().items()}
         keeping = group.create_task(daemon.control.keeping.run(), name="keep maps")
         going_on = group.create_task(keep_going(daemon, config.driving.silence_s), name="keep going")
-        tasks = [serving, *parts.values(), keeping, going_on]
+        following = group.create_task(side.follow(), name="outcomes")
+        tasks = [serving, following, *parts.values(), keeping, going_on]
         for task in tasks:
             task.add_done_callback(partial(_stop_if_failed, daemon))
         within_s = watchdog_s()
         if within_s is not None:
             feeding = feed_watchdog(notifier, within_s, lambda: not any(task.done() for task in tasks))
             tasks.append(group.create_task(feeding, name="watchdog"))
-        _announce(notifier)
+        tasks.append(group.create_task(_announce(front, notifier), name="announce"))
         await ending.asked.wait()
         log.info("stopping: %s", ending.reason)
         notifier.stopping()
@@ -156,11 +163,19 @@ async def _cancelled(*tasks: "asyncio.Task[None]") -> None:
     await asyncio.wait(tasks)
 
 
-def _announce(notifier: Notifier) -> None:
+async def _announce(front: Child, notifier: Notifier) -> None:
+    await front.is_ready.wait()
     notifier.ready()
     notifier.status("serving")
     log.info("%s", kernels.in_use().about)
     log.info("robotd %s is ready", __version__)
+
+
+def _without_clients(daemon: Daemon, notifier: Notifier, why: str) -> None:
+    """Go on, disarmed: the lines are ours, and it is tried again. The service manager has nothing to wait for."""
+    _halt(daemon, why)
+    notifier.ready()
+    notifier.status(why)
 
 
 def new_journal(config: Config) -> PrerollJournal:

@@ -12,6 +12,10 @@ ROOM_BYTES = 2**27
 """What may wait to leave, or to be taken: twice the largest map."""
 
 
+class HungUp(ChildError):
+    """There is nothing more to receive: an end is gone."""
+
+
 class Channel(Protocol):
     """One end of a channel.
 
@@ -29,14 +33,15 @@ class Channel(Protocol):
         """Wait for the next message.
 
         Raises:
-            ChildError: there is none to come, since an end is gone; what was sent before has then been received.
+            HungUp: there is none to come, since an end is gone; what was sent before has then been received.
+            ChildError: the other end sent what is no message.
         """
 
     async def room(self) -> None:
         """Wait until less than half of what may wait to leave waits.
 
         Raises:
-            ChildError: an end is gone.
+            HungUp: an end is gone.
         """
 
     def close(self) -> None:
@@ -50,7 +55,7 @@ class Inbox:
         self.bytes = 0
         """Of all that waits."""
         self._messages: deque[bytes] = deque()
-        self._lost: str | None = None
+        self._lost: ChildError | None = None
         self._news = asyncio.Event()
 
     def put(self, message: bytes) -> None:
@@ -59,7 +64,7 @@ class Inbox:
         self.bytes += len(message)
         self._news.set()
 
-    def lose(self, reason: str) -> None:
+    def lose(self, reason: ChildError) -> None:
         """Note that no more will come; the first reason counts."""
         self._lost = self._lost or reason
         self._news.set()
@@ -68,7 +73,7 @@ class Inbox:
         """Wait for a message; ChildError if none is to come."""
         while not self._messages:
             if self._lost is not None:
-                raise ChildError(self._lost)
+                raise self._lost
             self._news.clear()
             await self._news.wait()
         message = self._messages.popleft()

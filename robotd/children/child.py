@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import NoReturn
 
-from robotd.children.channel import Channel
+from robotd.children.channel import Channel, HungUp
 from robotd.children.pings import Patience, watch
 from robotd.children.process import Running
 from robotd.core.clock import NS_PER_S, now_ns
@@ -19,7 +19,9 @@ LONGEST_WAIT_S = 5.0
 _LASTED_S = 1.0
 """A child that lived so long was well: the next one is started soon."""
 _LAST_WORDS_S = 0.05
-"""What it said before it went may still be heard, and how it ended be learned."""
+"""What it said before it went may still be heard."""
+_ENDING_S = 1.0
+"""One that hung up is about to end, and how it does says more."""
 
 Serve = Callable[[Sequence[Channel]], Awaitable[None]]
 
@@ -123,12 +125,16 @@ class Child:
     async def _watched(self, running: Running) -> str:
         try:
             await watch(running.life, self._version, self._patience, self.is_ready.set)
+        except HungUp:
+            return await _its_end(running)
         except ChildError as error:
             return str(error)
 
     async def _served(self, running: Running) -> str:
         try:
             await self._serve(running.lanes)
+        except HungUp:
+            return await _its_end(running)
         except ChildError as error:
             return str(error)
         return "it was hung up on"
@@ -142,3 +148,11 @@ class Child:
                 return
         running.kill()
         await running.ended()
+
+
+async def _its_end(running: Running) -> str:
+    try:
+        async with asyncio.timeout(_ENDING_S):
+            return await running.ended()
+    except TimeoutError:
+        return "it hung up, and did not end"

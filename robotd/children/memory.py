@@ -2,8 +2,7 @@
 
 import asyncio
 
-from robotd.children.channel import ROOM_BYTES, Inbox, Part
-from robotd.core.errors import ChildError
+from robotd.children.channel import ROOM_BYTES, HungUp, Inbox, Part
 
 
 class MemoryChannel:
@@ -24,28 +23,28 @@ class MemoryChannel:
         return True
 
     async def receive(self) -> bytes:
-        """Wait for the next message; ChildError if an end is gone."""
+        """Wait for the next message; HungUp if an end is gone."""
         message = await self._inbox.get()
         if self._peer is not None:
             self._peer._taken.set()  # noqa: SLF001  # as above
         return message
 
     async def room(self) -> None:
-        """Wait until the other end has less than half of what may wait; ChildError if an end is gone."""
+        """Wait until the other end has less than half of what may wait; HungUp if an end is gone."""
         while self._peer is not None and self._peer._inbox.bytes * 2 > self._room_bytes:  # noqa: SLF001  # as above
             self._taken.clear()
             await self._taken.wait()
         if self._peer is None:
-            raise ChildError("the other end is gone")
+            raise HungUp("the other end is gone")
 
     def close(self) -> None:
         """Give the channel up."""
         peer, self._peer = self._peer, None
-        self._inbox.lose("it was closed")
+        self._inbox.lose(HungUp("it was closed"))
         self._taken.set()
         if peer is not None:
             peer._peer = None  # noqa: SLF001  # as above
-            peer._inbox.lose("the other end is gone")  # noqa: SLF001  # as above
+            peer._inbox.lose(HungUp("the other end is gone"))  # noqa: SLF001  # as above
             peer._taken.set()  # noqa: SLF001  # as above
 
 

@@ -3,7 +3,7 @@
 import asyncio
 import socket
 
-from robotd.children.channel import ROOM_BYTES, Inbox, Outgoing, Part
+from robotd.children.channel import ROOM_BYTES, HungUp, Inbox, Outgoing, Part
 from robotd.children.framing import LONGEST, Unframer, header
 from robotd.core.errors import ChildError, ProtocolError
 
@@ -59,11 +59,11 @@ class SocketChannel:
             self._left.clear()
             await self._left.wait()
         if self._socket is None:
-            raise ChildError("the other end is gone")
+            raise HungUp("the other end is gone")
 
     def close(self) -> None:
         """Give the channel up."""
-        self._lose("it was closed")
+        self._lose(HungUp("it was closed"))
 
     def _read_on(self) -> None:
         if self._socket is not None and not self._is_reading and self._inbox.bytes <= self._room_bytes:
@@ -78,16 +78,16 @@ class SocketChannel:
         except (BlockingIOError, InterruptedError):
             return
         except OSError as error:
-            self._lose(f"the other end cannot be heard: {error.strerror}")
+            self._lose(HungUp(f"the other end cannot be heard: {error.strerror}"))
             return
         if not data:
-            self._lose("the other end is gone")
+            self._lose(HungUp("the other end is gone"))
             return
         try:
             for message in self._unframer.feed(data):
                 self._inbox.put(message)
         except ProtocolError as error:
-            self._lose(str(error))
+            self._lose(ChildError(str(error)))
             return
         if self._inbox.bytes > self._room_bytes:
             self._is_reading = False
@@ -119,7 +119,7 @@ class SocketChannel:
             self._outgoing.drop(count)
             written += count
 
-    def _lose(self, reason: str) -> None:
+    def _lose(self, reason: ChildError) -> None:
         self._inbox.lose(reason)
         self._left.set()
         end, self._socket = self._socket, None

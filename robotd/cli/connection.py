@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 
 from robotd.client import Client
-from robotd.client.endpoints import runtime_dir_of_user
+from robotd.core.endpoints import runtime_dir_of_user
 from robotd.core.errors import TransportError
 
 

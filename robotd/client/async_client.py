@@ -19,7 +19,6 @@ from typing import Self, TypeVar
 import zmq
 import zmq.asyncio
 
-from robotd.client.endpoints import Endpoints, runtime_dir_of_user
 from robotd.client.exchange import Exchanges
 from robotd.client.feed import Feed, Gap, as_topics
 from robotd.client.methods import Awaiting, Methods
@@ -32,6 +31,7 @@ from robotd.contract.request import Request
 from robotd.contract.requests import GetStatus
 from robotd.contract.topics import Published, Topic
 from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.endpoints import Endpoints, runtime_dir_of_user
 from robotd.core.errors import RequestTimeout, RobotdError, ServerError
 
 R = TypeVar("R")

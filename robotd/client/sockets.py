@@ -5,8 +5,8 @@ from typing import Any
 
 import zmq
 
-from robotd.client.endpoints import Endpoints
 from robotd.contract.topics import Topic
+from robotd.core.endpoints import Endpoints
 
 
 def connect_dealer(socket: "zmq.Socket[Any]", endpoints: Endpoints, *, retry_s: float) -> None:

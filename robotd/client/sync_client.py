@@ -18,7 +18,6 @@ from typing import Self, TypeVar
 
 import zmq
 
-from robotd.client.endpoints import Endpoints, runtime_dir_of_user
 from robotd.client.exchange import Exchanges
 from robotd.client.feed import Feed, Gap, as_topics
 from robotd.client.methods import Blocking, Methods
@@ -30,6 +29,7 @@ from robotd.contract.missions import Mission
 from robotd.contract.request import Request
 from robotd.contract.requests import GetStatus
 from robotd.contract.topics import Published, Topic
+from robotd.core.endpoints import Endpoints, runtime_dir_of_user
 from robotd.core.errors import RequestTimeout, RobotdError, ServerError
 
 R = TypeVar("R")

@@ -5,13 +5,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from robotd.client.endpoints import Endpoints
 from robotd.config.environment import runtime_dir
 from robotd.config.locations import locate
 from robotd.config.problems import Problems
 from robotd.config.text import read_text
 from robotd.config.tree import Config
 from robotd.config.writer import write_table
+from robotd.core.endpoints import Endpoints
 from robotd.core.errors import ConfigError, TransportError
 
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE, codecs.BOM_UTF32_BE)  # UTF-32-LE begins as UTF-16-LE does

@@ -31,7 +31,7 @@ from robotd.localization.settings import LocalizationSettings
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.planning.settings import PlanningSettings
-from robotd.server.server import ServerSettings
+from robotd.server.settings import ServerSettings
 
 
 def _by_dialect(device: str) -> ChosenBy:

@@ -20,11 +20,12 @@ from robotd.contract.envelope import (
     refuse_frames,
 )
 from robotd.contract.events import MapChanged
+from robotd.contract.refusal import as_refusal
 from robotd.contract.request import Request
 from robotd.contract.requests import Arm, Disarm, Stop
 from robotd.contract.stopping import STOPPING
 from robotd.core.errors import RobotdError, ServerError
-from robotd.server.handlers import Handlers, as_refusal
+from robotd.server.handlers import Handlers
 from robotd.server.replies import Asker, Replies
 from robotd.server.request_log import RequestLog
 from robotd.server.router import Letter, Router

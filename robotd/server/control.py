@@ -5,24 +5,20 @@ Nothing else is shared, so the mission may be a pair of queues, or another proce
 
 from typing import Protocol, TypeVar
 
-from robotd.contract.events import Event
 from robotd.contract.request import Request
 from robotd.contract.requests import Disarm, Stop
+from robotd.contract.topics import Published
 from robotd.core.broadcast import Broadcast
 
 R = TypeVar("R")
 
 
 class Control(Protocol):
-    """The mission, as far as clients may reach.
-
-    Its errors become replies: ``MapError`` is ``not_found``, ``ConfigError`` is ``bad_argument``, every other
-    ``RobotdError`` is ``refused`` with its message, and what is none of them is ``internal``.
-    """
+    """The mission, as far as clients may reach."""
 
     @property
-    def events(self) -> Broadcast[Event]:
-        """Everything that happens."""
+    def events(self) -> Broadcast[Published]:
+        """Everything that happens, and what the log says of it."""
 
     def halt(self, request: Stop | Disarm) -> None:
         """Stop everything and disarm; valid at any time. The stop is on its way when this returns."""
@@ -33,9 +29,8 @@ class Control(Protocol):
     async def perform(self, request: Request[R]) -> R:
         """Carry out a request, every one but ``hello``, and return its answer.
 
-        A mission comes with its lease, and an ``arm`` is cancelled when a stop overtakes it. The ``mission`` of
-        ``renewed`` is left to the server, which heard its progress like everybody.
+        A mission comes with its lease, and an ``arm`` is cancelled when a stop overtakes it.
 
         Raises:
-            RobotdError: why it was not done.
+            RobotdError: why it was not done; :func:`robotd.contract.refusal.as_refusal` says what becomes of it.
         """

@@ -4,53 +4,43 @@ import asyncio
 import logging
 from typing import NoReturn
 
-from robotd.contract.events import Event, MapChanged
+from robotd.contract.events import MapChanged
 from robotd.contract.requests import GetStatus, MapShow
-from robotd.contract.topics import LogEntry, Published, Topic, to_wire
+from robotd.contract.topics import Published, Topic, to_wire
 from robotd.core.broadcast import Subscription
 from robotd.core.errors import RobotdError
 from robotd.core.log_limit import LogLimit
 from robotd.server.control import Control
-from robotd.server.decimation import Decimator
-from robotd.server.log_relay import relay_log
 from robotd.server.map_queue import MapQueue
 from robotd.server.outlet import BETWEEN_GREETINGS_S, Outlet
 
 DEPTH = 4096
-"""How many events, or lines of the log, may wait for their turn."""
+"""How many events may wait for their turn."""
 
 log = logging.getLogger(__name__)
 
 
 class Publisher:
-    """Publishes the events of the mission, and the log."""
+    """Publishes the events of the mission, and the lines of its log."""
 
-    def __init__(
-        self, control: Control, events: Subscription[Event], state: Outlet, maps: Outlet, *, routine_hz: float
-    ) -> None:
+    def __init__(self, control: Control, events: Subscription[Published], state: Outlet, maps: Outlet) -> None:
         """Take the events of ``control`` by a subscription that is open already, so that the very first are there."""
         self._control = control
         self._events = events
         self._state = state
         self._maps = maps
-        self._routine_hz = routine_hz
         self._map_queue = MapQueue()
         self._complaints = LogLimit()
 
     async def run(self) -> None:
         """Publish until cancelled."""
-        lines: asyncio.Queue[LogEntry] = asyncio.Queue(DEPTH)
-        # A full queue drops lines: what logs must not wait for those who read.
-        with relay_log(lambda line: None if lines.full() else lines.put_nowait(line)):
-            async with asyncio.TaskGroup() as group:
-                group.create_task(self._follow_events())
-                group.create_task(self._follow_log(lines))
-                group.create_task(self._state.greet())
-                group.create_task(self._follow_maps())
-                group.create_task(self._greet_map_readers())
+        async with asyncio.TaskGroup() as group:
+            group.create_task(self._follow_events())
+            group.create_task(self._state.greet())
+            group.create_task(self._follow_maps())
+            group.create_task(self._greet_map_readers())
 
     async def _follow_events(self) -> NoReturn:
-        decimator = Decimator(self._routine_hz)
         try:
             # From the first moment on there is a status for the greeting, which clients take as the sign to begin.
             status = await self._control.perform(GetStatus())
@@ -61,12 +51,8 @@ class Publisher:
             event = await self._events.get()
             if isinstance(event, MapChanged):
                 self._map_queue.put(event)
-            elif decimator.passes(event):
+            else:
                 await self._publish(event)
-
-    async def _follow_log(self, lines: asyncio.Queue[LogEntry]) -> NoReturn:
-        while True:
-            await self._publish(await lines.get())
 
     async def _publish(self, event: Published) -> None:
         try:

@@ -9,6 +9,7 @@ ROOMS_OF_OTHERS = {"robotd.sim", "robotd.cli"}
 LIBRARIES_OF_OTHERS = {"rich", "rich_argparse", "matplotlib", "PIL", "scipy", "hypothesis", "pytest"}
 LARGEST_MIB = 60.0
 ROOMS_OF_CLIENTS = {"client", "contract", "core"}
+ROOMS_OF_FRONT = {"front", "server", "children", "contract", "core"}
 LIBRARIES_OF_THE_ENGINE = {"cffi", "_cffi_backend", "serial", "mcap", "rich", "firmware_proto"}
 LARGEST_CLIENT_MIB = 45.0
 
@@ -24,8 +25,15 @@ def modules() -> set[str]:
 
 
 def test_the_daemon_imports_no_room_of_others(modules: set[str]) -> None:
-    assert "robotd.server.server" in modules
+    assert "robotd.mission.supervisor" in modules
     assert {name for name in modules if ".".join(name.split(".")[:2]) in ROOMS_OF_OTHERS} == set()
+
+
+def test_the_heart_imports_nothing_that_serves_strangers(modules: set[str]) -> None:
+    assert {name.split(".")[0] for name in modules} & {"zmq"} == set()
+    assert {name for name in modules if name.startswith(("robotd.server.", "robotd.client"))} == {
+        "robotd.server.settings"
+    }
 
 
 def test_the_daemon_imports_no_library_that_only_people_need(modules: set[str]) -> None:
@@ -39,7 +47,7 @@ def test_the_daemon_is_small_before_it_remembers_anything() -> None:
 
 @pytest.mark.parametrize(
     ("module", "rooms"),
-    [("robotd.client", ROOMS_OF_CLIENTS), ("robotd.server.server", ROOMS_OF_CLIENTS | {"server"})],
+    [("robotd.client", ROOMS_OF_CLIENTS), ("robotd.front.program", ROOMS_OF_FRONT)],
 )
 def test_clients_and_the_server_load_nothing_of_the_engine(module: str, rooms: set[str]) -> None:
     """No grid, maps, hardware, localization, kernels; and it says what the import costs (``pytest -s``)."""

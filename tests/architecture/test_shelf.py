@@ -30,10 +30,8 @@ PROGRAMS = {
     "robotd.cli.main",
     "robotd.client",
     "robotd.library.map",  # which `import robotd` loads when it is asked for
-    "robotd.children.child",
     "robotd.children.in_process",  # for tests and replays
-    "robotd.children.inside",
-    "robotd.children.process",
+    "robotd.front.__main__",
     *(f"robotd.cli.verbs.{module}" for module, *_ in WORDS.values()),
     "robotd.grid.kernels.build",  # these three make what is compiled and generated
     "robotd.sim.firmware.build",

@@ -14,13 +14,13 @@ from typing import NoReturn
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.silence import within
+from robotd.core.together import together
 from robotd.hardware.devices.credible import check_limits
 from robotd.hardware.devices.pantilt import LOST_STEPS, AimReadback, PanTiltLimits
 from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.vendor_device import VendorDevice, is_a
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
-from robotd.hardware.link.together import together
 from robotd.hardware.wire.ptu import STOP_BYTES, Banner, Done, LimitHit, Message, PtuWire, Refused, command
 
 RESET_S = 40.0

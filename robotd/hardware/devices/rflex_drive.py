@@ -20,6 +20,7 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.core.silence import within
+from robotd.core.together import together
 from robotd.hardware.devices.credible import IMPLAUSIBLE, battery_v, check_twist, implausible
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
@@ -27,7 +28,6 @@ from robotd.hardware.devices.settings import DriveSettings, ReportOptions
 from robotd.hardware.devices.vendor_device import VendorDevice, is_a
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
-from robotd.hardware.link.together import together
 from robotd.hardware.wire.rflex import (
     BRAKE_RELEASE,
     DEFAULTS,

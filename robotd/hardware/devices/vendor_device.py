@@ -6,6 +6,7 @@ from typing import ClassVar, Generic, NoReturn, TypeVar
 
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError, RemoteProtocolError, TransportError
+from robotd.core.together import together
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.device import PAST_LOOP_EVERY
 from robotd.hardware.devices.health import Health
@@ -15,7 +16,6 @@ from robotd.hardware.link.dialogue import Dialogue, DialogueCounters, Heard, Wir
 from robotd.hardware.link.keep_up import keep_up
 from robotd.hardware.link.rest import seen_at_rest
 from robotd.hardware.link.tapped import TappedLine
-from robotd.hardware.link.together import together
 
 M = TypeVar("M")
 

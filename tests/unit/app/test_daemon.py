@@ -14,6 +14,7 @@ from firmware_proto.common import BoardState
 from robotd.app import daemon as program
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import main, run
+from robotd.app.lock import lock_directory
 from robotd.config import Config
 from robotd.contract.requests import Arm
 from robotd.core.errors import TransportError
@@ -26,7 +27,6 @@ from robotd.mission.whereabouts.keeping import Keeping
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import read
-from robotd.server.lock import lock_directory
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.runtime import connectors

@@ -1,4 +1,4 @@
-"""A daemon that is all server: real sockets in a temporary directory, and a fake robot behind them."""
+"""A daemon that is all front: real sockets in a temporary directory, and a fake robot behind them."""
 
 import asyncio
 import contextlib
@@ -50,7 +50,8 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.mission.safety.lease import Lease
-from robotd.server.server import Server, ServerSettings
+from robotd.server.settings import ServerSettings
+from tests.support.served import served
 
 R = TypeVar("R")
 
@@ -285,16 +286,10 @@ def serving(tmp_path: Path) -> Serving:
     @contextlib.asynccontextmanager
     async def serve(control: FakeControl | None = None, **settings: float) -> AsyncIterator[FakeControl]:
         control = FakeControl() if control is None else control
-        server = Server(ServerSettings(runtime_dir=str(tmp_path), **settings), control)  # type: ignore[arg-type]  # ints and floats by keyword
-        task = asyncio.create_task(server.run())
-        await asyncio.wait((task, asyncio.create_task(server.serving.wait())), return_when=asyncio.FIRST_COMPLETED)
         try:
-            if task.done():
-                task.result()
-            yield control
+            async with served(control, ServerSettings(runtime_dir=str(tmp_path), **settings)):  # type: ignore[arg-type]  # ints and floats by keyword
+                yield control
         finally:
-            task.cancel()
-            await asyncio.gather(task, return_exceptions=True)
             await control.close()
 
     return serve

@@ -23,13 +23,11 @@ from robotd.contract.requests import (
     MapSave,
     MapShow,
     RecordStop,
-    Renew,
     Stop,
 )
 from robotd.core.errors import ServerError
 from robotd.server.commands import Commands
 from robotd.server.handlers import Handlers
-from robotd.server.outcomes import Outcomes
 from robotd.server.router import Router
 
 
@@ -72,21 +70,19 @@ class ListSocket:
 @asynccontextmanager
 async def served(control: Any) -> AsyncIterator[ListSocket]:
     socket = ListSocket()
-    outcomes = Outcomes()
     commands = Commands(
         Router(socket),  # type: ignore[arg-type]  # the two methods it uses
-        Handlers(control, outcomes, "session", 0.5),
+        Handlers(control, "session", 0.5),
         max_bytes=65536,
         max_pending=4,
         remembered=8,
     )
-    tasks = [asyncio.create_task(commands.run()), asyncio.create_task(outcomes.follow(control.events))]
+    task = asyncio.create_task(commands.run())
     try:
         yield socket
     finally:
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
         await control.close()
 
 
@@ -337,22 +333,6 @@ async def test_the_lease_of_the_settings_holds_unless_another_is_asked_for(make_
         await asyncio.sleep(1)
         assert control.leases_s == [0.5]
         assert socket.replies[-1].result == {"mission_id": 1, "lease_s": 0.5}
-
-
-async def test_a_renewal_tells_the_end_of_a_mission_even_if_it_comes_in_the_same_moment(make_control: Any) -> None:
-    control = make_control()
-    control.armed = True
-    async with served(control) as socket:
-        socket.ask(1, Localize())
-        socket.ask(2, Renew(1))
-        await asyncio.sleep(1)
-        socket.ask(3, Renew(1))
-        socket.ask(4, Renew(8))
-        await asyncio.sleep(1)
-        assert socket.outcome == {1: "ok", 2: "ok", 3: "ok", 4: "refused"}
-        last = next(reply.result for reply in socket.replies if reply.id == 3)
-        assert isinstance(last, dict)
-        assert last["mission"]["phase"] == "done"
 
 
 async def test_errors_of_the_daemon_become_codes(make_control: Any, caplog: pytest.LogCaptureFixture) -> None:

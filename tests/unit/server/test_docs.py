@@ -28,7 +28,7 @@ from robotd.contract.request import Request
 from robotd.contract.requests import REQUESTS
 from robotd.contract.topics import EVENTS, Topic
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.server.server import ServerSettings
+from robotd.server.settings import ServerSettings
 
 DOCS = Path(__file__).parents[3] / "docs"
 TEXT = (DOCS / "api.md").read_text()

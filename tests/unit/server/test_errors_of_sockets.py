@@ -60,7 +60,7 @@ class Flaky:
 async def published(control: Any, state: Flaky, maps: Flaky) -> AsyncIterator[asyncio.Task[None]]:
     with control.events.subscribe(100) as events:
         outlets = [Outlet(socket, "session") for socket in (state, maps)]  # type: ignore[arg-type]  # what they use of it
-        task = asyncio.create_task(Publisher(control, events, *outlets, routine_hz=1000.0).run())
+        task = asyncio.create_task(Publisher(control, events, *outlets).run())
         try:
             yield task
         finally:

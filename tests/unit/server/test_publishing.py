@@ -12,10 +12,10 @@ from robotd.contract.events import Event, MapChanged, MissionPhase, MissionProgr
 from robotd.contract.topics import LogEntry
 from robotd.core.broadcast import Broadcast
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
-from robotd.server.decimation import Decimator
-from robotd.server.log_relay import relay_log
+from robotd.front.decimation import Decimator
+from robotd.front.log_relay import relay_log
+from robotd.front.outcomes import Outcomes
 from robotd.server.map_queue import MapQueue
-from robotd.server.outcomes import Outcomes
 from robotd.server.replies import Replies
 
 MS = 1_000_000

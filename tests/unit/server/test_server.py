@@ -20,7 +20,6 @@ import zmq
 import zmq.asyncio
 
 from robotd.client import AsyncClient, AsyncSubscription
-from robotd.client.endpoints import Endpoints
 from robotd.client.feed import Gap
 from robotd.contract.envelope import decode_reply, encode_request
 from robotd.contract.estimate import PoseEstimate, PoseState
@@ -28,10 +27,12 @@ from robotd.contract.events import MapChanged, MissionPhase, MissionProgress, St
 from robotd.contract.requests import GetStatus, Hello
 from robotd.contract.topics import LogEntry, Topic
 from robotd.core.clock import now_ns
+from robotd.core.endpoints import Endpoints
 from robotd.core.errors import ServerError, TransportError
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
-from robotd.server.server import Server, ServerSettings
+from robotd.server.server import Server
+from robotd.server.settings import ServerSettings
 
 pytestmark = pytest.mark.real_clock
 Serving = Callable[..., AbstractAsyncContextManager[Any]]
@@ -259,14 +260,6 @@ async def test_a_plain_req_socket_is_served(serving: Serving, tmp_path: Path) ->
             assert (await ask(socket, encode_request(number, GetStatus())))["mode"] == "disarmed"
 
 
-async def test_a_second_daemon_is_refused_and_told_who_was_first(serving: Serving, tmp_path: Path) -> None:
-    async with serving(), AsyncClient(tmp_path) as client:
-        second = Server(ServerSettings(runtime_dir=str(tmp_path)), unreached_control())
-        with pytest.raises(TransportError, match=rf"another robotd \(process {os.getpid()}\)"):
-            await second.run()
-        assert (await client.hello()).versions == (1,)
-
-
 def names_in(directory: Path) -> list[str]:
     return sorted(path.name for path in directory.iterdir())
 
@@ -280,59 +273,18 @@ def unreached_control() -> Any:
     return object()
 
 
-async def test_the_lock_of_a_killed_daemon_is_free_and_its_sockets_are_replaced(
-    serving: Serving, tmp_path: Path
-) -> None:
+async def test_the_sockets_of_a_killed_server_are_replaced(serving: Serving, tmp_path: Path) -> None:
     script = (
-        "import fcntl, os, socket, sys\n"
-        "lock = os.open(sys.argv[1] + '/robotd.lock', os.O_RDWR | os.O_CREAT)\n"
-        "fcntl.flock(lock, fcntl.LOCK_EX)\n"
+        "import os, socket, sys\n"
         "for name in ('commands', 'state', 'maps'):\n"
         "    socket.socket(socket.AF_UNIX).bind(f'{sys.argv[1]}/{name}.sock')\n"
         "os.kill(os.getpid(), 9)\n"
     )
     await asyncio.to_thread(subprocess.run, [sys.executable, "-c", script, str(tmp_path)], check=False)
-    assert names_in(tmp_path) == ["commands.sock", "maps.sock", "robotd.lock", "state.sock"]
+    assert names_in(tmp_path) == ["commands.sock", "maps.sock", "state.sock"]
     async with serving(), AsyncClient(tmp_path) as client:
         assert (await client.hello()).versions == (1,)
-    assert names_in(tmp_path) == ["robotd.lock"]
-
-
-READER = """
-import fcntl, os, sys
-os.setgroups([]); os.setgid(int(sys.argv[2])); os.setuid(65534)
-try:
-    fcntl.flock(os.open(sys.argv[1] + "/robotd.lock", os.O_RDONLY), fcntl.LOCK_SH)
-except PermissionError:
-    sys.exit(13)
-"""
-"""Holds the lock as a member of the daemon's group who may only read would."""
-
-
-@pytest.mark.parametrize("mode", [None, 0o640, 0o644])
-async def test_the_lock_is_for_the_daemons_user_alone(serving: Serving, tmp_path: Path, mode: int | None) -> None:
-    if mode is not None:
-        (tmp_path / "robotd.lock").touch(mode)
-    async with serving():
-        pass
-    assert mode_of(tmp_path / "robotd.lock") == 0o600
-
-
-@pytest.mark.skipif(os.getuid() != 0, reason="only root can become somebody else")
-async def test_a_reader_cannot_keep_the_daemon_out(serving: Serving, tmp_path: Path) -> None:
-    async with serving():
-        pass
-    for directory in (tmp_path, *tmp_path.parents[:2]):
-        directory.chmod(0o755)
-    words = [sys.executable, "-c", READER, str(tmp_path), str(os.getgid())]
-    assert (await asyncio.to_thread(subprocess.run, words, check=False)).returncode == 13
-
-
-async def test_a_lock_that_leads_elsewhere_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "robotd.lock").symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(TransportError, match="runtime directory"):
-        await Server(ServerSettings(runtime_dir=str(tmp_path)), unreached_control()).run()
-    assert not (tmp_path / "elsewhere").exists()
+    assert names_in(tmp_path) == []
 
 
 async def test_sockets_are_for_the_group_only(serving: Serving, tmp_path: Path) -> None:
@@ -346,30 +298,11 @@ def test_a_path_too_long_for_a_socket_is_refused_at_once(tmp_path: Path) -> None
         Server(ServerSettings(runtime_dir=str(tmp_path / ("x" * 100))), unreached_control())
 
 
-async def test_a_runtime_directory_that_cannot_be_is_named(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    with pytest.raises(TransportError, match="file/run"):
-        await Server(ServerSettings(runtime_dir=str(tmp_path / "file" / "run")), unreached_control()).run()
-
-
 async def test_what_stands_in_a_sockets_place_is_named(tmp_path: Path) -> None:
     (tmp_path / "state.sock").mkdir()
     server = Server(ServerSettings(runtime_dir=str(tmp_path)), unreached_control())
     with pytest.raises(TransportError, match=r"state.sock: cannot be removed: Is a directory"):
         await server.run()
-
-
-async def test_a_lock_holds_though_there_is_no_room_for_its_owners_number(
-    serving: Serving, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full(*_: object) -> int:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("os.pwrite", full)
-    async with serving():
-        second = Server(ServerSettings(runtime_dir=str(tmp_path)), unreached_control())
-        with pytest.raises(TransportError, match=r"another robotd \(process unknown\)"):
-            await second.run()
 
 
 async def test_a_restart_shows_as_a_gap_and_clients_stay(serving: Serving, tmp_path: Path) -> None:

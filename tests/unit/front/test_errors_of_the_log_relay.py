@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from robotd.contract.topics import LogEntry
-from robotd.server import log_relay
-from robotd.server.log_relay import relay_log
+from robotd.front import log_relay
+from robotd.front.log_relay import relay_log
 
 ERRORS = [
     *(OSError(number, os.strerror(number)) for number in (errno.EMFILE, errno.ENOSPC, errno.EACCES)),

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from robotd.app.health import Notifier, feed_watchdog, watchdog_s
 from robotd.core.clock import VirtualClockLoop
-from robotd.server.health import Notifier, feed_watchdog, watchdog_s
 
 
 @pytest.fixture(params=["path", "abstract"])

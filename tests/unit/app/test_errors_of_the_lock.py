@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from robotd.app.lock import lock_directory
 from robotd.core.errors import TransportError
-from robotd.server.lock import lock_directory
 
 NUMBERS = [errno.EMFILE, errno.ENOSPC, errno.EACCES, errno.ENOLCK]
 CALLS: dict[str, Any] = {"open": os, "fchmod": os, "flock": fcntl}
