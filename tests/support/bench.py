@@ -126,10 +126,11 @@ async def bench(
     readings: int = 60,
     silence_s: float = 1.0,
     worker: Compute | None = None,
+    reports: dict[str, int] | None = None,
 ) -> AsyncIterator[Bench]:
-    """Bring a daemon to life that records from its first moment."""
+    """Bring a daemon to life that records from its first moment; ``reports`` sets how often devices do."""
     said = dialects.settings()
-    sections = {device: {**said.get(device, {}), "silence_s": silence_s} for device in DEVICES}
+    sections = {device: {**said.get(device, {}), "silence_s": silence_s, **(reports or {})} for device in DEVICES}
     text = config_text({device: f"/dev/emulated/{device}" for device in DEVICES}, sections)
     config = in_directory(replace(loads(text), sweep=SweepSettings(readings=readings)), directory)
     config = replace(config, recording=replace(config.recording, preroll_bytes=_PREROLL_BYTES))

@@ -16,7 +16,8 @@ from tests.studies.busy.freezing import FREEZES, NOBODY, Freeze, children, freez
 from tests.studies.busy.outcome import HEADER, Outcome
 from tests.support.spinning import spinning
 
-_LONGEST_S = 1800.0
+_LONGEST_S = 7200.0
+"""A room takes five minutes, a building of ninety stops an hour."""
 
 
 @dataclass(frozen=True, slots=True)

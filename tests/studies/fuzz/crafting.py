@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any
 
 from tests.studies.fuzz.mcap_bytes import Container, mcap_bytes
-from tests.studies.fuzz.session import Message, session
+from tests.studies.fuzz.session import Message, Session
 
 _CHANGES_MAX = 12
 _MESSAGES_MAX = 4000
@@ -28,6 +28,7 @@ _TOPICS = ("command", "cause", "computed", "result", "turn", "line/drive", "seri
 @dataclass(slots=True)
 class _Draft:
     messages: list[Message]
+    settings: tuple[str, ...]
     container: Container = field(default_factory=Container)
 
     def at(self, place: int) -> int:
@@ -41,9 +42,9 @@ class _Draft:
 _Change = Callable[[_Draft, int, bytes], None]
 
 
-def crafted(script: bytes) -> bytes:
-    """Return the recording that is left after the changes."""
-    draft = _Draft(list(session().messages))
+def crafted(session: Session, script: bytes) -> bytes:
+    """Return the recording of a session that is left after the changes."""
+    draft = _Draft(list(session.messages), session.settings)
     for line in script.split(b"\n")[:_CHANGES_MAX]:
         if len(line) > 2 and draft.messages:
             (place,) = struct.unpack("<H", line[1:3])
@@ -195,12 +196,10 @@ def _configure(draft: _Draft, place: int, material: bytes) -> None:
         lines = header["config_text"].split("\n")
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         return
-    settings = [at for at, line in enumerate(lines) if " = " in line and "dir = " not in line]
-    if not settings:
-        return
-    at = settings[place % len(settings)]
-    lines[at] = lines[at].partition(" = ")[0] + " = " + material.decode("utf-8", errors="replace")
-    header["config_text"] = "\n".join(lines)
+    keys = [key for key, _, _ in (line.partition(" = ") for line in draft.settings) if not key.endswith("dir")]
+    key = keys[place % len(keys)]
+    others = (line for line in lines if not line.startswith(f"{key} = "))
+    header["config_text"] = "\n".join((*others, f"{key} = {material.decode('utf-8', errors='replace')}"))
     draft.messages[0] = replace(draft.messages[0], data=json.dumps(header).encode())
 
 

@@ -1,9 +1,11 @@
 """``make fuzz``: every parser gets strange bytes for a minute; fails if one breaks, or takes too much memory.
 
-What reaches lines that nothing in the corpus did is added to it.
+The minute is the processor's, so that a busy machine tries as much, later. What reaches lines that nothing in the
+corpus did is added to it.
 """
 
 import argparse
+import logging
 import multiprocessing
 import os
 import sys
@@ -28,7 +30,9 @@ class _Job:
 def main() -> None:
     """Hunt on all cores and print a line for each parser as it is done."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=60.0, help="for each parser (default: %(default)s)")
+    parser.add_argument(
+        "--seconds", type=float, default=60.0, help="of the processor, for each parser (default: %(default)s)"
+    )
     parser.add_argument("--seed", type=int, default=time.time_ns() % 2**32, help="of the changes (default: the time)")
     parser.add_argument("--only", choices=sorted(TARGETS), help="one parser")
     arguments = parser.parse_args()
@@ -44,6 +48,7 @@ def main() -> None:
 
 
 def _hunted(job: _Job) -> tuple[_Job, Findings]:
+    logging.getLogger().addHandler(logging.NullHandler())  # what a daemon logs is not of interest
     target = TARGETS[job.name]
     findings = hunt(target, corpus.load(job.name), seconds=job.seconds, seed=job.seed)
     if findings.broken is None:

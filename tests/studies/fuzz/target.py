@@ -42,6 +42,9 @@ class Target:
     """How often it is run in the tests."""
     measured: int = 60
     """For how many inputs its memory is measured."""
+    outlined: bool = False
+    """Whether only inputs are watched of which another thing is said than of all before, numbers left out: to watch
+    takes several times as long as to run."""
     proves: Callable[[bytes], None] | None = None
     """Asserts what must hold besides, without being watched, which takes time."""
     stream: Callable[[], Feedable] | None = None

@@ -4,4 +4,4 @@ from tests.studies.fuzz.documents import DOCUMENTS
 from tests.studies.fuzz.replays import REPLAYS
 from tests.studies.fuzz.streams import STREAMS
 
-TARGETS = {target.name: target for target in (*STREAMS, *DOCUMENTS, REPLAYS)}
+TARGETS = {target.name: target for target in (*STREAMS, *DOCUMENTS, *REPLAYS)}
