@@ -10,9 +10,11 @@ from typing import Any
 
 from robotd.config import Config, loads
 from robotd.grid.settings import BetweenBeams
+from robotd.localization.obstacles.thick_walls import ThickWalls
 
 SINCE: dict[str, dict[str, Any]] = {
     "grid": {"between_beams": BetweenBeams.UNSEEN},
+    "localization": {"thick_walls": ThickWalls.AS_DRAWN},
     "second_look": {"on_walls_min": 0.0},
 }
 """By section and key; a section that is missing was not recorded, and says nothing."""
@@ -29,6 +31,7 @@ def recorded_config(text: str) -> Config:
     return replace(
         config,
         grid=replace(config.grid, **_missing("grid", written)),
+        localization=replace(config.localization, **_missing("localization", written)),
         second_look=replace(config.second_look, **_missing("second_look", written)),
     )
 

@@ -97,6 +97,18 @@ class Region:
 
 
 @dataclass(frozen=True, slots=True)
+class Ends:
+    """Where the readings end, seen from the best place: shares of what they say, which add up to 1."""
+
+    as_mapped: float
+    """On walls of the map, or beyond its cut-off with nothing of the map in the way."""
+    unseen: float
+    """Where nobody has looked: new ground."""
+    against_map: float
+    """Where the map shows no obstacle, or behind one."""
+
+
+@dataclass(frozen=True, slots=True)
 class PoseEstimate:
     """A pose estimate as served to clients."""
 
@@ -128,6 +140,8 @@ class PoseEstimate:
     jumped_m: float | None = None
     """How far the first region lies from where odometry puts the robot, if that is farther than odometry errs: then the
     state is ``ambiguous`` until another look agrees. Else None."""
+    ends: Ends | None = None
+    """How much of the sweep the map knows at the best place that was weighed, whatever the state; None without one."""
 
     def __str__(self) -> str:
         """Say in one line what people ask first."""

@@ -103,6 +103,7 @@ class Localizer:
             belief_nowhere=look.nowhere,
             # Infinite where the place has no rival: None says that in a message.
             contrast=look.contrast if math.isfinite(look.contrast) and len(look.poses) else None,
+            ends=look.ends,
             # In the order of each region's `explained`, so that a reader knows which reading that was.
             bearings_rad=tuple(readings.bearing_rad.tolist()),
         )

@@ -75,7 +75,8 @@ class ReadyMap:
         cls, grid: OccupancyGrid, settings: LocalizationSettings, error_model: ErrorModel | None = None
     ) -> "ReadyMap":
         """Make a map ready. O(cells)."""
-        return cls._of(grid, _cores_of(grid), settings, error_model or ErrorModel())
+        cores = WallCores.of(grid.cells > NO_INFORMATION, grid.spec.resolution_m, settings.thick_walls)
+        return cls._of(grid, cores, settings, error_model or ErrorModel())
 
     @classmethod
     def _of(
@@ -126,10 +127,6 @@ class ReadyMap:
         radius_cells, unknown = self.prepared.error_radius_cells, self.settings.unknown
         obstacles = self.prepared.obstacles.updated(ternary, unknown, radius_cells, changed, before_cores)
         return self.prepared.updated(obstacles, changed.grown(int(radius_cells), ternary.spec.shape))
-
-
-def _cores_of(grid: OccupancyGrid) -> WallCores:
-    return WallCores.of(grid.cells > NO_INFORMATION, grid.spec.resolution_m)
 
 
 def _sure(ternary: TernaryMap, settings: LocalizationSettings) -> ConservativeMap | None:

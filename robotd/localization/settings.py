@@ -6,6 +6,7 @@ from typing import Annotated
 
 from robotd.core.bounds import Within, refuse_outside
 from robotd.localization.even_headings import even_headings
+from robotd.localization.obstacles.thick_walls import ThickWalls
 from robotd.localization.obstacles.unknown_cells import UnknownCells
 
 
@@ -36,7 +37,9 @@ class LocalizationSettings:
     blocked_by: Annotated[int, Within(1, 2)] = 2
     """How many obstacle cells a beam must meet before its end to be blocked: 1 as in the paper, or 2, so that a beam
     that grazes along a wall is not."""
-
+    thick_walls: ThickWalls = ThickWalls.EITHER
+    """Where the faces of walls are that are thicker than 10 cm: ``as_drawn``, or ``either`` there or somewhere inside,
+    as on maps that were drawn with a broad pen."""
     conservative: bool = False
     """Whether no place is excluded but by proof: the true one is then always among the answers, as long as ranges err
     by no more than ``range_error_m``, the heading by no more than half a step from one that is tried, and cells that

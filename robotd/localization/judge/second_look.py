@@ -23,10 +23,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.contract.estimate import PoseState
+from robotd.contract.estimate import Ends, PoseState
 from robotd.grid.readings import Readings
 from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.judge.climbing import Hill, climb
+from robotd.localization.judge.ends import ends_at
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
 from robotd.localization.judge.patches import thinned, weights
@@ -70,6 +71,8 @@ class SecondLook:
     """Share of being nowhere on the map."""
     contrast: float
     """Least contrast of the best place with any elsewhere on the map, in standard errors; infinite if there is none."""
+    ends: Ends | None = None
+    """Where the readings end, seen from the best place."""
 
 
 def second_look(
@@ -110,7 +113,8 @@ def second_look(
     contrast = _contrast(hill, found)
     on_walls = share_on_walls(likelihood, readings, found[0], settings.on_wall_m)
     least = settings.contrast_min if on_walls >= settings.on_walls_min else settings.contrast_off_walls_min
-    return _weigh(found, scores - to_beat, float(aside.max()) - to_beat, (contrast, least), settings)
+    weighed = _weigh(found, scores - to_beat, float(aside.max()) - to_beat, (contrast, least), settings)
+    return replace(weighed, ends=ends_at(hill, found[0]))
 
 
 def _glance(

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from robotd.grid.growth import grown_by_disk
 from robotd.grid.tables import NO_INFORMATION
 from robotd.grid.window import CellWindow
+from robotd.localization.obstacles.thick_walls import ThickWalls
 
 _USUAL_M = 0.1
 """Walls as thick as this are drawn where they were met: ranges and poses err by as much."""
@@ -30,14 +31,16 @@ class WallCores:
     resolution_m: float
     drawn: NDArray[np.bool_]
     """``bool[rows, cols]``: the walls as the map has them."""
+    read: ThickWalls
+    """Where their faces are."""
     thicknesses: NDArray[np.int64]
     """How many cells of walls are how many cells thick, from 0 up to what a wall has."""
 
     @classmethod
-    def of(cls, drawn: NDArray[np.bool_], resolution_m: float) -> "WallCores":
+    def of(cls, drawn: NDArray[np.bool_], resolution_m: float, read: ThickWalls = ThickWalls.EITHER) -> "WallCores":
         """Measure walls ``bool[rows, cols]``. O(cells)."""
         thickest = max(1, round(_WALL_MAX_M / resolution_m))
-        return cls(resolution_m, drawn, _thicknesses(drawn, thickest, CellWindow.whole(drawn.shape)))
+        return cls(resolution_m, drawn, read, _thicknesses(drawn, thickest, CellWindow.whole(drawn.shape)))
 
     def updated(self, drawn: NDArray[np.bool_], changed: CellWindow) -> "WallCores":
         """Return what :meth:`of` does for walls that differ in a window alone. O(cells within a wall's reach of it)."""
@@ -48,7 +51,9 @@ class WallCores:
 
     @property
     def depth_cells(self) -> int:
-        """How many cells are taken off on either side: none from walls that are as thin as usual."""
+        """How many cells lie before a core on either side: none where walls are thin, or read as they are drawn."""
+        if self.read is ThickWalls.AS_DRAWN:
+            return 0
         summed = np.cumsum(self.thicknesses)
         median = int(np.searchsorted(summed, (summed[-1] + 1) // 2)) if summed[-1] else 0
         more_m = median * self.resolution_m - max(_USUAL_M, self.resolution_m)

@@ -18,6 +18,7 @@ from robotd.grid.readings import Readings
 from robotd.grid.settings import GridSettings
 from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.judge.climbing import Hill
+from robotd.localization.judge.ends import ends_at
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
 from robotd.localization.judge.second_look import SecondLook, _contrast, second_look, share_on_walls
@@ -321,3 +322,26 @@ def test_where_hits_end_on_no_wall_a_rival_must_be_beaten_by_more() -> None:
         for least in (0.0, 100.0)
     }
     assert states == {0.0: PoseState.LOCALIZED, 100.0: PoseState.AMBIGUOUS}
+
+
+def test_how_much_of_a_sweep_the_map_knows_is_told_with_the_place() -> None:
+    starts = everywhere(mapped(PLAIN), HERE)
+    rng = np.random.default_rng(5)
+    known = look(PLAIN, scan(PLAIN.boxes, HERE, rng, 0.015, 0.0), starts).ends
+    furnished = look(PLAIN, scan(FURNISHED.boxes, HERE, rng, 0.015, 0.0), starts).ends
+    longer = [
+        replace(reading, range_m=(reading.range_m or 0.0) + 1.0) for reading in scan(PLAIN.boxes, HERE, rng, 0.015, 0.0)
+    ]
+    beyond = ends_at(hill_of(PLAIN, longer), np.array([HERE.x_m, HERE.y_m, HERE.heading_rad]))
+    assert known is not None
+    assert furnished is not None
+    assert known.as_mapped > 0.8
+    assert furnished.against_map > known.against_map + 0.05
+    assert beyond.unseen > 0.3
+    for ends in (known, furnished, beyond):
+        assert ends.as_mapped + ends.unseen + ends.against_map == pytest.approx(1.0)
+
+
+def hill_of(world: World, readings: list[RangeReading]) -> Hill:
+    likelihood, taken = mapped(world), Readings.of(readings)
+    return Hill(likelihood, likelihood.sight(taken), np.ones(len(taken)))

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from robotd.grid.growth import grown_by_disk
 from robotd.grid.window import CellWindow
+from robotd.localization.obstacles.thick_walls import ThickWalls
 from robotd.localization.obstacles.wall_cores import WallCores
 
 CELL_M = 0.05
@@ -48,6 +49,13 @@ def test_of_a_broad_pen_the_line_in_its_middle_is_left(pen_cells: int) -> None:
     assert ((thinned == WALL) != off).sum() <= 10 * pen_cells
     # A beam from inside runs up to the core, and none comes through it.
     assert (thinned[14:46, 14:66][thin[14:46, 14:66] == VACANT] != UNKNOWN).all()
+
+
+def test_read_as_drawn_walls_are_as_thick_as_they_are() -> None:
+    cells = room(3)
+    cores = WallCores.of(cells > 128, CELL_M, ThickWalls.AS_DRAWN)
+    assert cores.readings_of(cells) == (cells,)
+    assert cores.updated(cells > 128, CellWindow(0, 9, 0, 9)).depth_cells == 0
 
 
 def test_no_wall_is_taken_off_whole() -> None:
