@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, typed
 
 LINE_MAX_BYTES = 64
@@ -73,19 +74,13 @@ def command(device: int, letters: str) -> bytes:
     return f"s{device}{letters}\r\n".encode("ascii")
 
 
-class DimetixWire:
+class DimetixWire(Receiving):
     """The receiving half, which an older dialect shares."""
 
     def __init__(self, parse: Callable[[str], Message | None] | None = None) -> None:
         """Begin; ``parse`` says what a line means, and None of one that means nothing."""
         self._parse = parse or parsed
-        self._line = bytearray()
-        self._counters = {"replies": 0, "errors": 0, "bytes_skipped": 0}
-
-    @property
-    def counters(self) -> dict[str, int]:
-        """What was counted since start."""
-        return self._counters
+        super().__init__("replies", "errors")
 
     def feed(self, data: bytes) -> list[Message]:
         """Take bytes as they come; return the messages that are whole now."""
@@ -94,28 +89,20 @@ class DimetixWire:
             if byte & 0x7F in b"\r\n":
                 messages += self._finish()
                 continue
-            self._line.append(byte & 0x7F)
-            if len(self._line) > LINE_MAX_BYTES:
+            self._begun.append(byte & 0x7F)
+            if len(self._begun) > LINE_MAX_BYTES:
                 self._skip()
         return messages
 
-    def reset(self) -> None:
-        """Forget the beginning of a line."""
-        self._line.clear()
-
     def _finish(self) -> list[Message]:
-        text = self._line.decode("ascii")
+        text = self._begun.decode("ascii")
         message = self._parse(text)
         if message is None:
             self._skip()
             return []
-        self._line.clear()
+        self._begun.clear()
         self._counters["errors" if isinstance(message, Failed) else "replies"] += 1
         return [message]
-
-    def _skip(self) -> None:
-        self._counters["bytes_skipped"] += len(self._line)
-        self._line.clear()
 
 
 def parsed(text: str) -> Message | None:

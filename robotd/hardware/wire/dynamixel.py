@@ -9,6 +9,7 @@ import struct
 from dataclasses import dataclass
 from typing import Final
 
+from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Repeat, Word, whole
 
 HEADER: Final = b"\xff\xff\xfd\x00"
@@ -120,59 +121,45 @@ def sync_write(register: int, size: int, values: dict[int, int]) -> bytes:
     return packet(BROADCAST, SYNC_WRITE, struct.pack("<HH", register, size) + data)
 
 
-class DynamixelWire:
+class DynamixelWire(Receiving):
     """The receiving half."""
 
     def __init__(self) -> None:
-        self._buffer = bytearray()
-        self._counters = {"packets": 0, "crc_errors": 0, "bytes_skipped": 0}
-
-    @property
-    def counters(self) -> dict[str, int]:
-        """What was counted since start."""
-        return self._counters
+        super().__init__("packets", "crc_errors")
 
     def feed(self, data: bytes) -> list[Message]:
         """Take bytes as they come; return the messages that are whole now."""
-        self._buffer += data
+        self._begun += data
         messages: list[Message] = []
         while self._hunt():
-            size = 7 + int.from_bytes(self._buffer[5:7], "little")
-            if len(self._buffer) < size:
+            size = 7 + int.from_bytes(self._begun[5:7], "little")
+            if len(self._begun) < size:
                 break
-            whole = bytes(self._buffer[:size])
+            whole = bytes(self._begun[:size])
             if crc16(whole[:-2]) != int.from_bytes(whole[-2:], "little"):
                 self._counters["crc_errors"] += 1
-                del self._buffer[:1]  # not the packet: its length may be what was damaged
+                del self._begun[:1]  # not the packet: its length may be what was damaged
                 continue
-            del self._buffer[:size]
+            del self._begun[:size]
             self._counters["packets"] += 1
             messages.append(_message(whole[4], whole[7:-2].replace(_STUFFED, _STUFF)))
         return messages
 
-    def reset(self) -> None:
-        """Forget the beginning of a packet."""
-        self._buffer.clear()
-
     def _hunt(self) -> bool:
         """Let go of what begins no packet; return whether the length of one can be seen."""
         while True:
-            at = self._buffer.find(HEADER)
+            at = self._begun.find(HEADER)
             if at < 0:
                 # The last bytes may be the beginning of a header.
-                keep = next((k for k in (3, 2, 1) if self._buffer[-k:] == HEADER[:k]), 0)
-                self._drop(len(self._buffer) - keep)
+                keep = next((k for k in (3, 2, 1) if self._begun[-k:] == HEADER[:k]), 0)
+                self._skip(len(self._begun) - keep)
                 return False
-            self._drop(at)
-            if len(self._buffer) < 7:
+            self._skip(at)
+            if len(self._begun) < 7:
                 return False
-            if 3 <= int.from_bytes(self._buffer[5:7], "little") <= LENGTH_MAX:  # an instruction and the CRC at least
+            if 3 <= int.from_bytes(self._begun[5:7], "little") <= LENGTH_MAX:  # an instruction and the CRC at least
                 return True
-            self._drop(1)
-
-    def _drop(self, count: int) -> None:
-        self._counters["bytes_skipped"] += count
-        del self._buffer[:count]
+            self._skip(1)
 
 
 def _message(servo: int, body: bytes) -> Message:

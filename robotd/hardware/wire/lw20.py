@@ -9,6 +9,7 @@ something that nobody needs goes first (maker's guide to the serial line).
 import re
 from dataclasses import dataclass
 
+from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, typed
 
 LINE_MAX_BYTES = 64
@@ -47,17 +48,11 @@ FASTEST = command("#LM,1")
 """388 measurements a second."""
 
 
-class Lw20Wire:
+class Lw20Wire(Receiving):
     """The receiving half."""
 
     def __init__(self) -> None:
-        self._line = bytearray()
-        self._counters = {"replies": 0, "bytes_skipped": 0}
-
-    @property
-    def counters(self) -> dict[str, int]:
-        """What was counted since start."""
-        return self._counters
+        super().__init__("replies")
 
     def feed(self, data: bytes) -> list[Answer]:
         """Take bytes as they come; return the messages that are whole now."""
@@ -66,27 +61,19 @@ class Lw20Wire:
             if byte in b"\r\n":
                 messages += self._finish()
                 continue
-            self._line.append(byte)
-            if len(self._line) > LINE_MAX_BYTES:
+            self._begun.append(byte)
+            if len(self._begun) > LINE_MAX_BYTES:
                 self._skip()
         return messages
 
-    def reset(self) -> None:
-        """Forget the beginning of a line."""
-        self._line.clear()
-
     def _finish(self) -> list[Answer]:
-        found = _ANSWER.fullmatch(self._line.decode("ascii", errors="replace").strip())
+        found = _ANSWER.fullmatch(self._begun.decode("ascii", errors="replace").strip())
         if found is None:
             self._skip()
             return []
-        self._line.clear()
+        self._begun.clear()
         self._counters["replies"] += 1
         return [Answer(found[1], None if found[2] is None else int(found[2]), found[3])]
-
-    def _skip(self) -> None:
-        self._counters["bytes_skipped"] += len(self._line)
-        self._line.clear()
 
 
 def requests(data: bytes) -> list[Word]:

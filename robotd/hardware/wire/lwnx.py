@@ -9,6 +9,7 @@ import binascii
 import struct
 from dataclasses import dataclass
 
+from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, whole
 
 _HEAD = 0xAA
@@ -65,59 +66,49 @@ def write(number: int, value: int, size: int) -> bytes:
     return encoded(Packet(number, value.to_bytes(size, "little"), writes=True))
 
 
-class LwnxWire:
+class LwnxWire(Receiving):
     """The receiving half, of either side."""
 
     def __init__(self) -> None:
-        self._buffer = bytearray()
-        self._counters = {"packets": 0, "crc_errors": 0, "bytes_skipped": 0}
-
-    @property
-    def counters(self) -> dict[str, int]:
-        """What was counted since start."""
-        return self._counters
+        super().__init__("packets", "crc_errors")
 
     def feed(self, data: bytes) -> list[Packet]:
         """Take bytes as they come; return the packets that are whole now."""
         packets: list[Packet] = []
         # A little at a time, so that the buffer stays bounded, whatever is poured in.
         for start in range(0, len(data), PAYLOAD_MAX_BYTES):
-            self._buffer += data[start : start + PAYLOAD_MAX_BYTES]
+            self._begun += data[start : start + PAYLOAD_MAX_BYTES]
             packets += self._taken()
         return packets
 
-    def reset(self) -> None:
-        """Forget the beginning of a packet."""
-        self._buffer.clear()
-
     def _taken(self) -> list[Packet]:
         packets: list[Packet] = []
-        while self._buffer:
+        while self._begun:
             size = self._size()
-            if size > len(self._buffer):
+            if size > len(self._begun):
                 break
-            if size and binascii.crc_hqx(bytes(self._buffer[: size - _CRC_BYTES]), 0) == self._crc(size):
-                flags, number = self._buffer[1], self._buffer[_HEAD_BYTES]
-                data = bytes(self._buffer[_HEAD_BYTES + 1 : size - _CRC_BYTES])
+            if size and binascii.crc_hqx(bytes(self._begun[: size - _CRC_BYTES]), 0) == self._crc(size):
+                flags, number = self._begun[1], self._begun[_HEAD_BYTES]
+                data = bytes(self._begun[_HEAD_BYTES + 1 : size - _CRC_BYTES])
                 packets.append(Packet(number, data, writes=bool(flags & _WRITE)))
                 self._counters["packets"] += 1
-                del self._buffer[:size]
+                del self._begun[:size]
             else:
                 self._counters["crc_errors" if size else "bytes_skipped"] += 1
-                del self._buffer[:1]
+                del self._begun[:1]
         return packets
 
     def _size(self) -> int:
         """Return how long the packet is that may begin here: 0 if none can, and too long if that cannot be seen yet."""
-        if self._buffer[0] != _HEAD:
+        if self._begun[0] != _HEAD:
             return 0
-        if len(self._buffer) < _HEAD_BYTES:
-            return len(self._buffer) + 1
-        payload = int.from_bytes(self._buffer[1:_HEAD_BYTES], "little") >> _LENGTH_SHIFT
+        if len(self._begun) < _HEAD_BYTES:
+            return len(self._begun) + 1
+        payload = int.from_bytes(self._begun[1:_HEAD_BYTES], "little") >> _LENGTH_SHIFT
         return (_HEAD_BYTES + payload + _CRC_BYTES) if 1 <= payload <= PAYLOAD_MAX_BYTES else 0
 
     def _crc(self, size: int) -> int:
-        return int.from_bytes(self._buffer[size - _CRC_BYTES : size], "little")
+        return int.from_bytes(self._begun[size - _CRC_BYTES : size], "little")
 
 
 def requests(data: bytes) -> list[Word]:

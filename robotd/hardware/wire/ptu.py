@@ -8,6 +8,7 @@ is echoed before the answer on its line. The answer to a reset may lack its line
 import re
 from dataclasses import dataclass
 
+from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, typed
 
 LINE_MAX_BYTES = 256
@@ -70,17 +71,11 @@ STOP_BYTES = b" " + command("H")
 """Halts both axes. The space ends a command that was cut in half, so that the halt is not taken for its letters."""
 
 
-class PtuWire:
+class PtuWire(Receiving):
     """The receiving half."""
 
     def __init__(self) -> None:
-        self._line = bytearray()
-        self._counters = {"replies": 0, "refusals": 0, "limit_hits": 0, "bytes_skipped": 0}
-
-    @property
-    def counters(self) -> dict[str, int]:
-        """What was counted since start."""
-        return self._counters
+        super().__init__("replies", "refusals", "limit_hits")
 
     def feed(self, data: bytes) -> list[Message]:
         """Take bytes as they come; return the messages that are whole now."""
@@ -89,31 +84,27 @@ class PtuWire:
             if _ENDS.match(bytes((byte,))):
                 messages += self._finish()
                 continue
-            self._line.append(byte)
-            if bytes(self._line[-2:]) in {b"!P", b"!T"}:
+            self._begun.append(byte)
+            if bytes(self._begun[-2:]) in {b"!P", b"!T"}:
                 messages += self._take_limits()
-            elif len(self._line) > LINE_MAX_BYTES:
+            elif len(self._begun) > LINE_MAX_BYTES:
                 self._skip()
         return messages
 
-    def reset(self) -> None:
-        """Forget the beginning of a line."""
-        self._line.clear()
-
     def _take_limits(self) -> list[Message]:
         """Take a limit mark out of the line at once: it ends no line, and the next may be long in coming."""
-        axis = chr(self._line[-1])
-        del self._line[-2:]
+        axis = chr(self._begun[-1])
+        del self._begun[-2:]
         self._counters["limit_hits"] += 1
         return [LimitHit(axis)]
 
     def _finish(self) -> list[Message]:
         # No checksum tells what was damaged, so a line with a byte that nobody types is no answer.
-        if any(not 0x20 <= byte < 0x7F for byte in self._line):
+        if any(not 0x20 <= byte < 0x7F for byte in self._begun):
             self._skip()
             return []
-        text = self._line.decode("ascii")
-        self._line.clear()
+        text = self._begun.decode("ascii")
+        self._begun.clear()
         if "*" in text:
             answers = text.split("*")[1:]  # before the first stands the echo
             self._counters["replies"] += len(answers)
@@ -122,10 +113,6 @@ class PtuWire:
             self._counters["refusals"] += 1
             return [Refused(text.partition("!")[2].strip())]
         return [Banner(text.strip())] if text.strip() else []
-
-    def _skip(self) -> None:
-        self._counters["bytes_skipped"] += len(self._line)
-        self._line.clear()
 
 
 def requests(data: bytes) -> list[Word]:

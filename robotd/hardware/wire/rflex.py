@@ -9,6 +9,7 @@ controller never acknowledges, drops what comes in quick bursts, and loses speed
 import struct
 from dataclasses import dataclass
 
+from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Repeat, Word, whole
 
 HEAD, TAIL = b"\x1b\x02", b"\x1b\x03"
@@ -109,61 +110,47 @@ def switches_every(period_us: int) -> bytes:
     return frame(DIO, 0, struct.pack(">I", period_us))
 
 
-class RflexWire:
+class RflexWire(Receiving):
     """The receiving half."""
 
     def __init__(self) -> None:
-        self._buffer = bytearray()
-        self._counters = {"frames": 0, "checksum_errors": 0, "bytes_skipped": 0}
-
-    @property
-    def counters(self) -> dict[str, int]:
-        """What was counted since start."""
-        return self._counters
+        super().__init__("frames", "checksum_errors")
 
     def feed(self, data: bytes) -> list[Message]:
         """Take bytes as they come; return the messages that are whole now."""
-        self._buffer += data
+        self._begun += data
         messages: list[Message] = []
         while self._hunt():
-            size = self._buffer[5] + OVERHEAD
-            if len(self._buffer) < size:
+            size = self._begun[5] + OVERHEAD
+            if len(self._begun) < size:
                 break
-            whole = bytes(self._buffer[:size])
+            whole = bytes(self._begun[:size])
             check = 0
             for byte in whole[2:-3]:
                 check ^= byte
             if check != whole[-3] or whole[-2:] != TAIL:
                 self._counters["checksum_errors"] += 1
-                del self._buffer[: len(HEAD)]  # not the frame: its length may be what was damaged
+                del self._begun[: len(HEAD)]  # not the frame: its length may be what was damaged
                 continue
-            del self._buffer[:size]
+            del self._begun[:size]
             self._counters["frames"] += 1
             messages.append(_message(whole[2], whole[4], whole[6:-3]))
         return messages
 
-    def reset(self) -> None:
-        """Forget the beginning of a frame."""
-        self._buffer.clear()
-
     def _hunt(self) -> bool:
         """Let go of what begins no frame; return whether the length of one can be seen."""
         while True:
-            at = self._buffer.find(HEAD)
+            at = self._begun.find(HEAD)
             if at < 0:
-                keep = 1 if self._buffer[-1:] == HEAD[:1] else 0  # a head may be cut in half here
-                self._drop(len(self._buffer) - keep)
+                keep = 1 if self._begun[-1:] == HEAD[:1] else 0  # a head may be cut in half here
+                self._skip(len(self._begun) - keep)
                 return False
-            self._drop(at)
-            if len(self._buffer) < OVERHEAD - 3:
+            self._skip(at)
+            if len(self._begun) < OVERHEAD - 3:
                 return False
-            if self._buffer[5] <= DATA_MAX:
+            if self._begun[5] <= DATA_MAX:
                 return True
-            self._drop(len(HEAD))
-
-    def _drop(self, count: int) -> None:
-        self._counters["bytes_skipped"] += count
-        del self._buffer[:count]
+            self._skip(len(HEAD))
 
 
 def _message(port: int, opcode: int, data: bytes) -> Message:

@@ -9,6 +9,7 @@ until the base is told ``HD`` it echoes what it hears.
 import re
 from dataclasses import dataclass
 
+from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, typed
 
 LINE_MAX_BYTES = 64
@@ -79,28 +80,22 @@ STOP_BYTES = b"\r" + command("TH") + command("RH")
 """Both axes ramp down. The CR ends a command that was cut in half."""
 
 
-class RwiWire:
+class RwiWire(Receiving):
     """The receiving half."""
 
     def __init__(self, report_mask: int = 0) -> None:
         """Expect reports with the items of this mask."""
         self._expected = tuple(item for bit, item in enumerate(ITEMS) if report_mask & 1 << bit)
-        self._line = bytearray()
+        super().__init__("answers", "reports", "events", "reports_damaged")
         self._items: list[tuple[str, int]] | None = None
-        self._counters = {"answers": 0, "reports": 0, "events": 0, "reports_damaged": 0, "bytes_skipped": 0}
-
-    @property
-    def counters(self) -> dict[str, int]:
-        """What was counted since start."""
-        return self._counters
 
     def feed(self, data: bytes) -> list[Message]:
         """Take bytes as they come; return the messages that are whole now."""
         messages: list[Message] = []
         for byte in data:
             if byte not in b"\r\n":
-                self._line.append(byte)
-                if len(self._line) > LINE_MAX_BYTES:
+                self._begun.append(byte)
+                if len(self._begun) > LINE_MAX_BYTES:
                     self._skip()
                 continue
             message = self._finish()
@@ -110,18 +105,18 @@ class RwiWire:
 
     def reset(self) -> None:
         """Forget the beginning of a line, and of a report."""
-        self._line.clear()
+        super().reset()
         self._items = None
 
     def _finish(self) -> Message | None:
-        text = self._line.decode("ascii", errors="replace").lstrip("*").strip()
+        text = self._begun.decode("ascii", errors="replace").lstrip("*").strip()
         if not text:
-            self._line.clear()
+            self._begun.clear()
             return None
         message = self._understood(text)
         if message is None and self._items is None and not text.isascii():
             self._skip()
-        self._line.clear()
+        self._begun.clear()
         return message
 
     def _understood(self, text: str) -> Message | None:
@@ -156,10 +151,6 @@ class RwiWire:
     def _drop_report(self) -> None:
         self._counters["reports_damaged"] += self._items is not None
         self._items = None
-
-    def _skip(self) -> None:
-        self._counters["bytes_skipped"] += len(self._line)
-        self._line.clear()
 
 
 def _digits(item: str) -> int:

@@ -13,6 +13,7 @@ each other; the codes of the UST are taken to be those of the UTM; and ``1Dh`` i
 import enum
 from dataclasses import dataclass
 
+from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, typed
 
 LINE_MAX_BYTES = 128
@@ -137,18 +138,12 @@ def decoded(characters: str) -> int:
     return number
 
 
-class ScipWire:
+class ScipWire(Receiving):
     """The receiving half."""
 
     def __init__(self) -> None:
-        self._line = bytearray()
+        super().__init__("replies", "sum_errors")
         self._block: list[str] = []
-        self._counters = {"replies": 0, "sum_errors": 0, "bytes_skipped": 0}
-
-    @property
-    def counters(self) -> dict[str, int]:
-        """What was counted since start."""
-        return self._counters
 
     def feed(self, data: bytes) -> list[Reply]:
         """Take bytes as they come; return the messages that are whole now."""
@@ -157,24 +152,24 @@ class ScipWire:
             if byte == 0x0A:
                 replies += self._end_line()
             elif byte != 0x0D:
-                self._line.append(byte)
-                if len(self._line) > LINE_MAX_BYTES:
-                    self._skip_line()
+                self._begun.append(byte)
+                if len(self._begun) > LINE_MAX_BYTES:
+                    self._skip()
         return replies
 
     def reset(self) -> None:
         """Forget the beginning of a block."""
-        self._line.clear()
+        super().reset()
         self._block.clear()
 
     def _end_line(self) -> list[Reply]:
-        if not self._line:
+        if not self._begun:
             return self._end_block()
-        if any(not 0x20 <= byte < 0x7F for byte in self._line) or len(self._block) == BLOCK_MAX_LINES:
-            self._skip_line()
+        if any(not 0x20 <= byte < 0x7F for byte in self._begun) or len(self._block) == BLOCK_MAX_LINES:
+            self._skip()
             return []
-        self._block.append(self._line.decode("ascii"))
-        self._line.clear()
+        self._block.append(self._begun.decode("ascii"))
+        self._begun.clear()
         return []
 
     def _end_block(self) -> list[Reply]:
@@ -188,10 +183,6 @@ class ScipWire:
             return []
         self._counters["replies"] += 1
         return [Reply(block[0], whole[0], tuple(whole[1:]))]
-
-    def _skip_line(self) -> None:
-        self._counters["bytes_skipped"] += len(self._line)
-        self._line.clear()
 
 
 def _checked(line: str) -> str | None:

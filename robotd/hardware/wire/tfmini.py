@@ -14,6 +14,7 @@ import enum
 import struct
 from dataclasses import dataclass
 
+from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, whole
 
 DATA_BYTES = 9
@@ -93,39 +94,29 @@ FIRST_STANDARD = bytes.fromhex("42 57 02 00 00 00 01 02  42 57 02 00 00 00 01 06
 FORMAT_CM, FORMAT_MM = command(0x05, b"\1"), command(0x05, b"\6")
 
 
-class TfminiWire:
+class TfminiWire(Receiving):
     """The receiving half."""
 
     def __init__(self) -> None:
-        self._buffer = bytearray()
-        self._counters = {"measurements": 0, "replies": 0, "sum_errors": 0, "bytes_skipped": 0}
-
-    @property
-    def counters(self) -> dict[str, int]:
-        """What was counted since start."""
-        return self._counters
+        super().__init__("measurements", "replies", "sum_errors")
 
     def feed(self, data: bytes) -> list[Message]:
         """Take bytes as they come; return the messages that are whole now."""
-        self._buffer += data
+        self._begun += data
         messages: list[Message] = []
-        while (size := self._size()) <= len(self._buffer) and self._buffer:
+        while (size := self._size()) <= len(self._begun) and self._begun:
             if size and self._sum_fits(size):
-                messages.append(self._message(bytes(self._buffer[:size])))
-                del self._buffer[:size]
+                messages.append(self._message(bytes(self._begun[:size])))
+                del self._begun[:size]
             else:
                 self._counters["sum_errors" if size else "bytes_skipped"] += 1
-                del self._buffer[:1]
+                del self._begun[:1]
         return messages
-
-    def reset(self) -> None:
-        """Forget the beginning of a frame."""
-        self._buffer.clear()
 
     def _size(self) -> int:
         """Return how long the frame is that may begin here: 0 if none can, and too long if that cannot be seen yet."""
-        undecided = len(self._buffer) + 1
-        head = self._buffer[:2]
+        undecided = len(self._begun) + 1
+        head = self._begun[:2]
         if not head:
             return undecided
         if head[0] == _DATA_HEAD:
@@ -135,11 +126,11 @@ class TfminiWire:
         return 0
 
     def _sum_fits(self, size: int) -> bool:
-        total, said = sum(self._buffer[: size - 1]) & 0xFF, self._buffer[size - 1]
+        total, said = sum(self._begun[: size - 1]) & 0xFF, self._begun[size - 1]
         if total == said:
             return True
         # The TFmini-S manual prints status replies whose sum is one too small; libraries keep the rule: both are taken.
-        is_status = self._buffer[0] == _COMMAND_HEAD and size == _COMMAND_MIN + 1 and self._buffer[2] in {0x02, 0x11}
+        is_status = self._begun[0] == _COMMAND_HEAD and size == _COMMAND_MIN + 1 and self._begun[2] in {0x02, 0x11}
         return is_status and (said + 1) & 0xFF == total
 
     def _message(self, frame: bytes) -> Message:

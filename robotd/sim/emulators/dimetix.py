@@ -3,6 +3,7 @@
 import re
 
 from firmware_proto.rangefinder import ShotStatus
+from robotd.sim.emulators.speaking import Speaking
 from robotd.sim.physics.plant import LaserPlant, ShotAnswer
 
 _COMMAND = re.compile(rb"s(\d)([a-z]+)")
@@ -16,14 +17,14 @@ _ERRORS = {
 }
 
 
-class DimetixEmulator:
+class DimetixEmulator(Speaking):
     """Answers as device ``device``; a new command cancels a measurement under way."""
 
     def __init__(self, plant: LaserPlant, device: int = 0) -> None:
+        super().__init__()
         self._plant = plant
         self._device = device
         self._typed = bytearray()
-        self._said = bytearray()
         self._say("?")
         self._pending: tuple[int, ShotAnswer] | None = None
         self._points = False
@@ -51,12 +52,6 @@ class DimetixEmulator:
     def next_event_us(self) -> int | None:
         """When a measurement is done."""
         return None if self._pending is None else self._pending[0]
-
-    def take_output(self) -> bytes:
-        """Return, once, what it has for the host."""
-        said = bytes(self._said)
-        self._said.clear()
-        return said
 
     def _obey(self, typed: bytes, now_us: int) -> None:
         found = _COMMAND.fullmatch(typed)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from robotd.hardware.wire import dynamixel
 from robotd.hardware.wire.dynamixel import BROADCAST, STATUS, DynamixelWire, Instruction
+from robotd.sim.emulators.speaking import Speaking
 from robotd.sim.physics.plant import HeadPlant
 
 _COUNTS_PER_RAD = 4096 / math.tau
@@ -16,14 +17,14 @@ _BOOTS_US = 250_000
 _UNKNOWN_INSTRUCTION, _RANGE, _ACCESS = 2, 4, 7
 
 
-class DynamixelEmulator:
+class DynamixelEmulator(Speaking):
     """Ids ``pan`` and ``tilt``; the registers that a pan/tilt head needs."""
 
     def __init__(self, plant: HeadPlant, pan: int = 1, tilt: int = 2) -> None:
+        super().__init__()
         self._plant = plant
         self._servos = (pan, tilt)
         self._wire = DynamixelWire()
-        self._said = bytearray()
         self._goals = {pan: _CENTRE, tilt: _CENTRE}
         self._torque = {pan: 0, tilt: 0}
         self._watchdog = {pan: 0, tilt: 0}
@@ -60,12 +61,6 @@ class DynamixelEmulator:
     def next_event_us(self) -> int | None:
         """When a watchdog runs out."""
         return min(self._due_us(), default=None)
-
-    def take_output(self) -> bytes:
-        """Return, once, what they have for the host."""
-        said = bytes(self._said)
-        self._said.clear()
-        return said
 
     def _due_us(self) -> Iterator[int]:
         for servo, unit in self._watchdog.items():

@@ -1,20 +1,21 @@
 """An emulated LightWare LW20 on its ASCII line: it measures all the time, and answers with the newest."""
 
 from firmware_proto.rangefinder import ShotStatus
+from robotd.sim.emulators.speaking import SpeakingWhenAsked
 from robotd.sim.physics.plant import LaserPlant
 
 _PRODUCT = "p:LW20,1.0,1.0"
 _LOST = -1.0
 
 
-class Lw20Emulator:
+class Lw20Emulator(SpeakingWhenAsked):
     """Fires from power-up, and never answers the first message after it."""
 
     def __init__(self, plant: LaserPlant) -> None:
+        super().__init__()
         self._plant = plant
         self._plant.switch(on=True)
         self._typed = bytearray()
-        self._said = bytearray()
         self._is_awake = False
 
     def receive(self, data: bytes, now_us: int) -> None:
@@ -26,20 +27,6 @@ class Lw20Emulator:
             if self._is_awake:
                 self._obey(typed.decode("ascii", errors="replace"), now_us)
             self._is_awake = True
-
-    def advance(self, now_us: int) -> None:
-        """Let time pass: it does nothing unasked."""
-
-    @property
-    def next_event_us(self) -> int | None:
-        """Nothing is to come."""
-        return None
-
-    def take_output(self) -> bytes:
-        """Return, once, what it has for the host."""
-        said = bytes(self._said)
-        self._said.clear()
-        return said
 
     def _obey(self, typed: str, now_us: int) -> None:
         if typed == "?P":

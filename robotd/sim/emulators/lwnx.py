@@ -4,6 +4,7 @@ import struct
 
 from firmware_proto.rangefinder import ShotStatus
 from robotd.hardware.wire.lwnx import DISTANCE, LASER_FIRING, NAME, LwnxWire, Packet, encoded
+from robotd.sim.emulators.speaking import SpeakingWhenAsked
 from robotd.sim.physics.plant import LaserPlant
 
 _NAME = b"LW20".ljust(16, b"\0")
@@ -11,14 +12,14 @@ _LOST_CM = -100
 _FULL_STRENGTH, _PERCENT = 65_535, 100
 
 
-class LwnxEmulator:
+class LwnxEmulator(SpeakingWhenAsked):
     """Fires from power-up, and never answers the first message after it."""
 
     def __init__(self, plant: LaserPlant) -> None:
+        super().__init__()
         self._plant = plant
         self._plant.switch(on=True)
         self._wire = LwnxWire()
-        self._said = bytearray()
         self._is_awake = False
 
     def receive(self, data: bytes, now_us: int) -> None:
@@ -27,20 +28,6 @@ class LwnxEmulator:
             if self._is_awake:
                 self._said += encoded(Packet(request.number, self._answer(request, now_us), writes=request.writes))
             self._is_awake = True
-
-    def advance(self, now_us: int) -> None:
-        """Let time pass: it does nothing unasked."""
-
-    @property
-    def next_event_us(self) -> int | None:
-        """Nothing is to come."""
-        return None
-
-    def take_output(self) -> bytes:
-        """Return, once, what it has for the host."""
-        said = bytes(self._said)
-        self._said.clear()
-        return said
 
     def _answer(self, request: Packet, now_us: int) -> bytes:
         if request.number == NAME:

@@ -3,6 +3,7 @@
 import math
 import re
 
+from robotd.sim.emulators.speaking import Speaking
 from robotd.sim.physics.plant import HeadPlant
 
 ARC_SECONDS_PER_STEP = 185.142857
@@ -15,10 +16,11 @@ _MODES = {"FT", "FV", "ED", "EE", "LE", "LD", "CI", "I"}
 _HALTS = {"H", "HP", "HT"}
 
 
-class PtuEmulator:
+class PtuEmulator(Speaking):
     """Echoes and is verbose until told otherwise, as after power-up."""
 
     def __init__(self, plant: HeadPlant) -> None:
+        super().__init__()
         self._plant = plant
         low_pan, high_pan, low_tilt, high_tilt = (limit / _STEP_RAD for limit in plant.limits_rad)
         # Rounded inwards: what it names as a limit it can reach.
@@ -31,7 +33,6 @@ class PtuEmulator:
         self._is_terse = False
         self._enforces = True
         self._typed = ""
-        self._said = bytearray()
         self._now_us = 0
         self._reset_done_us: int | None = None
         self._waits = False
@@ -59,12 +60,6 @@ class PtuEmulator:
         if self._reset_done_us is not None:
             return self._reset_done_us
         return self._plant.arrives_us if self._waits else None
-
-    def take_output(self) -> bytes:
-        """Return, once, what it has for the host."""
-        said = bytes(self._said)
-        self._said.clear()
-        return said
 
     def hit_limit(self, axis: str) -> None:
         """Lose steps: an axis was pushed to its stop."""

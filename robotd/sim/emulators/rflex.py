@@ -13,6 +13,7 @@ from robotd.hardware.wire.rflex import (
     RflexWire,
     frame,
 )
+from robotd.sim.emulators.speaking import Speaking
 from robotd.sim.physics.plant import BumperWatch, DrivePlant
 
 COUNTS_PER_M = 101_230.0
@@ -24,14 +25,14 @@ _ESCAPE = 0x1B
 _PANELS = 14
 
 
-class RflexEmulator:
+class RflexEmulator(Speaking):
     """Like the real one it drops orders that come in bursts, and speeds that its firmware loses."""
 
     def __init__(self, plant: DrivePlant) -> None:
+        super().__init__()
         self._plant = plant
         self._bumper_watch = BumperWatch(plant)
         self._wire = RflexWire()
-        self._said = bytearray()
         self._speeds = [0.0, 0.0]
         self._braked = True
         self._sender = 0
@@ -64,12 +65,6 @@ class RflexEmulator:
         """When the next report is due, or a moving base looks at its bumpers."""
         due_us = (self._report_us, self._bumper_watch.due_us)
         return min((at for at in due_us if at is not None), default=None)
-
-    def take_output(self) -> bytes:
-        """Return, once, what it has for the host."""
-        said = bytes(self._said)
-        self._said.clear()
-        return said
 
     def _pass(self, to_us: int) -> None:
         self._now_us = max(self._now_us, to_us)

@@ -4,6 +4,7 @@ import math
 import re
 
 from robotd.hardware.wire.rwi_ascii import BUMPERS_NONE, ITEMS, TICKS_PER_S
+from robotd.sim.emulators.speaking import Speaking
 from robotd.sim.physics.plant import BumperWatch, DrivePlant
 
 COUNTS_PER_M = 27_300.0
@@ -18,14 +19,14 @@ _COMMAND = re.compile(r"([A-Z]{2}|[TR][-+<>])(?: +([0-9A-Fa-f]{1,8}))?")
 _AXES = ("T", "R")
 
 
-class RwiEmulator:
+class RwiEmulator(Speaking):
     """Ramps as its plant does; stops by itself when its watchdog runs out or, unless told otherwise, when bumped."""
 
     def __init__(self, plant: DrivePlant) -> None:
+        super().__init__()
         self._plant = plant
         self._bumper_watch = BumperWatch(plant)
         self._typed = bytearray()
-        self._said = bytearray()
         self._has_failed = False
         self._echoes = True
         self._speeds = {"T": 0, "R": 0}
@@ -62,12 +63,6 @@ class RwiEmulator:
         """When something falls due."""
         due_us = (self._watchdog_us, self._report_us, self._bumper_watch.due_us)
         return min((at for at in due_us if at is not None), default=None)
-
-    def take_output(self) -> bytes:
-        """Return, once, what it has for the host."""
-        said = bytes(self._said)
-        self._said.clear()
-        return said
 
     def fail(self) -> None:
         """Report a servo error and run no motor until it is acknowledged."""

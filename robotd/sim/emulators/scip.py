@@ -4,6 +4,7 @@ import math
 
 from firmware_proto.rangefinder import ShotStatus
 from robotd.hardware.wire.scip import OK, sum_of
+from robotd.sim.emulators.speaking import Speaking
 from robotd.sim.physics.plant import ScannerPlant
 
 _STEPS_PER_TURN, _FIRST, _FRONT, _LAST = 1440, 0, 540, 1080
@@ -25,13 +26,13 @@ _PARAMETERS = {
 }
 
 
-class ScipEmulator:
+class ScipEmulator(Speaking):
     """Its light burns while it scans."""
 
     def __init__(self, plant: ScannerPlant) -> None:
+        super().__init__()
         self._plant = plant
         self._typed = bytearray()
-        self._said = bytearray()
         self._wanted: tuple[int, str] | None = None
         """When the scan under way is done, and the command for it."""
 
@@ -56,12 +57,6 @@ class ScipEmulator:
     def next_event_us(self) -> int | None:
         """When a scan is done."""
         return None if self._wanted is None else self._wanted[0]
-
-    def take_output(self) -> bytes:
-        """Return, once, what it has for the host."""
-        said = bytes(self._said)
-        self._said.clear()
-        return said
 
     def _obey(self, typed: str, now_us: int) -> None:
         if typed == "PP":

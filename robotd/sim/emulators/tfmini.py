@@ -5,6 +5,7 @@ But for the first generation, which streams and hears nothing.
 
 from firmware_proto.rangefinder import ShotStatus
 from robotd.hardware.wire.tfmini import FORMAT_CM, OUTPUT_OFF, OUTPUT_ON, RATE_0, TRIGGER, VERSION, Model, command
+from robotd.sim.emulators.speaking import Speaking
 from robotd.sim.physics.plant import LaserPlant, ShotAnswer
 
 _STREAM_US = 10_000
@@ -25,16 +26,16 @@ _STRENGTH_MIN, _STRENGTH_MAX = 101, 30_000
 """A good reading is never called weak, or saturated, for its strength."""
 
 
-class TfminiEmulator:
+class TfminiEmulator(Speaking):
     """Its light is always on."""
 
     def __init__(self, plant: LaserPlant, *, model: Model = Model.TFMINI_S) -> None:
+        super().__init__()
         self._plant = plant
         self._is_first = model is Model.TFMINI
         self._sentinels = _SENTINELS_OF.get(model, _SENTINELS)
         self._plant.switch(on=True)
         self._typed = bytearray()
-        self._said = bytearray()
         self._streams = True
         self._speaks = True
         self._next_us: int | None = None
@@ -77,12 +78,6 @@ class TfminiEmulator:
         streamed_us = self._next_us if self._streams and self._speaks else None
         pending_us = self._pending[0] if self._pending else None
         return min((at for at in (streamed_us, pending_us) if at is not None), default=None)
-
-    def take_output(self) -> bytes:
-        """Return, once, what it has for the host."""
-        said = bytes(self._said)
-        self._said.clear()
-        return said
 
     def _obey(self, frame: bytes, now_us: int) -> None:
         if frame == TRIGGER:

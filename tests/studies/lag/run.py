@@ -4,8 +4,6 @@ import argparse
 import asyncio
 import contextlib
 import os
-import subprocess
-import sys
 import tempfile
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from datetime import UTC, datetime
@@ -22,6 +20,7 @@ from tests.benchmarks.run import ROOT, commit, processor
 from tests.studies.lag.samples import Figures, Samples
 from tests.studies.lag.workload import LARGE_CELLS, REGIONS, large_grid
 from tests.support.real_rig import Rig, armed, give_precedence, rig
+from tests.support.spinning import spinning
 
 LEASE_S = 10.0
 """Longer than any stall: what is measured shall not end by it."""
@@ -102,28 +101,11 @@ async def _lived(it: Rig, kind: str, samples_file: Path) -> AsyncIterator[AsyncC
         await process.wait()
 
 
-@contextlib.contextmanager
-def busy() -> Iterator[None]:
-    """Keep every processor busy with programs of normal priority."""
-    spinning = [
-        subprocess.Popen([sys.executable, "-c", "while True: pass"], start_new_session=True)
-        for _ in range(os.cpu_count() or 1)
-    ]
-    for program in spinning:
-        os.setpriority(os.PRIO_PROCESS, program.pid, 0)
-    try:
-        yield
-    finally:
-        for program in spinning:
-            program.kill()
-            program.wait()
-
-
 def tables(loads: list[str]) -> Iterator[Row]:
     """Measure everything, quiet first."""
     with tempfile.TemporaryDirectory(prefix="robotd-lag-") as directory:
         for beside in loads:
-            with busy() if beside == "busy" else contextlib.nullcontext():
+            with spinning(os.cpu_count() or 1) if beside == "busy" else contextlib.nullcontext():
                 for kind, works in (("plain", PLAIN), ("regions", WITH_REGIONS)):
                     rows = asyncio.run(measured(Path(directory), beside, kind, works))
                     yield from (row for row in rows if row[0] != "a map for the next")

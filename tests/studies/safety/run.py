@@ -6,7 +6,6 @@ import contextlib
 import math
 import os
 import re
-import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -14,6 +13,7 @@ from pathlib import Path
 
 from robotd.sim.emulators.catalogue import Dialects, Firmware
 from tests.support.real_rig import NICE, give_precedence, rig
+from tests.support.spinning import spinning
 from tests.support.ways_to_end import CAUSES, ON_C_BOARDS
 
 BOUND_MS = 50.0
@@ -39,7 +39,7 @@ def main() -> None:
     print(f"{os.cpu_count()} processors kept {load}; daemon at nice {NICE} as in its unit; others' load: {_load()}")
     print("how late the stop was on all three wires [ms]; of a killed daemon: the deadman's stop of the base")
     print(f"{'':16}{'trials':>8}{'p50':>8}{'p99':>8}{'p99.9':>8}{'max':>8}")
-    with _precedence(), contextlib.nullcontext() if arguments.idle else _busy():
+    with _precedence(), contextlib.nullcontext() if arguments.idle else spinning(os.cpu_count() or 1):
         is_late = [_measure(cause, max(2, round(_TRIALS[cause] * arguments.share))) for cause in causes]
     print("loop stall: counted from 0.2 s after the loop stood still; so long it may, by design")
     sys.exit(any(is_late))
@@ -100,22 +100,6 @@ def _renice(pids: list[int], nice: int) -> None:
     for pid in pids:
         with contextlib.suppress(PermissionError, ProcessLookupError):
             os.setpriority(os.PRIO_PROCESS, pid, nice)
-
-
-@contextlib.contextmanager
-def _busy() -> Iterator[None]:
-    burners = [
-        subprocess.Popen([sys.executable, "-c", "while True: pass"], start_new_session=True)
-        for _ in range(os.cpu_count() or 1)
-    ]
-    for burner in burners:
-        os.setpriority(os.PRIO_PROCESS, burner.pid, 0)
-    try:
-        yield
-    finally:
-        for burner in burners:
-            burner.kill()
-            burner.wait()
 
 
 if __name__ == "__main__":

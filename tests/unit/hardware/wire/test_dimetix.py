@@ -44,6 +44,6 @@ def test_whatever_comes_nothing_is_raised_and_memory_is_bounded(pieces: list[byt
     for piece in pieces:
         wire.feed(piece)
     wire.feed(b"x" * 10_000)
-    assert len(wire._line) <= 64
+    assert len(wire._begun) <= 64
     wire.feed(b"\r")
     assert wire.feed(b"g0?\r\n") == [Ready(0)]

@@ -64,6 +64,6 @@ def test_whatever_comes_nothing_is_raised_and_memory_is_bounded(pieces: list[byt
     for piece in pieces:
         wire.feed(piece)
     wire.feed(bytes(10_000))
-    assert len(wire._buffer) <= 140
+    assert len(wire._begun) <= 140
     wire.feed(bytes(140))
     assert wire.feed(bytes.fromhex(VECTORS[0][0])) == [VECTORS[0][1]]

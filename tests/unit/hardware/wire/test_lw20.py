@@ -45,5 +45,5 @@ def test_whatever_comes_nothing_is_raised_and_memory_is_bounded(pieces: list[byt
     for piece in pieces:
         wire.feed(piece)
     wire.feed(b"x" * 10_000)
-    assert len(wire._line) <= LINE_MAX_BYTES
+    assert len(wire._begun) <= LINE_MAX_BYTES
     assert wire.feed(b"\rlf:1\n") == [Answer("lf", None, "1")]

@@ -67,6 +67,6 @@ def test_whatever_comes_nothing_is_raised_and_memory_is_bounded(pieces: list[byt
     for piece in pieces:
         wire.feed(piece)
     wire.feed(b"\xaa\x40\x04" * 5_000)
-    assert len(wire._buffer) <= lwnx.PAYLOAD_MAX_BYTES + 5
+    assert len(wire._begun) <= lwnx.PAYLOAD_MAX_BYTES + 5
     wire.reset()
     assert wire.feed(read(0)) == [Packet(0)]

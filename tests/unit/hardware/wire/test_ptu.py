@@ -53,6 +53,6 @@ def test_whatever_comes_nothing_is_raised_and_memory_is_bounded(pieces: list[byt
     for piece in pieces:
         wire.feed(piece)
     wire.feed(b"x" * 10_000)
-    assert len(wire._line) <= 256
+    assert len(wire._begun) <= 256
     wire.feed(b"\r")
     assert wire.feed(b"* 1\r") == [Done("1")]

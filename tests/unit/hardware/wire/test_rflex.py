@@ -73,6 +73,6 @@ def test_whatever_comes_nothing_is_raised_and_memory_is_bounded(pieces: list[byt
     for piece in pieces:
         wire.feed(piece)
     wire.feed(bytes(10_000))
-    assert len(wire._buffer) <= 80
+    assert len(wire._begun) <= 80
     wire.feed(bytes(80))
     assert wire.feed(bytes.fromhex(REPORT)) == [AxisReport(0, 202460, 30369)]

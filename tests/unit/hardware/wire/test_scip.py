@@ -118,7 +118,7 @@ def test_whatever_comes_nothing_is_raised_and_memory_is_bounded(pieces: list[byt
     for piece in pieces:
         wire.feed(piece)
     wire.feed(b"x" * 1000 + b"\n" + b"y\n" * 1000)
-    assert len(wire._line) <= LINE_MAX_BYTES
+    assert len(wire._begun) <= LINE_MAX_BYTES
     assert len(wire._block) <= BLOCK_MAX_LINES
     wire.feed(b"\n\n")
     assert wire.feed(b"QT\n00P\n\n") == [Reply("QT", "00")]

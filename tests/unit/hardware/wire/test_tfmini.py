@@ -78,6 +78,6 @@ def test_whatever_comes_nothing_is_raised_and_memory_is_bounded(pieces: list[byt
     wire = TfminiWire()
     for piece in pieces:
         wire.feed(piece)
-    assert len(wire._buffer) <= 32
+    assert len(wire._begun) <= 32
     wire.feed(bytes(40))
     assert wire.feed(bytes.fromhex("59 59 7B 00 E8 03 C8 08 E8")) == [Data(123, 1000)]
