@@ -8,7 +8,7 @@ from typing import Any
 from robotd.config.environment import runtime_dir
 from robotd.config.locations import locate
 from robotd.config.problems import Problems
-from robotd.config.text import read_text
+from robotd.config.toml_text import read_text
 from robotd.config.tree import Config
 from robotd.config.writer import write_table
 from robotd.core.endpoints import Endpoints

@@ -12,7 +12,7 @@ from robotd.hardware.transport.transport import Connect, Transport
 from robotd.sim.hosting.host import serve
 from robotd.sim.hosting.pace import HostTime, SlowedTime, Time
 from robotd.sim.robot import EmulatedRobot
-from robotd.sim.truth import truth_log
+from robotd.sim.truth_log import truth_log
 
 Lines = dict[str, "asyncio.Queue[Transport]"]
 

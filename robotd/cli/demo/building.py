@@ -9,7 +9,7 @@ from rich.console import Console
 from robotd.cli.demo.mission import Trial, follow, print_readings, stage
 from robotd.cli.demo.rig import Rig, rig, wired
 from robotd.cli.demo.room import fresh
-from robotd.cli.demo.truth import true_pose
+from robotd.cli.demo.true_pose import true_pose
 from robotd.cli.emulated import odometry_argument
 from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
 from robotd.cli.outputs import DEMO, output_argument, write

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials, stage
 from robotd.cli.demo.rig import FINISHED, Rig, rig, wired
-from robotd.cli.demo.truth import true_pose
+from robotd.cli.demo.true_pose import true_pose
 from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import whole

@@ -20,7 +20,7 @@ from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.wire import dynamixel
-from robotd.hardware.wire.dynamixel import ALERT, DynamixelWire, Message, Status
+from robotd.hardware.wire.dynamixel import ALERT, DynamixelWire, Message, ServoStatus
 
 # Zero is the middle of a turn, so no goal is near the ends of the counter.
 _COUNTS_PER_RAD = 4096 / math.tau
@@ -213,7 +213,7 @@ class DynamixelPanTilt(VendorDevice[Message]):
         self._accepted((await dialogue.ask(data, _from(servo), timeout_s=_ANSWER_S, tries=_TRIES)).message)
 
     def _accepted(self, message: Message) -> bytes:
-        assert isinstance(message, Status)
+        assert isinstance(message, ServoStatus)
         if message.error & ALERT and not self._is_rebooting and _HARDWARE not in self._health.faults:
             self._latch(_HARDWARE, f"servo {message.servo} overloaded, overheated or undervolted: clear reboots it")
         if message.error & ~ALERT:
@@ -223,7 +223,7 @@ class DynamixelPanTilt(VendorDevice[Message]):
 
 def _from(servo: int) -> Callable[[Message], bool]:
     def test(message: Message) -> bool:
-        return isinstance(message, Status) and message.servo == servo
+        return isinstance(message, ServoStatus) and message.servo == servo
 
     return test
 

@@ -8,12 +8,12 @@ from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue
 from robotd.hardware.wire import lw20
-from robotd.hardware.wire.lw20 import Answer, Lw20Wire
+from robotd.hardware.wire.lw20 import Lw20Answer, Lw20Wire
 
 _RAW = 1
 
 
-class Lw20Rangefinder(LightwareRangefinder[Answer]):
+class Lw20Rangefinder(LightwareRangefinder[Lw20Answer]):
     """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`."""
 
     STOP = b"\r\n" + lw20.LASER_OFF
@@ -23,7 +23,7 @@ class Lw20Rangefinder(LightwareRangefinder[Answer]):
         """Make the device; its bias is applied to every range."""
         super().__init__(Lw20Wire(), settings, wiring)
 
-    async def _greet(self, dialogue: Dialogue[Answer]) -> None:
+    async def _greet(self, dialogue: Dialogue[Lw20Answer]) -> None:
         # Before the stop, which would be lost as the message that only chooses the bus.
         dialogue.post(lw20.WAKE)
         dialogue.stop_now(self.STOP)
@@ -31,17 +31,17 @@ class Lw20Rangefinder(LightwareRangefinder[Answer]):
         await self._fire(dialogue, on=False)
         dialogue.post(lw20.FASTEST)
 
-    async def _product(self, dialogue: Dialogue[Answer]) -> str:
+    async def _product(self, dialogue: Dialogue[Lw20Answer]) -> str:
         heard = await dialogue.ask(lw20.PRODUCT, _named("p"), timeout_s=ANSWER_S, tries=TRIES, despite_stops=True)
         return heard.message.text
 
-    async def _fire(self, dialogue: Dialogue[Answer], *, on: bool) -> None:
+    async def _fire(self, dialogue: Dialogue[Lw20Answer], *, on: bool) -> None:
         await dialogue.ask(lw20.LASER_ON if on else lw20.LASER_OFF, _named("lf"), timeout_s=ANSWER_S, tries=TRIES)
 
-    async def _newest(self, dialogue: Dialogue[Answer], timeout_s: float) -> Shot:
+    async def _newest(self, dialogue: Dialogue[Lw20Answer], timeout_s: float) -> Shot:
         heard = await dialogue.ask(lw20.FIRST_RETURN_RAW, _named("ldf", _RAW), timeout_s=timeout_s, tries=TRIES)
         return self._shot(heard.time_ns, heard.message.number, None)
 
 
-def _named(name: str, index: int | None = None) -> Callable[[Answer], bool]:
+def _named(name: str, index: int | None = None) -> Callable[[Lw20Answer], bool]:
     return lambda answer: answer.name == name and index in {None, answer.index}

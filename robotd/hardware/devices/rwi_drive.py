@@ -24,10 +24,10 @@ from robotd.hardware.wire.rwi_ascii import (
     BUMPERS_NONE,
     STOP_BYTES,
     TICKS_PER_S,
-    Answer,
-    Event,
     Message,
     Report,
+    RwiAnswer,
+    RwiEvent,
     RwiWire,
     command,
 )
@@ -135,7 +135,7 @@ class RwiDrive(VendorDevice[Message]):
 
     async def _attend(self, dialogue: Dialogue[Message]) -> NoReturn:
         """Ask where the wheels are, again and again: what comes paces the set-points."""
-        before: Heard[Answer] | None = None
+        before: Heard[RwiAnswer] | None = None
         counts_before = (0, 0)
         polls = 0
         while True:
@@ -180,11 +180,11 @@ class RwiDrive(VendorDevice[Message]):
 
     def _report(self, heard: Heard[Message]) -> None:
         message = heard.message
-        if isinstance(message, (Answer, Report)) or self._dialogue is None:
+        if isinstance(message, (RwiAnswer, Report)) or self._dialogue is None:
             return
         self._hear(message, heard.time_ns)
 
-    def _hear(self, event: Event, time_ns: int) -> None:
+    def _hear(self, event: RwiEvent, time_ns: int) -> None:
         if event.name == "BS" and event.value is not None:
             self._bumped(event.value, time_ns)
         elif event.name == "WDT" and any(self._directions.values()):  # a base that was told to stand may let it run out
@@ -202,7 +202,7 @@ class RwiDrive(VendorDevice[Message]):
         if switches != BUMPERS_NONE:
             self._latch("bumper", "the base was bumped")
 
-    def _read_out(self, battery: Heard[Answer]) -> None:
+    def _read_out(self, battery: Heard[RwiAnswer]) -> None:
         with contextlib.suppress(DeviceError), self._judging():
             volts = battery_v(self.NAME, battery.message.value / _TENTHS_PER_V)
             self._readouts.publish(DriveReadout(battery.time_ns, volts, self._bumpers_rad))
@@ -213,12 +213,12 @@ class RwiDrive(VendorDevice[Message]):
         if IMPLAUSIBLE in self._health.faults:
             self._odometer.start_anew()
 
-    async def _ask(self, dialogue: Dialogue[Message], mnemonic: str) -> Heard[Answer]:
+    async def _ask(self, dialogue: Dialogue[Message], mnemonic: str) -> Heard[RwiAnswer]:
         def settles(message: Message) -> bool:
-            return isinstance(message, Answer) and message.mnemonic == mnemonic
+            return isinstance(message, RwiAnswer) and message.mnemonic == mnemonic
 
         heard = await dialogue.ask(command(mnemonic), settles, timeout_s=_ANSWER_S, tries=_TRIES, despite_stops=True)
-        assert isinstance(heard.message, Answer)
+        assert isinstance(heard.message, RwiAnswer)
         return Heard(heard.message, heard.time_ns)
 
 

@@ -20,7 +20,7 @@ from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.wire import scip
-from robotd.hardware.wire.scip import Parameters, Reply, ScipWire, Verdict
+from robotd.hardware.wire.scip import Parameters, ScipReply, ScipVerdict, ScipWire
 
 _REACH_M = 120.0
 _MM_PER_M = 1000.0
@@ -28,14 +28,14 @@ _ANSWER_S = 0.5
 _TRIES = 3
 _IDLE_POLL_S = 1.0
 _STATUS = {
-    Verdict.TOO_NEAR: ReadingStatus.TOO_NEAR,
-    Verdict.WEAK: ReadingStatus.WEAK,
-    Verdict.SATURATED: ReadingStatus.SATURATED,
-    Verdict.UNKNOWN: ReadingStatus.WEAK,
+    ScipVerdict.TOO_NEAR: ReadingStatus.TOO_NEAR,
+    ScipVerdict.WEAK: ReadingStatus.WEAK,
+    ScipVerdict.SATURATED: ReadingStatus.SATURATED,
+    ScipVerdict.UNKNOWN: ReadingStatus.WEAK,
 }
 
 
-class ScipRangefinder(VendorDevice[Reply]):
+class ScipRangefinder(VendorDevice[ScipReply]):
     """Implements :class:`robotd.hardware.devices.rangefinder.Rangefinder`; sets the fan of the robot's gaze."""
 
     NAME: ClassVar[str] = "rangefinder"
@@ -74,7 +74,7 @@ class ScipRangefinder(VendorDevice[Reply]):
         self._scan = None
         super().stop_now()
 
-    async def _scanned(self, dialogue: Dialogue[Reply], timeout_s: float) -> Heard[tuple[int, ...]]:
+    async def _scanned(self, dialogue: Dialogue[ScipReply], timeout_s: float) -> Heard[tuple[int, ...]]:
         known = self._known()
         order = scip.one_scan(known.first_step, known.last_step)
         heard = await dialogue.ask(order, _is_scan_or_refusal, timeout_s=timeout_s)
@@ -91,14 +91,14 @@ class ScipRangefinder(VendorDevice[Reply]):
         verdict, reach_m = known.verdict(distance_mm), known.range_max_mm / _MM_PER_M
         if verdict is None or distance_mm > known.range_max_mm:
             return self._instrument.shot(scan.time_ns, distance_mm / _MM_PER_M, None, reach_m=reach_m)
-        if verdict is Verdict.NOTHING:
+        if verdict is ScipVerdict.NOTHING:
             return self._instrument.nothing_within(scan.time_ns, reach_m, None)
         return Shot(scan.time_ns, _STATUS[verdict], None, None)
 
     def _unlikely(self) -> int:
         return self._instrument.implausible
 
-    async def _greet(self, dialogue: Dialogue[Reply]) -> None:
+    async def _greet(self, dialogue: Dialogue[ScipReply]) -> None:
         self._scan = None
         dialogue.stop_now(self.STOP)
         dialogue.post(scip.USE_SCIP2)  # older ones begin in SCIP 1.1; others do not know it, and say so
@@ -112,16 +112,16 @@ class ScipRangefinder(VendorDevice[Reply]):
         self._gaze.index = 0  # before the fan: the old index may lie outside the new one
         self._gaze.fan = Fan(first_rad, step_rad, parameters.last_step - parameters.first_step + 1)
 
-    async def _attend(self, dialogue: Dialogue[Reply]) -> NoReturn:
+    async def _attend(self, dialogue: Dialogue[ScipReply]) -> NoReturn:
         """It speaks only when asked, so that it is still there must be asked."""
         while True:
             await dialogue.until_idle(_IDLE_POLL_S)
             await self._described(dialogue)
 
-    def _report(self, heard: Heard[Reply]) -> None:
+    def _report(self, heard: Heard[ScipReply]) -> None:
         """Let go by that a scan was begun, and answers to stops."""
 
-    async def _described(self, dialogue: Dialogue[Reply]) -> Heard[Reply]:
+    async def _described(self, dialogue: Dialogue[ScipReply]) -> Heard[ScipReply]:
         return await dialogue.ask(
             scip.PARAMETERS,
             lambda reply: reply.command == "PP" and reply.status == scip.OK,
@@ -136,6 +136,6 @@ class ScipRangefinder(VendorDevice[Reply]):
         return self._parameters
 
 
-def _is_scan_or_refusal(reply: Reply) -> bool:
+def _is_scan_or_refusal(reply: ScipReply) -> bool:
     # OK only says that the command was understood: the scan comes in a second block, with a status of its own.
     return reply.command.startswith("MD") and reply.status != scip.OK

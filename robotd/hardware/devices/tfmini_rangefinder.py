@@ -33,9 +33,9 @@ from robotd.hardware.wire.tfmini import (
     Data,
     Message,
     Model,
-    Reply,
+    TfminiReply,
+    TfminiVerdict,
     TfminiWire,
-    Verdict,
 )
 
 _CM_PER_M = 100
@@ -53,9 +53,9 @@ _STALE = 2
 _IDLE_POLL_S = 1.0
 _VERSION_NUMBER = 0x01
 _STATUS = {
-    Verdict.WEAK: ReadingStatus.WEAK,
-    Verdict.SATURATED: ReadingStatus.SATURATED,
-    Verdict.AMBIENT: ReadingStatus.AMBIENT,
+    TfminiVerdict.WEAK: ReadingStatus.WEAK,
+    TfminiVerdict.SATURATED: ReadingStatus.SATURATED,
+    TfminiVerdict.AMBIENT: ReadingStatus.AMBIENT,
 }
 
 
@@ -98,9 +98,9 @@ class TfminiRangefinder(VendorDevice[Message]):
         data = heard.message
         verdict = data.verdict(self._model)
         distance_m = data.distance / _CM_PER_M
-        if verdict is Verdict.OUT_OF_RANGE:
+        if verdict is TfminiVerdict.OUT_OF_RANGE:
             return self._instrument.nothing_within(heard.time_ns, distance_m, data.strength)
-        if verdict is not Verdict.OK:
+        if verdict is not TfminiVerdict.OK:
             return Shot(heard.time_ns, _STATUS[verdict], None, data.strength)
         return self._instrument.shot(heard.time_ns, distance_m, data.strength)
 
@@ -173,4 +173,4 @@ def _is_data(message: Message) -> bool:
 
 
 def _is_version(message: Message) -> bool:
-    return isinstance(message, Reply) and message.number == _VERSION_NUMBER
+    return isinstance(message, TfminiReply) and message.number == _VERSION_NUMBER

@@ -14,7 +14,7 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.devices.with_health import WithHealth
 from robotd.hardware.link.dialogue import Dialogue, DialogueCounters, Heard, Wire
 from robotd.hardware.link.keep_up import keep_up
-from robotd.hardware.link.rest import seen_at_rest
+from robotd.hardware.link.seen_at_rest import seen_at_rest
 from robotd.hardware.link.tapped import TappedLine
 
 M = TypeVar("M")

@@ -8,7 +8,7 @@ from firmware_proto.schema import Message
 from robotd.core.errors import RobotdError
 from robotd.hardware.link.handshake import Terms, shake_hands
 from robotd.hardware.link.keep_up import keep_up
-from robotd.hardware.link.rest import seen_at_rest
+from robotd.hardware.link.seen_at_rest import seen_at_rest
 from robotd.hardware.link.session import LinkCounters, Session
 from robotd.hardware.link.tap import Tap
 from robotd.hardware.link.tapped import TappedLine

@@ -21,7 +21,7 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError, RobotdError, TransportError
 from robotd.core.silence import within
 from robotd.hardware.link.clock_sync import AHEAD_MAX_NS, ClockSync
-from robotd.hardware.link.request import Request, answered_type, result_of
+from robotd.hardware.link.pending_request import PendingRequest, answered_type, result_of
 from robotd.hardware.link.round_trip import RoundTrip
 from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.wire.board import EMERGENCY_SEQ, STOP_BYTES, BoardWire, Received
@@ -81,7 +81,7 @@ class Session:
         self._seqs: Counter[type[Message]] = Counter()
         self._round_trips: dict[type[Message], RoundTrip] = {}
         self._one_at_a_time = asyncio.Lock()
-        self._request: Request | None = None
+        self._request: PendingRequest | None = None
         self._posted: set[int] = set()
         """Types of request whose replies are only counted."""
         self._serving = False
@@ -181,7 +181,7 @@ class Session:
             # Arm alone: after a stop the board itself refuses whatever else would move it.
             if isinstance(message, Arm) and self._stops != stops:
                 raise self._stopped()
-            request = self._request = Request(self.device, message, self._next_seq(message))
+            request = self._request = PendingRequest(self.device, message, self._next_seq(message))
             began_ns = now_ns()
             try:
                 reply = await self._repeat_until_answered(request, takes_s)
@@ -190,7 +190,7 @@ class Session:
             self._round_trip(message).add((now_ns() - began_ns) / NS_PER_S)
             return reply
 
-    async def _repeat_until_answered(self, request: Request, takes_s: float) -> Received:
+    async def _repeat_until_answered(self, request: PendingRequest, takes_s: float) -> Received:
         data = self._wire.encode(request.message, request.seq)
         began_ns, unheard = now_ns(), 0
         attempt = 0

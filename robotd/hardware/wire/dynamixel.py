@@ -61,7 +61,7 @@ def crc16(data: bytes) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Status:
+class ServoStatus:
     """An answer."""
 
     servo: int
@@ -79,7 +79,7 @@ class Instruction:
     parameters: bytes
 
 
-Message = Status | Instruction
+Message = ServoStatus | Instruction
 
 
 def hardware_error(bits: int) -> str:
@@ -164,7 +164,7 @@ class DynamixelWire(Receiving):
 
 def _message(servo: int, body: bytes) -> Message:
     if body[0] == STATUS and len(body) > 1:
-        return Status(servo, body[1], body[2:])
+        return ServoStatus(servo, body[1], body[2:])
     return Instruction(servo, body[0], body[1:])
 
 

@@ -19,7 +19,7 @@ _NUMBER = re.compile(r"[+-]?\d{1,9}(?:\.\d{1,9})?")
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class Lw20Answer:
     """``ldf,0:23.67``, ``lf:0`` or ``p:LW20,1.0,1.0``."""
 
     name: str
@@ -54,9 +54,9 @@ class Lw20Wire(Receiving):
     def __init__(self) -> None:
         super().__init__("replies")
 
-    def feed(self, data: bytes) -> list[Answer]:
+    def feed(self, data: bytes) -> list[Lw20Answer]:
         """Take bytes as they come; return the messages that are whole now."""
-        messages: list[Answer] = []
+        messages: list[Lw20Answer] = []
         for byte in data:
             if byte in b"\r\n":
                 messages += self._finish()
@@ -66,14 +66,14 @@ class Lw20Wire(Receiving):
                 self._skip()
         return messages
 
-    def _finish(self) -> list[Answer]:
+    def _finish(self) -> list[Lw20Answer]:
         found = _ANSWER.fullmatch(self._begun.decode("ascii", errors="replace").strip())
         if found is None:
             self._skip()
             return []
         self._begun.clear()
         self._counters["replies"] += 1
-        return [Answer(found[1], None if found[2] is None else int(found[2]), found[3])]
+        return [Lw20Answer(found[1], None if found[2] is None else int(found[2]), found[3])]
 
 
 def requests(data: bytes) -> list[Word]:

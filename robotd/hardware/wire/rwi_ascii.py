@@ -34,7 +34,7 @@ _EVENT = re.compile(r"%([A-Z]+)(?: ([0-9A-Fa-f]{1,8}))?(.*)")
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class RwiAnswer:
     """The answer to a query."""
 
     mnemonic: str
@@ -49,14 +49,14 @@ class Report:
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class RwiEvent:
     """What the base says by itself: ``BS`` bump switches, ``WDT`` watchdog, ``BLO`` battery low, ``TERR``..."""
 
     name: str
     value: int | None
 
 
-Message = Answer | Report | Event
+Message = RwiAnswer | Report | RwiEvent
 
 
 def command(mnemonic: str, argument: int | None = None) -> bytes:
@@ -126,10 +126,10 @@ class RwiWire(Receiving):
             return None
         if found := _EVENT.fullmatch(text.replace("%%", "%")):
             self._counters["events"] += 1
-            return Event(found[1], None if found[2] is None else int(found[2], 16))
+            return RwiEvent(found[1], None if found[2] is None else int(found[2], 16))
         if found := _ANSWER.fullmatch(text):
             self._counters["answers"] += 1
-            return Answer(found[1], int(found[2], 16))
+            return RwiAnswer(found[1], int(found[2], 16))
         return self._in_report(text)
 
     def _in_report(self, text: str) -> Report | None:

@@ -29,7 +29,7 @@ OK, DATA = "00", "99"
 """Status of a command that was understood, and of the data that follow on an ``M`` command."""
 
 
-class Verdict(enum.StrEnum):
+class ScipVerdict(enum.StrEnum):
     """What a distance below the shortest that can be measured stands for."""
 
     NOTHING = "nothing"
@@ -40,14 +40,14 @@ class Verdict(enum.StrEnum):
     UNKNOWN = "unknown"
 
 
-_CODES_OF_TIME_OF_FLIGHT = {1: Verdict.NOTHING, 2: Verdict.TOO_NEAR, 4: Verdict.TOO_NEAR}
+_CODES_OF_TIME_OF_FLIGHT = {1: ScipVerdict.NOTHING, 2: ScipVerdict.TOO_NEAR, 4: ScipVerdict.TOO_NEAR}
 """UTM-30LX, table 4; taken for the younger UST, too, which is not written there."""
-_CODES_OF_PHASE_SHIFT = {1: Verdict.WEAK, 2: Verdict.WEAK, 18: Verdict.SATURATED}
+_CODES_OF_PHASE_SHIFT = {1: ScipVerdict.WEAK, 2: ScipVerdict.WEAK, 18: ScipVerdict.SATURATED}
 """URG-04LX, UBG-05LX, UHG-08LX, table 3. Its 0, "possibly at 22 m", is nothing to build on."""
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class ScipReply:
     """One answer whose sums were right."""
 
     command: str
@@ -79,7 +79,7 @@ class Parameters:
     front_step: int
 
     @classmethod
-    def of(cls, reply: Reply) -> "Parameters | None":
+    def of(cls, reply: ScipReply) -> "Parameters | None":
         """Return what an answer says; None if something is missing or cannot be."""
         said = dict(line.partition(":")[::2] for line in reply.lines)
         try:
@@ -91,13 +91,13 @@ class Parameters:
         is_ranged = 0 <= found.range_min_mm < found.range_max_mm
         return found if is_possible and is_ranged and 0 <= found.front_step <= found.last_step else None
 
-    def verdict(self, distance_mm: int) -> Verdict | None:
+    def verdict(self, distance_mm: int) -> ScipVerdict | None:
         """Return why a distance is none; None if it is one."""
         if self.range_min_mm <= distance_mm <= self.range_max_mm:
             return None
         is_time_of_flight = self.model.startswith(("UTM", "UST", "UXM"))
         codes = _CODES_OF_TIME_OF_FLIGHT if is_time_of_flight else _CODES_OF_PHASE_SHIFT
-        return codes.get(distance_mm, Verdict.UNKNOWN)
+        return codes.get(distance_mm, ScipVerdict.UNKNOWN)
 
 
 _STEPS_MAX = 20_000
@@ -145,9 +145,9 @@ class ScipWire(Receiving):
         super().__init__("replies", "sum_errors")
         self._block: list[str] = []
 
-    def feed(self, data: bytes) -> list[Reply]:
+    def feed(self, data: bytes) -> list[ScipReply]:
         """Take bytes as they come; return the messages that are whole now."""
-        replies: list[Reply] = []
+        replies: list[ScipReply] = []
         for byte in data:
             if byte == 0x0A:
                 replies += self._end_line()
@@ -162,7 +162,7 @@ class ScipWire(Receiving):
         super().reset()
         self._block.clear()
 
-    def _end_line(self) -> list[Reply]:
+    def _end_line(self) -> list[ScipReply]:
         if not self._begun:
             return self._end_block()
         if any(not 0x20 <= byte < 0x7F for byte in self._begun) or len(self._block) == BLOCK_MAX_LINES:
@@ -172,7 +172,7 @@ class ScipWire(Receiving):
         self._begun.clear()
         return []
 
-    def _end_block(self) -> list[Reply]:
+    def _end_block(self) -> list[ScipReply]:
         block, self._block = self._block, []
         if not block:
             return []
@@ -182,7 +182,7 @@ class ScipWire(Receiving):
             self._counters["sum_errors"] += 1
             return []
         self._counters["replies"] += 1
-        return [Reply(block[0], whole[0], tuple(whole[1:]))]
+        return [ScipReply(block[0], whole[0], tuple(whole[1:]))]
 
 
 def _checked(line: str) -> str | None:

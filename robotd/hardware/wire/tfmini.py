@@ -32,7 +32,7 @@ class Model(enum.StrEnum):
     TF_LUNA = "tf-luna"
 
 
-class Verdict(enum.StrEnum):
+class TfminiVerdict(enum.StrEnum):
     """What a data frame is worth."""
 
     OK = "ok"
@@ -50,33 +50,33 @@ class Data:
     """Unsigned, in centimetres or as the unit was set."""
     strength: int
 
-    def verdict(self, model: Model) -> Verdict:
+    def verdict(self, model: Model) -> TfminiVerdict:
         """Return what it is worth, coming from a model; strength first, then sentinels."""
         if self.strength == SATURATED_STRENGTH and model is not Model.TFMINI:
-            return Verdict.SATURATED
-        sentinel = _SENTINELS.get(self.distance) or _SENTINELS_OF_MODEL.get((model, self.distance), Verdict.OK)
-        is_weak = self.strength < _WEAK_BELOW[model] and sentinel is not Verdict.AMBIENT
-        return Verdict.WEAK if is_weak else sentinel
+            return TfminiVerdict.SATURATED
+        sentinel = _SENTINELS.get(self.distance) or _SENTINELS_OF_MODEL.get((model, self.distance), TfminiVerdict.OK)
+        is_weak = self.strength < _WEAK_BELOW[model] and sentinel is not TfminiVerdict.AMBIENT
+        return TfminiVerdict.WEAK if is_weak else sentinel
 
 
 SATURATED_STRENGTH = 0xFFFF
-_SENTINELS = {0xFFFF: Verdict.WEAK, 0xFFFE: Verdict.SATURATED, 0: Verdict.WEAK}
+_SENTINELS = {0xFFFF: TfminiVerdict.WEAK, 0xFFFE: TfminiVerdict.SATURATED, 0: TfminiVerdict.WEAK}
 _SENTINELS_OF_MODEL = {
-    (Model.TFMINI_S, 0xFFFC): Verdict.AMBIENT,
-    (Model.TFMINI, 1200): Verdict.OUT_OF_RANGE,
+    (Model.TFMINI_S, 0xFFFC): TfminiVerdict.AMBIENT,
+    (Model.TFMINI, 1200): TfminiVerdict.OUT_OF_RANGE,
 }
 _WEAK_BELOW = {Model.TFMINI: 20, Model.TFMINI_S: 101, Model.TFMINI_PLUS: 100, Model.TF_LUNA: 100}
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class TfminiReply:
     """The answer to a command: an echo of it, a status, or the version."""
 
     number: int
     payload: bytes
 
 
-Message = Data | Reply
+Message = Data | TfminiReply
 
 
 def command(number: int, payload: bytes = b"") -> bytes:
@@ -136,7 +136,7 @@ class TfminiWire(Receiving):
     def _message(self, frame: bytes) -> Message:
         if frame[0] == _COMMAND_HEAD:
             self._counters["replies"] += 1
-            return Reply(frame[2], frame[3:-1])
+            return TfminiReply(frame[2], frame[3:-1])
         self._counters["measurements"] += 1
         distance, strength, _ = _DATA.unpack(frame)
         return Data(distance, strength)
@@ -146,11 +146,11 @@ def requests(data: bytes) -> list[Word]:
     """Return what bytes to the device ask for, in words: without its version, which is asked to see that it lives."""
     if data == FIRST_STANDARD:
         return [Word("first generation: say data frames")]
-    replies = (message for message in TfminiWire().feed(data) if isinstance(message, Reply))
+    replies = (message for message in TfminiWire().feed(data) if isinstance(message, TfminiReply))
     return whole(data, ((command(one.number, one.payload), _word(one)) for one in replies))
 
 
-def _word(asked: Reply) -> Word | None:
+def _word(asked: TfminiReply) -> Word | None:
     """Return the word for a command, which looks like its echo."""
     frame = command(asked.number, asked.payload)
     return None if frame == VERSION else Word(f"command {asked.number:#04x} {asked.payload.hex(' ')}".rstrip())

@@ -36,7 +36,7 @@ from firmware_proto.dictionary import REQUEST_END, dictionary_for, requests_for
 from firmware_proto.framing import Deframer, RawFrame
 from firmware_proto.rules import RULES
 from firmware_proto.schema import Message, payload_size
-from robotd.sim.boards.outbox import Outbox
+from robotd.sim.boards.board_outbox import BoardOutbox
 
 Outcome = Message | Result | None
 """Of a request: its own reply, or a result (``Ack`` or NACK), or None while the reply must wait."""
@@ -75,7 +75,7 @@ class Board(ABC):
         self._beneath = BoardState.BOOT
         self._faults = Fault.NONE
         self._told: tuple[BoardState, Fault] | None = None
-        self._outbox = Outbox()
+        self._outbox = BoardOutbox()
         self._period_us = 0
         self._telemetry_us: int | None = None
         self._ttl_max_ms = 0

@@ -34,7 +34,7 @@ from firmware_proto.schema import Message, payload_size
 from robotd.core.errors import RecordingError
 from robotd.recording.comparison import NOTHING, Difference
 from robotd.recording.reader import Recording
-from robotd.sim.boards.outbox import Outbox
+from robotd.sim.boards.board_outbox import BoardOutbox
 from robotd.sim.fakes.plausible import aimed, plausible_answer, recorded_answer, state_after
 from robotd.sim.fakes.script import BOOKKEEPING, Asked, Said, is_standstill, read_script, starts_motion
 from robotd.sim.fakes.walk import Meeting, Walk
@@ -73,7 +73,7 @@ class FakeBoard:
         self._script = read_script(recording.entries, device)
         self._requests = requests_for(self._script.kind)
         self._deframer = Deframer()
-        self._outbox = Outbox()
+        self._outbox = BoardOutbox()
         self._hello: Hello | None = None
         self._session = 0
         self._now_us = 0

@@ -69,7 +69,7 @@ Step = Asked | Said
 
 
 @dataclass(frozen=True, slots=True)
-class Session:
+class RecordedSession:
     """What was said from one Hello to the next."""
 
     hello: HelloReply | None
@@ -81,7 +81,7 @@ class Script:
     """All that a recording knows of one board."""
 
     kind: BoardKind
-    sessions: tuple[Session, ...]
+    sessions: tuple[RecordedSession, ...]
     """Those in which the board told something; at least one, which may be empty."""
     pieces: dict[int, bytes]
     """Pieces of its dictionary by offset."""
@@ -141,13 +141,13 @@ class _Builder:
         self._deframers = {direction: Deframer() for direction in Direction}
         self._pieces: dict[int, bytes] = {}
         self._limits: Limits | None = None
-        self._sessions: list[Session] = []
+        self._sessions: list[RecordedSession] = []
         self._nonce: int | None = None
         self._begin_session()
 
     def script(self) -> Script:
         self._end_session()
-        sessions = self._sessions or [Session(None, ())]
+        sessions = self._sessions or [RecordedSession(None, ())]
         told = [replace(session, steps=_without_farewell(session.steps)) for session in sessions[:-1]]
         return Script(self._kind, (*told, sessions[-1]), self._pieces, self._limits)
 
@@ -176,7 +176,7 @@ class _Builder:
     def _end_session(self) -> None:
         # One in which the board told nothing is a handshake that failed: there is nothing to play.
         if any(isinstance(step, Said) and step.answers is None for step in self._steps):
-            self._sessions.append(Session(self._hello, tuple(self._steps)))
+            self._sessions.append(RecordedSession(self._hello, tuple(self._steps)))
         self._begin_session()
 
     def _asked(self, time_us: int, request: Message, seq: int) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from robotd.config.text import read_text
+from robotd.config.toml_text import read_text
 from robotd.core.errors import ConfigError
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.config.text import read_text
+from robotd.config.toml_text import read_text
 from robotd.config.writer import write_table
 
 

@@ -16,28 +16,28 @@ from robotd.hardware.link.dialogue import Dialogue, Heard
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
-from robotd.hardware.wire.lw20 import Answer, Lw20Wire
+from robotd.hardware.wire.lw20 import Lw20Answer, Lw20Wire
 
 
-class Thing(VendorDevice[Answer]):
+class Thing(VendorDevice[Lw20Answer]):
     """Is enabled by ``on``, and acknowledges by ``ack``."""
 
     NAME = "pantilt"
     STOP = b"stop\n"
 
-    async def _greet(self, dialogue: Dialogue[Answer]) -> None:
+    async def _greet(self, dialogue: Dialogue[Lw20Answer]) -> None:
         dialogue.post(self.STOP)
 
-    async def _attend(self, dialogue: Dialogue[Answer]) -> NoReturn:
+    async def _attend(self, dialogue: Dialogue[Lw20Answer]) -> NoReturn:
         await dialogue.until_lost()
 
-    async def _enable(self, dialogue: Dialogue[Answer]) -> None:
+    async def _enable(self, dialogue: Dialogue[Lw20Answer]) -> None:
         await dialogue.ask(b"on\n", lambda answer: answer.name == "on", timeout_s=1.0)
 
-    async def _acknowledge(self, dialogue: Dialogue[Answer]) -> None:
+    async def _acknowledge(self, dialogue: Dialogue[Lw20Answer]) -> None:
         await dialogue.ask(b"ack\n", lambda answer: answer.name == "ack", timeout_s=1.0, despite_stops=True)
 
-    def _report(self, heard: Heard[Answer]) -> None:
+    def _report(self, heard: Heard[Lw20Answer]) -> None:
         if heard.message.name == "fault":
             self._latch(heard.message.text)
 

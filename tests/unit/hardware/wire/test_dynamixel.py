@@ -5,11 +5,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robotd.hardware.wire import dynamixel
-from robotd.hardware.wire.dynamixel import DynamixelWire, Instruction, Message, Status, packet, read, sync_write, write
+from robotd.hardware.wire.dynamixel import (
+    DynamixelWire,
+    Instruction,
+    Message,
+    ServoStatus,
+    packet,
+    read,
+    sync_write,
+    write,
+)
 
 VECTORS: list[tuple[str, Message]] = [
-    ("FF FF FD 00 01 07 00 55 00 06 04 26 65 5D", Status(1, 0, b"\x06\x04\x26")),
-    ("FF FF FD 00 01 08 00 55 00 A6 00 00 00 8C C0", Status(1, 0, b"\xa6\x00\x00\x00")),
+    ("FF FF FD 00 01 07 00 55 00 06 04 26 65 5D", ServoStatus(1, 0, b"\x06\x04\x26")),
+    ("FF FF FD 00 01 08 00 55 00 A6 00 00 00 8C C0", ServoStatus(1, 0, b"\xa6\x00\x00\x00")),
     ("FF FF FD 00 01 03 00 01 19 4E", Instruction(1, 1, b"")),
 ]
 
@@ -47,7 +56,7 @@ def test_whatever_is_sent_is_understood_stuffing_and_all(servo: int, instruction
     parameters += b"\xff\xff\xfd"
     expected = Instruction(servo, instruction, parameters)
     if instruction == dynamixel.STATUS:
-        expected = Status(servo, parameters[0], parameters[1:])  # type: ignore[assignment]  # the other kind of message
+        expected = ServoStatus(servo, parameters[0], parameters[1:])  # type: ignore[assignment]  # the other kind of message
     assert DynamixelWire().feed(packet(servo, instruction, parameters)) == [expected]
 
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robotd.hardware.wire.rwi_ascii import Answer, Event, Message, Report, RwiWire, command
+from robotd.hardware.wire.rwi_ascii import Message, Report, RwiAnswer, RwiEvent, RwiWire, command
 
 MASK = 0xE0EF0
 REPORT = (
@@ -18,16 +18,16 @@ ITEMS = Report(
     )
 )
 VECTORS: list[tuple[bytes, list[Message]]] = [
-    (b"BV 1E0\r\n", [Answer("BV", 480)]),
-    (b"*BV 1e0\r", [Answer("BV", 480)]),
-    (b"RW 80000200\r\n", [Answer("RW", 0x80000200)]),
-    (b"TW     1f\r\n", [Answer("TW", 0x1F)]),
+    (b"BV 1E0\r\n", [RwiAnswer("BV", 480)]),
+    (b"*BV 1e0\r", [RwiAnswer("BV", 480)]),
+    (b"RW 80000200\r\n", [RwiAnswer("RW", 0x80000200)]),
+    (b"TW     1f\r\n", [RwiAnswer("TW", 0x1F)]),
     (REPORT, [ITEMS]),
     (REPORT.replace(b"TVE 1FFE", b"TVE 1FF"), []),
-    (b"%BS FFFB\r\n", [Event("BS", 0xFFFB)]),
-    (b"%WDT motors stopped\r\n", [Event("WDT", None)]),
-    (b"%%WDT motors stopped\r\n", [Event("WDT", None)]),
-    (b"%BHI\r\n", [Event("BHI", None)]),
+    (b"%BS FFFB\r\n", [RwiEvent("BS", 0xFFFB)]),
+    (b"%WDT motors stopped\r\n", [RwiEvent("WDT", None)]),
+    (b"%%WDT motors stopped\r\n", [RwiEvent("WDT", None)]),
+    (b"%BHI\r\n", [RwiEvent("BHI", None)]),
 ]
 
 
@@ -41,7 +41,7 @@ def test_each_vector_is_understood_whole_byte_by_byte_and_after_garbage(data: by
 
 def test_an_event_in_the_middle_of_a_report_does_not_spoil_it() -> None:
     spoken = REPORT.replace(b"TPH", b"%BS FFFB\r\nTPH")
-    assert RwiWire(MASK).feed(spoken) == [Event("BS", 0xFFFB), ITEMS]
+    assert RwiWire(MASK).feed(spoken) == [RwiEvent("BS", 0xFFFB), ITEMS]
 
 
 def test_a_report_with_a_damaged_item_is_dropped_whole_and_counted() -> None:
@@ -88,4 +88,4 @@ def test_whatever_comes_nothing_is_raised_and_memory_is_bounded(pieces: list[byt
     wire.feed(b"x" * 10_000)
     assert len(wire._begun) <= 64
     wire.feed(b"\r")
-    assert wire.feed(b"BV 1\r") == [Answer("BV", 1)]
+    assert wire.feed(b"BV 1\r") == [RwiAnswer("BV", 1)]

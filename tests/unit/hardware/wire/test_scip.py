@@ -9,9 +9,9 @@ from robotd.hardware.wire.scip import (
     BLOCK_MAX_LINES,
     LINE_MAX_BYTES,
     Parameters,
-    Reply,
+    ScipReply,
+    ScipVerdict,
     ScipWire,
-    Verdict,
     decoded,
     one_scan,
     sum_of,
@@ -31,15 +31,15 @@ def scan_of(*distances: str) -> bytes:
 
 
 SCAN = scan_of("1Dh", "00A", "0Cb")
-VECTORS: list[tuple[bytes, Reply]] = [
-    (b"QT\n00P\n\n", Reply("QT", "00")),
-    (b"BM\r\n02R\r\n\r\n", Reply("BM", "02")),
-    (SCAN, Reply("MD0044004600000", "99", ("0000", "1Dh00A0Cb"))),
+VECTORS: list[tuple[bytes, ScipReply]] = [
+    (b"QT\n00P\n\n", ScipReply("QT", "00")),
+    (b"BM\r\n02R\r\n\r\n", ScipReply("BM", "02")),
+    (SCAN, ScipReply("MD0044004600000", "99", ("0000", "1Dh00A0Cb"))),
 ]
 
 
 @pytest.mark.parametrize(("data", "message"), VECTORS)
-def test_each_answer_is_understood_whole_byte_by_byte_and_after_garbage(data: bytes, message: Reply) -> None:
+def test_each_answer_is_understood_whole_byte_by_byte_and_after_garbage(data: bytes, message: ScipReply) -> None:
     assert ScipWire().feed(data) == [message]
     wire = ScipWire()
     assert [one for byte in data for one in wire.feed(bytes((byte,)))] == [message]
@@ -62,16 +62,16 @@ def test_parameters_without_one_of_them_or_with_one_damaged_are_none(line: bytes
 @pytest.mark.parametrize(("key", "value"), [("ARES", 0), ("AMAX", 44), ("AFRT", 9999), ("AMIN", -1), ("ARES", 99999)])
 def test_parameters_that_cannot_be_are_none(key: str, value: int) -> None:
     said = {"DMIN": 20, "DMAX": 5600, "ARES": 1024, "AMIN": 44, "AMAX": 725, "AFRT": 384, key: value}
-    assert Parameters.of(Reply("PP", "00", tuple(f"{name}:{number}" for name, number in said.items()))) is None
+    assert Parameters.of(ScipReply("PP", "00", tuple(f"{name}:{number}" for name, number in said.items()))) is None
 
 
 def test_a_distance_is_three_characters_of_six_bits() -> None:
     assert decoded("1Dh") == 5432
     (scan,) = ScipWire().feed(SCAN)
     assert scan.distances_mm == (5432, 17, 0o2362)
-    assert Reply("PP", "00", ("DMIN:20",)).distances_mm is None
-    assert Reply("MD", "99", ("0000", "1Dh0")).distances_mm is None
-    assert Reply("MD", "99").distances_mm is None
+    assert ScipReply("PP", "00", ("DMIN:20",)).distances_mm is None
+    assert ScipReply("MD", "99", ("0000", "1Dh0")).distances_mm is None
+    assert ScipReply("MD", "99").distances_mm is None
 
 
 def test_no_flipped_bit_makes_another_scan() -> None:
@@ -95,19 +95,19 @@ def test_commands_are_those_of_the_document() -> None:
     [
         (URG, 20, None),
         (URG, 5600, None),
-        (URG, 5601, Verdict.UNKNOWN),
-        (URG, 0, Verdict.UNKNOWN),
-        (URG, 1, Verdict.WEAK),
-        (URG, 18, Verdict.SATURATED),
-        (URG, 7, Verdict.UNKNOWN),
-        (UTM, 1, Verdict.NOTHING),
-        (UTM, 2, Verdict.TOO_NEAR),
-        (UTM, 4, Verdict.TOO_NEAR),
-        (UTM, 5, Verdict.UNKNOWN),
+        (URG, 5601, ScipVerdict.UNKNOWN),
+        (URG, 0, ScipVerdict.UNKNOWN),
+        (URG, 1, ScipVerdict.WEAK),
+        (URG, 18, ScipVerdict.SATURATED),
+        (URG, 7, ScipVerdict.UNKNOWN),
+        (UTM, 1, ScipVerdict.NOTHING),
+        (UTM, 2, ScipVerdict.TOO_NEAR),
+        (UTM, 4, ScipVerdict.TOO_NEAR),
+        (UTM, 5, ScipVerdict.UNKNOWN),
     ],
 )
 def test_codes_are_judged_by_the_table_of_their_model(
-    parameters: Parameters, distance_mm: int, verdict: Verdict | None
+    parameters: Parameters, distance_mm: int, verdict: ScipVerdict | None
 ) -> None:
     assert parameters.verdict(distance_mm) is verdict
 
@@ -121,4 +121,4 @@ def test_whatever_comes_nothing_is_raised_and_memory_is_bounded(pieces: list[byt
     assert len(wire._begun) <= LINE_MAX_BYTES
     assert len(wire._block) <= BLOCK_MAX_LINES
     wire.feed(b"\n\n")
-    assert wire.feed(b"QT\n00P\n\n") == [Reply("QT", "00")]
+    assert wire.feed(b"QT\n00P\n\n") == [ScipReply("QT", "00")]

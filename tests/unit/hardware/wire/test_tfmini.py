@@ -5,17 +5,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robotd.hardware.wire import tfmini
-from robotd.hardware.wire.tfmini import Data, Message, Model, Reply, TfminiWire, Verdict, command
+from robotd.hardware.wire.tfmini import Data, Message, Model, TfminiReply, TfminiVerdict, TfminiWire, command
 
 VECTORS: list[tuple[str, Message]] = [
-    ("5A 07 01 08 00 02 6C", Reply(0x01, b"\x08\x00\x02")),
+    ("5A 07 01 08 00 02 6C", TfminiReply(0x01, b"\x08\x00\x02")),
     ("59 59 7B 00 E8 03 C8 08 E8", Data(123, 1000)),
     ("59 59 FF FF 3C 00 C8 08 BC", Data(0xFFFF, 60)),
     ("59 59 FE FF FF FF C8 08 7D", Data(0xFFFE, 0xFFFF)),
     ("59 59 FC FF F4 01 C8 08 72", Data(0xFFFC, 500)),
     ("59 59 00 00 2A 00 C8 08 AC", Data(0, 42)),
-    ("5A 05 11 00 70", Reply(0x11, b"\0")),
-    ("5A 05 11 00 6F", Reply(0x11, b"\0")),
+    ("5A 05 11 00 70", TfminiReply(0x11, b"\0")),
+    ("5A 05 11 00 6F", TfminiReply(0x11, b"\0")),
 ]
 
 
@@ -54,21 +54,21 @@ def test_commands_are_those_of_the_documents(made: bytes, text: str) -> None:
 @pytest.mark.parametrize(
     ("model", "distance", "strength", "verdict"),
     [
-        (Model.TFMINI_S, 123, 1000, Verdict.OK),
-        (Model.TFMINI_S, 0xFFFF, 60, Verdict.WEAK),
-        (Model.TFMINI_S, 0xFFFE, 0xFFFF, Verdict.SATURATED),
-        (Model.TFMINI_S, 0xFFFC, 500, Verdict.AMBIENT),
-        (Model.TFMINI_S, 300, 100, Verdict.WEAK),
-        (Model.TFMINI_PLUS, 0, 42, Verdict.WEAK),
-        (Model.TFMINI_PLUS, 0, 0xFFFF, Verdict.SATURATED),
-        (Model.TFMINI, 0xFFFF, 10, Verdict.WEAK),
-        (Model.TFMINI, 1200, 500, Verdict.OUT_OF_RANGE),
-        (Model.TF_LUNA, 55, 99, Verdict.WEAK),
-        (Model.TF_LUNA, 55, 0xFFFF, Verdict.SATURATED),
+        (Model.TFMINI_S, 123, 1000, TfminiVerdict.OK),
+        (Model.TFMINI_S, 0xFFFF, 60, TfminiVerdict.WEAK),
+        (Model.TFMINI_S, 0xFFFE, 0xFFFF, TfminiVerdict.SATURATED),
+        (Model.TFMINI_S, 0xFFFC, 500, TfminiVerdict.AMBIENT),
+        (Model.TFMINI_S, 300, 100, TfminiVerdict.WEAK),
+        (Model.TFMINI_PLUS, 0, 42, TfminiVerdict.WEAK),
+        (Model.TFMINI_PLUS, 0, 0xFFFF, TfminiVerdict.SATURATED),
+        (Model.TFMINI, 0xFFFF, 10, TfminiVerdict.WEAK),
+        (Model.TFMINI, 1200, 500, TfminiVerdict.OUT_OF_RANGE),
+        (Model.TF_LUNA, 55, 99, TfminiVerdict.WEAK),
+        (Model.TF_LUNA, 55, 0xFFFF, TfminiVerdict.SATURATED),
     ],
 )
 def test_a_reading_is_judged_by_strength_and_then_by_the_sentinels_of_its_model(
-    model: Model, distance: int, strength: int, verdict: Verdict
+    model: Model, distance: int, strength: int, verdict: TfminiVerdict
 ) -> None:
     assert Data(distance, strength).verdict(model) is verdict
 

@@ -9,7 +9,7 @@ from firmware_proto.schema import REPLY, Message
 _SEQ_SPAN = 1 << 16
 
 
-class Outbox:
+class BoardOutbox:
     """Bytes for the host, and the memory that a session needs to repeat and to count them."""
 
     def __init__(self) -> None:

@@ -9,7 +9,7 @@ from robotd.core.silence import within
 from robotd.hardware.wire.board import Received
 
 
-class Request:
+class PendingRequest:
     """One request under way; made and settled on the event loop."""
 
     def __init__(self, device: str, message: Message, seq: int) -> None:
