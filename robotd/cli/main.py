@@ -35,6 +35,7 @@ WORDS = {
     "look": ("hands", "point the head"),
     "measure": ("hands", "measure the range where the head points"),
     "scan": ("hands", "take one sweep where it stands, without a map"),
+    "calibrate": ("calibrate", "find the robot's own constants by driving and sweeping, and write them down"),
     "sim": ("simulate", "simulate a robot in a room: its three boards, on pseudo-terminals"),
     "fake": ("simulate", "answer as the recorded boards did, on pseudo-terminals: run a fresh daemon on them"),
     "import": ("imports", "make a recorded building of somebody else's log"),

@@ -12,6 +12,7 @@
     ├── LinkTimeout            the board did not answer in time
     ├── DeviceError            the board answered that it will not, or reported a fault
     ├── MissionError           the request cannot be done now; says why
+    ├── CalibrationError       what was seen does not tell the constants; says why
     ├── MapError               a stored map is missing or damaged; says what
     ├── TooLarge               it would take more memory than it may; says how much
     ├── RecordingError         a recording is missing or damaged; says what and where
@@ -97,6 +98,10 @@ class DeviceError(RobotdError):
 
 class MissionError(RobotdError):
     """The request cannot be done now; the message says why."""
+
+
+class CalibrationError(RobotdError):
+    """What was seen does not tell the constants that were sought; the message says why, and what would help."""
 
 
 class MapError(RobotdError):

@@ -94,6 +94,11 @@ class Sweep:
         told = ", ".join(f"{count} {status}" for count, status in counts if count)
         return f"Sweep({len(self.readings)} readings{': ' if told else ''}{told})"
 
+    @property
+    def is_clockwise(self) -> bool:
+        """Whether the head went round clockwise."""
+        return goes_clockwise(self.number)
+
     def count(self, status: ReadingStatus) -> int:
         """Return how many readings ended with this status."""
         return sum(reading.status is status for reading in self.readings)
@@ -114,3 +119,8 @@ def _reading(bearing_rad: float, range_m: float, cutoff_m: float) -> RangeReadin
     if range_m >= cutoff_m:
         return RangeReading(0, bearing_rad, ReadingStatus.MISS, cutoff_m)
     return RangeReading(0, bearing_rad, ReadingStatus.OK, range_m)
+
+
+def goes_clockwise(number: int) -> bool:
+    """Return whether the head goes clockwise in a sweep of this number: they take turns at it."""
+    return number % 2 == 1

@@ -16,6 +16,7 @@ CountsPerM = Annotated[float, Within(100.0, 1e8, "counts/m", either_sign=True)]
 CountsPerRad = Annotated[float, Within(10.0, 1e8, "counts/rad", either_sign=True)]
 Offset = Annotated[float, Within(-3.0, 3.0, "m")]
 Zero = Annotated[float, Within(-math.pi, math.pi, "rad")]
+Play = Annotated[float, Within(0.0, 0.5, "rad")]
 Bias = Annotated[float, Within(-1.0, 1.0, "m")]
 Nearest = Annotated[float, Within(0.001, 20.0, "m")]
 Farthest = Annotated[float, Within(0.05, 200.0, "m")]
@@ -47,6 +48,8 @@ class HeadMount:
     """Added to the pan that the head reads back, to get the angle from the robot's heading."""
     tilt_zero_rad: Zero = 0.0
     """Added to the tilt that the head reads back, to get the angle up from level."""
+    backlash_rad: Play = 0.0
+    """Play of the pan gears, which no readback shows: in a sweep the beam lags behind its motor by half of it."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be a mount."""

@@ -16,6 +16,7 @@ from robotd.hardware.devices.calibration import (
     HeadMount,
     Nearest,
     Offset,
+    Play,
     RangefinderCalibration,
     Zero,
 )
@@ -116,6 +117,8 @@ class PanTiltSettings(PortSettings):
     """Added to the pan that the head reads back, to get the angle from the robot's heading."""
     tilt_zero_rad: Zero = 0.0
     """Added to the tilt that the head reads back, to get the angle up from level."""
+    backlash_rad: Play = 0.0
+    """Play of the pan gears, which no readback shows: in a sweep the beam lags behind its motor by half of it."""
 
     def __post_init__(self) -> None:
         """Refuse what the port or the mount refuses."""
@@ -124,7 +127,7 @@ class PanTiltSettings(PortSettings):
     @property
     def mount(self) -> HeadMount:
         """Where the head sits."""
-        return HeadMount(self.x_m, self.y_m, self.pan_zero_rad, self.tilt_zero_rad)
+        return HeadMount(self.x_m, self.y_m, self.pan_zero_rad, self.tilt_zero_rad, self.backlash_rad)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,7 +6,7 @@ and the base turns between them; all readings end up in the frame of where the r
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from robotd.core.angles import wrap_rad
@@ -14,7 +14,7 @@ from robotd.core.bounds import Within, refuse_outside
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
-from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep, goes_clockwise
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
 from robotd.hardware.devices.pantilt import PanTiltLimits
 from robotd.mission.missions.sweep_plan import SweepPart, plan_sweep
@@ -93,8 +93,9 @@ class Sweeper:
             await self.robot.rangefinder.switch_laser(on=True)
             # By odometry, not by plan: the base turns only roughly as far as it should.
             turned_rad = wrap_rad(here.in_odom.heading_rad - start.in_odom.heading_rad)
+            await self._take_up_play(part.bearings_rad[0] - turned_rad, number)
             for bearing_rad in part.bearings_rad:
-                reading = await self._read_through_holds(bearing_rad - turned_rad, start, here)
+                reading = await self._read_through_holds(bearing_rad - turned_rad, self._lag_rad(number), start, here)
                 readings.append(reading)
                 on_reading(reading)
                 await self._check_enough(readings)
@@ -102,15 +103,30 @@ class Sweeper:
         return Sweep(number, start.in_odom, tuple(readings))
 
     def _parts(self, limits: PanTiltLimits, number: int) -> tuple[SweepPart, ...]:
+        margin_rad = _LIMIT_MARGIN_RAD + self.mount.backlash_rad
         try:
             return plan_sweep(
                 self.settings.readings,
-                max(limits.pan_min_rad + _LIMIT_MARGIN_RAD, -math.pi),
-                min(limits.pan_max_rad - _LIMIT_MARGIN_RAD, math.pi),
-                clockwise=number % 2 == 1,
+                max(limits.pan_min_rad + margin_rad, -math.pi),
+                min(limits.pan_max_rad - margin_rad, math.pi),
+                clockwise=goes_clockwise(number),
             )
         except ValueError as error:
             raise MissionError(f"the head cannot look round: {error}") from error
+
+    def _lag_rad(self, number: int) -> float:
+        """Return how far the beam points behind what the head reads back, in the sense of this sweep."""
+        half_rad = self.mount.backlash_rad / 2.0
+        return half_rad if goes_clockwise(number) else -half_rad
+
+    async def _take_up_play(self, pan_rad: float, number: int) -> None:
+        """Let the head begin from so far before the first bearing that its gears bear when it gets there."""
+        if self.mount.backlash_rad:
+            before_rad = pan_rad + 2.0 * self._lag_rad(number)
+            timeout_s = self.settings.aim_timeout_s
+            await self.hold.through(
+                lambda: self.robot.pantilt.aim(before_rad, self.settings.tilt_rad, timeout_s=timeout_s)
+            )
 
     async def _check_enough(self, readings: list[RangeReading]) -> None:
         failed = sum(reading.status in FAILED for reading in readings)
@@ -131,19 +147,22 @@ class Sweeper:
         await rotate_to(self.robot.drive, heading_rad, self.driving, self.hold)
         return await settle(self.robot.drive, self.settings.settle_s, self.driving)
 
-    async def _read_through_holds(self, pan_rad: float, start: Odometry, here: Odometry) -> RangeReading:
+    async def _read_through_holds(
+        self, pan_rad: float, lag_rad: float, start: Odometry, here: Odometry
+    ) -> RangeReading:
         holds = self.hold.count
 
         async def read() -> RangeReading:
             if self.hold.count != holds:
                 await self.robot.rangefinder.switch_laser(on=True)  # the stop put it out
-            return await self._read(pan_rad, start, here)
+            return await self._read(pan_rad, lag_rad, start, here)
 
         return await self.hold.through(read)
 
-    async def _read(self, pan_rad: float, start: Odometry, here: Odometry) -> RangeReading:
+    async def _read(self, pan_rad: float, lag_rad: float, start: Odometry, here: Odometry) -> RangeReading:
         aim = await self.robot.pantilt.aim(pan_rad, self.settings.tilt_rad, timeout_s=self.settings.aim_timeout_s)
         shot = await self.robot.rangefinder.shoot(timeout_s=self.settings.shot_timeout_s)
+        aim = replace(aim, pan_rad=aim.pan_rad + lag_rad)
         # The last argument is where the robot stands now, seen from where it stood first.
         return reading_in_robot(self.mount, self.calibration, aim, shot, start.in_odom.inverse() @ here.in_odom)
 

@@ -78,7 +78,7 @@ class Laser:
         if not self._on:
             return self._answer(ShotStatus.LASER_OFF)
         self._head.advance(at_us)
-        return self._answer_along(at_us, *self._head.true_angles_rad)
+        return self._answer_along(at_us, *self._head.beam_rad)
 
     def measure(self, at_us: int, pan_rad: float) -> ShotAnswer:
         """Measure level in a direction, wherever the head points."""
@@ -97,7 +97,7 @@ class Laser:
 
     def true_range_m(self) -> float:
         """Return the way of the light to the first wall or the floor; ``inf`` if there is neither."""
-        return self._true_range_m(*self._head.true_angles_rad)
+        return self._true_range_m(*self._head.beam_rad)
 
     def _true_range_m(self, pan_rad: float, tilt_rad: float) -> float:
         settings = self._settings
