@@ -71,6 +71,7 @@ def _follow(client: Client, mission: Mission, conclude: Conclude, arguments: arg
             kept = [event for event in events if _tell(event)]
     else:
         with shown(client, mission) as events:
+            # Three hundred of a sweep, and nothing is concluded from them.
             kept = [event for event in events if not isinstance(event, SweepProgress)]
     outcome = conclude(kept)
     if arguments.json and not arguments.events:

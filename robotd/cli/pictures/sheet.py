@@ -71,6 +71,7 @@ def paper(title: str, box: Rectangle, note: str) -> Axes:
     width, height = x_max - x_min + 2 * pad, y_max - y_min + 2 * pad
     scale = _LONG_SIDE_INCH / max(width, height)
     size = (max(width * scale, 5.0), height * scale + 1.1)
+    # Not through pyplot, which keeps every figure alive and may want a window.
     figure = Figure(figsize=size, dpi=_DPI, facecolor="white")
     FigureCanvasAgg(figure)
     axes = figure.add_axes((0.02, 0.6 / size[1], 0.96, height * scale / size[1]))
@@ -136,6 +137,7 @@ def save(axes: Axes, file: Path) -> None:
     figure = axes.get_figure()
     assert isinstance(figure, Figure)
     check(file, PNG)
+    # Whole in memory first: a picture that failed half-way must not take the place of a good one.
     drawn = io.BytesIO()
     figure.savefig(drawn, format="png")
     write(file, drawn.getvalue())
@@ -143,6 +145,7 @@ def save(axes: Axes, file: Path) -> None:
 
 def evidence(axes: Axes, spec: GridSpec, occupancy: NDArray[np.uint8], *, opacity: float = 1.0) -> None:
     """Lay a map ``uint8[rows, cols]`` on the paper: white is free, grey is unknown, black is occupied."""
+    # A cell is shown as a cell: smoothed, it would look like evidence that nobody has.
     axes.imshow(
         occupancy,
         cmap=_EVIDENCE,

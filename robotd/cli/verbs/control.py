@@ -80,6 +80,7 @@ def _telling(ask: Callable[[Client], None], words: str) -> Callable[[argparse.Na
 
 def _arm(client: Client) -> None:
     client.arm()
+    # Arming arms what is there. One who expects it to drive should hear at once what will not.
     absent = [device.name for device in client.status().devices if not device.armed]
     if absent:
         err().print(f"without {', '.join(absent)}: it can only look round where it stands")

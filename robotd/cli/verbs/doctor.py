@@ -93,6 +93,7 @@ def examine() -> Findings:
         kernels=kernels.in_use().about,
         compiled_kernels=_compiled("robotd.grid.kernels._native", _ROOT / "robotd/grid/kernels"),
         compiled_boards=_compiled("robotd.sim.firmware._native", _ROOT / "firmware_proto/c"),
+        # Looked for, not imported: to load it takes longer than all the rest of this.
         plots=importlib.util.find_spec("matplotlib") is not None,
         serial_ports=tuple(sorted(f"{port.device} {port.description}" for port in list_ports.comports())),
         config=_config(),

@@ -70,6 +70,7 @@ def _serve(
     plan: tuple[PlannedFault, ...] = (),
 ) -> None:
     """Serve the boards on pseudo-terminals until Ctrl-C, which is how it ends."""
+    # They go into a configuration, and the daemon may be started in another directory.
     links = None if arguments.links is None else arguments.links.absolute()
 
     def announce(ports: dict[str, str]) -> None:

@@ -30,6 +30,7 @@ def _localize(arguments: argparse.Namespace) -> int:
 
 def _found(events: list[MissionEvent]) -> Outcome:
     estimate = final_estimate(events)
+    # Lost and ambiguous are answers, not failures: scripts tell them apart by the exit code.
     code = {PoseState.LOST: LOST, PoseState.AMBIGUOUS: AMBIGUOUS}.get(estimate.state, OK)
     return Outcome(as_json(estimate), estimate_in_words(estimate), code)
 

@@ -95,6 +95,7 @@ class BoardWire:
             self._unknown_types += 1
             return None
         message, size = self._layouts[frame.type]
+        # A frame with a right checksum and a wrong size is another version of the contract, and never read in part.
         if len(frame.payload) != size:
             self._wrong_sizes += 1
             return None
@@ -126,6 +127,7 @@ def _word(frame: RawFrame, layouts: Mapping[int, type[Message]]) -> Word | None:
     kind = layouts.get(frame.type)
     if kind is None or payload_size(kind) != len(frame.payload):
         return Word(f"frame of type {frame.type:#04x} with {len(frame.payload)} bytes")
+    # Both go out at the pace of a loop: a slower machine would differ where nothing differed.
     if kind in (Ping, SetVelocity):
         return None
     repeat = Repeat.UNTIL_OBEYED if frame.seq == EMERGENCY_SEQ else Repeat.NUMBERED

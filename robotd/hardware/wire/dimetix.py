@@ -89,6 +89,7 @@ class DimetixWire(Receiving):
             if byte & 0x7F in b"\r\n":
                 messages += self._finish()
                 continue
+            # Lines are 7E1: where a port was opened with eight bits, the parity is the eighth.
             self._begun.append(byte & 0x7F)
             if len(self._begun) > LINE_MAX_BYTES:
                 self._skip()

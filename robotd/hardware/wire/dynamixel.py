@@ -98,6 +98,7 @@ def packet(servo: int, instruction: int, parameters: bytes = b"") -> bytes:
     >>> packet(1, PING).hex(" ")
     'ff ff fd 00 01 03 00 01 19 4e'
     """
+    # Nothing inside a packet may look like the beginning of one: such bytes are written with one more.
     body = (bytes((instruction,)) + parameters).replace(_STUFF, _STUFFED)
     head = HEADER + bytes((servo,)) + struct.pack("<H", len(body) + 2) + body
     return head + struct.pack("<H", crc16(head))
@@ -163,6 +164,7 @@ class DynamixelWire(Receiving):
 
 
 def _message(servo: int, body: bytes) -> Message:
+    # The bus is half duplex: what is no status is an echo of ours, and answers nothing.
     if body[0] == STATUS and len(body) > 1:
         return ServoStatus(servo, body[1], body[2:])
     return Instruction(servo, body[0], body[1:])

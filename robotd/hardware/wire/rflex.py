@@ -150,6 +150,7 @@ class RflexWire(Receiving):
                 return False
             if self._begun[5] <= DATA_MAX:
                 return True
+            # Nothing is escaped, so data may look like a head: only that is let go, and what follows is read again.
             self._skip(len(HEAD))
 
 
@@ -174,6 +175,7 @@ def requests(data: bytes) -> list[Word]:
 def _word(order: OtherFrame) -> Word | None:
     if (order.port, order.opcode, len(order.data)) == (MOTION, _SET_DIRECTION, _DIRECTION.size):
         axis, speed, _, _, _ = _DIRECTION.unpack(order.data)
+        # A halt is said until the base obeys: how often is a matter of the machine, that it was said is not.
         return None if speed else Word(f"halt {axis}", Repeat.UNTIL_OBEYED)
     if (order.port, order.opcode) == (SYSTEM, 1):
         return None

@@ -65,6 +65,7 @@ def command(mnemonic: str, argument: int | None = None) -> bytes:
     Raises:
         ValueError: the argument does not fit into 32 bits.
     """
+    # A query and a command without argument look alike: the mnemonic tells them apart.
     if argument is None:
         return f"{mnemonic}\r".encode("ascii")
     if not 0 <= argument <= 0xFFFFFFFF:
@@ -114,6 +115,7 @@ class RwiWire(Receiving):
             self._begun.clear()
             return None
         message = self._understood(text)
+        # Echoes and greetings are text that means nothing, and no damage: they are not counted as skipped.
         if message is None and self._items is None and not text.isascii():
             self._skip()
         self._begun.clear()

@@ -93,8 +93,10 @@ class Parameters:
 
     def verdict(self, distance_mm: int) -> ScipVerdict | None:
         """Return why a distance is none; None if it is one."""
+        # Codes are numbers below the shortest distance, so the bounds come first.
         if self.range_min_mm <= distance_mm <= self.range_max_mm:
             return None
+        # What a code means depends on how light is timed, and only the name of the model tells that.
         is_time_of_flight = self.model.startswith(("UTM", "UST", "UXM"))
         codes = _CODES_OF_TIME_OF_FLIGHT if is_time_of_flight else _CODES_OF_PHASE_SHIFT
         return codes.get(distance_mm, ScipVerdict.UNKNOWN)
@@ -151,6 +153,7 @@ class ScipWire(Receiving):
         for byte in data:
             if byte == 0x0A:
                 replies += self._end_line()
+            # Ends of lines may be LF or CR LF; the rule that an empty line ends a block holds for both.
             elif byte != 0x0D:
                 self._begun.append(byte)
                 if len(self._begun) > LINE_MAX_BYTES:

@@ -52,6 +52,7 @@ class Data:
 
     def verdict(self, model: Model) -> TfminiVerdict:
         """Return what it is worth, coming from a model; strength first, then sentinels."""
+        # The first generation says no such thing; its sentinels alone count.
         if self.strength == SATURATED_STRENGTH and model is not Model.TFMINI:
             return TfminiVerdict.SATURATED
         sentinel = _SENTINELS.get(self.distance) or _SENTINELS_OF_MODEL.get((model, self.distance), TfminiVerdict.OK)
@@ -109,6 +110,7 @@ class TfminiWire(Receiving):
                 messages.append(self._message(bytes(self._begun[:size])))
                 del self._begun[:size]
             else:
+                # One byte, not a frame: 59 59 may stand inside one, and the true beginning follows.
                 self._counters["sum_errors" if size else "bytes_skipped"] += 1
                 del self._begun[:1]
         return messages
@@ -144,6 +146,7 @@ class TfminiWire(Receiving):
 
 def requests(data: bytes) -> list[Word]:
     """Return what bytes to the device ask for, in words: without its version, which is asked to see that it lives."""
+    # Its three orders are one request: none of them means anything alone.
     if data == FIRST_STANDARD:
         return [Word("first generation: say data frames")]
     replies = (message for message in TfminiWire().feed(data) if isinstance(message, TfminiReply))

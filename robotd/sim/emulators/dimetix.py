@@ -58,6 +58,7 @@ class DimetixEmulator(Speaking):
         if found is None:
             if typed:
                 self._say("@E203")
+        # Up to ten share a line, so what is meant for another is passed over without a word.
         elif int(found[1]) == self._device:
             self._do(found[2].decode(), now_us)
 

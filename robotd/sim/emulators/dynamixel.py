@@ -79,6 +79,7 @@ class DynamixelEmulator(Speaking):
                     if servo in self._servos:
                         self._write(servo, register, order.parameters[at + 1 : at + 1 + size])
             return
+        # A servo that boots, or is not there, is silent: nothing tells a host which of the two it is.
         if order.servo not in self._servos or self._now_us < self._boots_until_us[order.servo]:
             return
         if order.instruction == dynamixel.PING:
@@ -116,6 +117,7 @@ class DynamixelEmulator(Speaking):
             self._watchdog[servo] = value
             self._is_expired[servo] = False
         elif register == dynamixel.TORQUE_ENABLE:
+            # A servo that shut down takes no torque until it was rebooted.
             if value and self._hardware_error[servo]:
                 return _ACCESS
             self._torque[servo] = value

@@ -24,6 +24,7 @@ class Lw20Emulator(SpeakingWhenAsked):
         while (end := self._typed.find(b"\n")) >= 0:
             typed = bytes(self._typed[:end]).strip()
             del self._typed[: end + 1]
+            # The first message after power-up only wakes it.
             if self._is_awake:
                 self._obey(typed.decode("ascii", errors="replace"), now_us)
             self._is_awake = True

@@ -25,6 +25,7 @@ class LwnxEmulator(SpeakingWhenAsked):
     def receive(self, data: bytes, now_us: int) -> None:
         """Take bytes from the host."""
         for request in self._wire.feed(data):
+            # The first message after power-up only wakes it.
             if self._is_awake:
                 self._said += encoded(Packet(request.number, self._answer(request, now_us), writes=request.writes))
             self._is_awake = True

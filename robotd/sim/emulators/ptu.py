@@ -74,6 +74,7 @@ class PtuEmulator(Speaking):
             self._plant.aim(0.0, 0.0)
             self._said += b"!T!T!P!P*"  # to find its stops it meets them, and says so
             self._end()
+        # `A` is answered when the head has arrived, however long that takes.
         if self._waits and (self._plant.arrives_us or 0) <= self._now_us:
             self._waits = False
             self._done("A")

@@ -93,6 +93,7 @@ class RflexEmulator(Speaking):
             self._run(*struct.unpack(">BIIIB", order.data))
 
     def _run(self, axis: int, speed: int, acceleration: int, torque: int, forwards: int) -> None:
+        # Its firmware loses these, silently: the fault that safe_speed in the wire is there for.
         if _ESCAPE in {speed >> 8 & 0xFF, speed >> 24 & 0xFF}:
             return
         self._speeds[axis] = (speed if forwards else -speed) / (COUNTS_PER_RAD if axis else COUNTS_PER_M)

@@ -42,6 +42,7 @@ class RwiEmulator(Speaking):
     def receive(self, data: bytes, now_us: int) -> None:
         """Take bytes from the host."""
         self.advance(now_us)
+        # As after power-up; HD ends it, and until then a host hears itself.
         if self._echoes:
             self._said += data
         self._typed += data
@@ -75,6 +76,7 @@ class RwiEmulator(Speaking):
         self._plant.advance(self._now_us)
         self._bumper_watch.looked(self._now_us)
         self._feel()
+        # The one protection that needs no host: each set-point of ours arms it again.
         if self._watchdog_us is not None and self._watchdog_us <= self._now_us:
             self._watchdog_us = None
             self._halt()
@@ -88,6 +90,7 @@ class RwiEmulator(Speaking):
         if bumpers != self._bumpers:
             self._bumpers = bumpers
             self._say(f"%BS {self._switches():04X}")
+            # In its firmware, without asking: the host hears of it when it has stopped.
             if bumpers and self._stops_on_bump:
                 self._halt()
 

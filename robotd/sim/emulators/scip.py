@@ -69,6 +69,7 @@ class ScipEmulator(Speaking):
         elif typed.startswith("MD") and typed[2:].isdigit() and len(typed) == 15:
             first, last = int(typed[2:6]), int(typed[6:10])
             refusal = "05" if last < first else "04" if last > _LAST else OK
+            # Answered twice: at once that it was understood, and with the data when the scan is done.
             self._say(typed, refusal)
             if refusal == OK:
                 self._plant.switch(on=True)

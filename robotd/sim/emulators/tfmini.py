@@ -44,6 +44,7 @@ class TfminiEmulator(Speaking):
     def receive(self, data: bytes, now_us: int) -> None:
         """Take bytes from the host."""
         self.advance(now_us)
+        # It understands none of these commands: a host that waits for an echo waits for ever.
         if self._is_first:
             return
         self._typed += data
@@ -100,6 +101,7 @@ class TfminiEmulator(Speaking):
         if not self._speaks:
             return
         if answer.status is ShotStatus.OK:
+            # A host judges by strength first, so a good reading must not look weak or saturated.
             strength = min(max(answer.strength, _STRENGTH_MIN), _STRENGTH_MAX)
             distance = round(answer.range_m * 100)
         else:

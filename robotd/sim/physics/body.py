@@ -157,6 +157,7 @@ class Body:
     def bumpers(self) -> int:
         """Pressed bumpers: bit i for a wall that touches it at ``i * 22.5`` degrees of the heading."""
         reach_m = self._settings.bumper_reach_m
+        # Walls are searched only where one can be near: most of the time none is.
         if self._clearance_m > reach_m:
             return 0
         distances, offsets = nearest_points(self._walls, (self._pose.x_m, self._pose.y_m))
@@ -202,7 +203,9 @@ class Body:
 
     def _randomized(self, way_m: float, turn_rad: float) -> Pose2:
         noise, gauss = self._noise, self._random.gauss
+        # Wheels count what they turned; only the body falls short of it.
         slipped_m = way_m * min(1.0, noise.slip_share * self._random.expovariate(1.0)) if noise.slip_share else 0.0
+        # Errors of independent steps add up as their squares, so noise grows with the root of the way.
         root_m, root_rad = math.sqrt(abs(way_m)), math.sqrt(abs(turn_rad))
         true_m = self._true_way_m(way_m) - slipped_m + gauss(0.0, noise.translation_noise_m) * root_m
         true_rad = self._true_turn_rad(turn_rad) + gauss(0.0, noise.rotation_noise_rad) * root_rad

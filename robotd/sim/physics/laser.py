@@ -91,6 +91,7 @@ class Laser:
         range_m = self._measured_m(self._true_range_m(pan_rad, tilt_rad))
         if range_m > self._settings.reach_m:
             return self._answer(ShotStatus.OVER_RANGE)
+        # Judged by what was measured, not by what is true: the instrument knows no other.
         if range_m < self._settings.range_min_m:
             return self._answer(ShotStatus.TOO_NEAR)
         return self._answer(ShotStatus.OK, range_m)
@@ -118,9 +119,11 @@ class Laser:
     def _measured_m(self, true_m: float) -> float:
         """Return what the instrument makes of it; every shot draws the same amount of randomness."""
         settings = self._settings
+        # Drawn whether they are needed or not: one outlier more must not change all shots after it.
         lottery, place = self._random.random(), self._random.random()
         error_m = self._random.gauss(0.0, self._noise.range_sigma_m)
         if lottery < self._noise.outlier_share:
+            # Anywhere up to twice the way: a wrong reading is short as often as it is long.
             farthest_m = min(settings.reach_m, 2.0 * true_m)
             return settings.range_min_m + place * max(0.0, farthest_m - settings.range_min_m)
         return true_m + error_m + settings.range_bias_m

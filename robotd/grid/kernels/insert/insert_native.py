@@ -28,6 +28,7 @@ def insert_sweep(
     """
     measured = len(readings)
     if between is not None:
+        # One call for both: a second one copied, compared and sorted the map again, 0.07 of 0.22 ms.
         readings = np.concatenate((readings, between))
     (rows, cols), count, heading_rad = cells.shape, len(readings), map_from_robot.heading_rad
     bearings_rad = heading_rad + readings[:, 0]
@@ -36,6 +37,7 @@ def insert_sweep(
     np.sin(bearings_rad, ahead[0])
     np.cos(bearings_rad, ahead[1])
     before = np.empty(cells.size, np.uint8)
+    # One more than can change: the kernel puts a cell down before it knows whether it changed.
     changed = np.empty(1 + min(cells.size, count * (max(rows, cols) + 3)), np.int64)
     job = ffi.new("insert_job *")
     job.cells = ffi.from_buffer("uint8_t[]", cells, require_writable=True)

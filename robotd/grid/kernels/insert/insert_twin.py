@@ -45,6 +45,7 @@ def insert_sweep(
     if between is not None:
         rays = _Rays.of(between, map_from_robot, spec)
         _, passed = ray_cells(rays.starts, rays.bearings_rad, rays.lengths_cells, spec.shape)
+        # After the readings: what a beam has crossed is no longer unseen.
         flat[passed[flat[passed] == NO_INFORMATION]] = lower[NO_INFORMATION]
     return np.flatnonzero(cells != before)
 

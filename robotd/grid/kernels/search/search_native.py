@@ -28,6 +28,7 @@ def renew_planes(planes: Planes, ground: Ground, window: CellWindow) -> Planes:
     """See :class:`.SearchKernel`."""
     if planes.handle is None:  # a twin's
         return make_planes(ground)
+    # Copied, since others may be searching the old ones: 0.06 ms of the 0.75 that a renewal takes at 256 x 256 cells.
     arrays = planes.cells.copy(), planes.pooled.copy(), planes.near.copy()
     return _filled(ground, planes.key_of, arrays, window)
 
@@ -57,6 +58,7 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     if planes.handle is None:  # a twin's
         planes = make_planes(planes.ground)
     jumping, headings_rad = question.readings[_jumping(len(question.readings))], question.headings_rad
+    # NumPy's sines, as everywhere: the twin's, to the last bit, decide in which cell a head lies.
     bearings_rad = headings_rad[:, None] + jumping[:, 0]
     sines, cosines = np.sin(bearings_rad), np.cos(bearings_rad)
     turned = np.array((np.sin(headings_rad), np.cos(headings_rad))).T.copy()
@@ -64,6 +66,7 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     readings[:, 0] /= question.resolution_m
     window = question.window
     limit = min(question.limit, window.size * len(headings_rad))
+    # Twice the limit before they are thinned out, and the 256 cells of a window more that one report may add.
     poses = np.empty((2 * limit + 256, 4), np.int32)
     job = ffi.new("search_job *")
     job.map = planes.handle
