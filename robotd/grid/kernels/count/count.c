@@ -131,15 +131,15 @@ static void share_scratch(const count_job *job, arena *from, bodies *kept)
 int64_t count_scratch_words(const count_job *job)
 {
     bodies none[THREADS_MAX];
-    arena sizes = {NULL, 0};
+    arena sizes = arena_in(NULL);
     share_scratch(job, &sizes, none);
-    return (int64_t)sizes.used;
+    return arena_words(&sizes);
 }
 
 int32_t count_feasible(count_job *job)
 {
     counting all = {.job = job, .instructions = instructions_for(job->instructions)};
-    arena scratch = {job->scratch, 0};
+    arena scratch = arena_in(job->scratch);
     if (all.instructions < 0)
         return 0;
     unfold(&job->map);

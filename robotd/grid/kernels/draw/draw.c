@@ -112,9 +112,9 @@ static void share_scratch(draw_job *job, arena *from)
 
 int64_t draw_scratch_words(draw_job *job)
 {
-    arena sizes = {NULL, 0};
+    arena sizes = arena_in(NULL);
     share_scratch(job, &sizes);
-    return (int64_t)sizes.used;
+    return arena_words(&sizes);
 }
 
 /* How many numbers the drawing takes at most, now that the groups are known; and how many slots a batch may have. */
@@ -133,7 +133,7 @@ static int64_t room_for_chains(draw_job *job)
 int64_t draw_groups(draw_job *job)
 {
     int32_t count = 0;
-    arena scratch = {job->scratch, 0};
+    arena scratch = arena_in(job->scratch);
     share_scratch(job, &scratch);
     memset(job->table, 0xff, (size_t)job->table_size * sizeof *job->table);
     int32_t *drawn = job->drawn;

@@ -330,15 +330,15 @@ static void share_scratch(search *s, const search_job *job, arena *from)
 int64_t search_scratch_words(const search_job *job)
 {
     search none;
-    arena sizes = {NULL, 0};
+    arena sizes = arena_in(NULL);
     share_scratch(&none, job, &sizes);
-    return (int64_t)sizes.used;
+    return arena_words(&sizes);
 }
 
 /* Begin with nothing found. */
 static void begin(search *s, search_job *job)
 {
-    arena scratch = {job->scratch, 0};
+    arena scratch = arena_in(job->scratch);
     s->job = job;
     for (int i = 0; i < POOLS; i++)
         s->grids[i] = (grid){pools[i], block_words(job->map, pools[i]), block_rows(job->map, pools[i]),

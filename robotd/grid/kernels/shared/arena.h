@@ -11,10 +11,26 @@ typedef struct {
     size_t used;      /* words */
 } arena;
 
+/* Arrays begin at cache lines: a vector of 64 bytes that lies across two of them costs two loads. */
+#define LINE_WORDS 8
+
+static inline arena arena_in(uint64_t *buffer)
+{
+    const size_t past = (uintptr_t)buffer / sizeof *buffer % LINE_WORDS;
+    return (arena){buffer == NULL ? NULL : buffer + (LINE_WORDS - past) % LINE_WORDS, 0};
+}
+
+/* How large the buffer must be, wherever it may begin. */
+static inline int64_t arena_words(const arena *from)
+{
+    return (int64_t)from->used + LINE_WORDS - 1;
+}
+
 static inline void *take_bytes(arena *from, size_t bytes)
 {
+    const size_t lines = (bytes + LINE_WORDS * sizeof *from->buffer - 1) / (LINE_WORDS * sizeof *from->buffer);
     void *taken = from->buffer == NULL ? NULL : from->buffer + from->used;
-    from->used += (bytes + 7) / 8;
+    from->used += lines * LINE_WORDS;
     return taken;
 }
 

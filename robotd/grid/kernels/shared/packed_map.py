@@ -7,6 +7,7 @@ A tile is 32 rows of one column of words; counts are kept for tiles, in bit-slic
 bits, 32]``: plane ``p`` holds bit ``p`` of all counts.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,8 @@ PAD_WORDS = 2
 """Columns of words on either side: what is two words outside is all outside, and so is its right neighbour."""
 BITS_MIN = 3
 """Seven planes are added at once: their sum needs three bits."""
+_LINE_WORDS = 8
+"""Of a cache line, and of the widest vector. As in arena.h."""
 
 Words = NDArray[np.uint64]
 
@@ -130,7 +133,13 @@ class PackedMap:
 
     def blank_counters(self, headings: int, bits: int) -> Words:
         """Return counters that have counted nothing."""
-        return np.zeros((len(self.tiles), headings, max(bits, BITS_MIN), TILE_ROWS), np.uint64)
+        shape = (len(self.tiles), headings, max(bits, BITS_MIN), TILE_ROWS)
+        size = math.prod(shape)
+        words = np.zeros(size + _LINE_WORDS - 1, np.uint64)
+        # From a cache line on: NumPy begins large arrays 16 bytes after one, and each vector would lie across two.
+        past = words.ctypes.data // words.itemsize % _LINE_WORDS
+        first = (_LINE_WORDS - past) % _LINE_WORDS
+        return words[first : first + size].reshape(shape)
 
 
 def planes_of(free: Words, blocking: Words, grown: Words) -> Words:
