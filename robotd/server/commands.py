@@ -1,14 +1,14 @@
 """Commands in, replies out.
 
-Requests are taken in the order they come and carried out side by side, a bounded number at a time, so that a slow one
-(saving a map) never delays a lease. A stop waits for nothing: it is obeyed where it is taken, before anybody asks
-whether it is well made or there is room for it; it is never answered from memory, and it cancels an ``arm`` that is
-under way.
+Requests are taken in turn and carried out side by side, a bounded number at a time and a second, so that neither a slow
+one (saving a map) nor a flood delays a lease. A stop waits for nothing: it is obeyed where it is taken, before anybody
+asks whether it is well made or there is room for it; it is never answered from memory, and it cancels an ``arm`` that
+is under way.
 """
 
 import asyncio
 import logging
-from typing import Any
+from typing import Any, Protocol
 
 from robotd.contract.answers import Done, ErrorCode
 from robotd.contract.envelope import (
@@ -21,33 +21,45 @@ from robotd.contract.envelope import (
 )
 from robotd.contract.events import MapChanged
 from robotd.contract.refusal import as_refusal
-from robotd.contract.request import Request
-from robotd.contract.requests import Arm, Disarm, Stop
+from robotd.contract.requests import Disarm, Renew, Stop
 from robotd.contract.stopping import STOPPING
 from robotd.core.errors import RobotdError, ServerError
 from robotd.server.handlers import Handlers
+from robotd.server.letters import Letter
+from robotd.server.rates import ALTOGETHER_HZ, PER_CLIENT_HZ, Rates
 from robotd.server.replies import Asker, Replies
 from robotd.server.request_log import RequestLog
-from robotd.server.router import Letter, Router
+from robotd.server.under_way import UnderWay
 
 _OVERTAKEN = ServerError(ErrorCode.REFUSED, "overtaken by a stop")
+_TOO_OFTEN = f"a client may ask {PER_CLIENT_HZ:g} times a second, all of them together {ALTOGETHER_HZ:g} times"
 _UNREADABLE = Stop("stopped by a client, in a request that is not well made")
 
 log = logging.getLogger(__name__)
 
 
+class Asking(Protocol):
+    """Where requests come from, and answers go to."""
+
+    async def receive(self) -> Letter:
+        """Wait for the next request."""
+
+    def answer(self, route: tuple[bytes, ...], reply: bytes) -> None:
+        """Answer; what cannot be sent is lost."""
+
+
 class Commands:
-    """Serves one ROUTER socket."""
+    """Serves who asks."""
 
     def __init__(
-        self, router: Router, handlers: Handlers, *, max_bytes: int, max_pending: int, remembered: int
+        self, letters: Asking, handlers: Handlers, *, max_bytes: int, max_pending: int, remembered: int
     ) -> None:
-        self._router = router
+        self._letters = letters
         self._handlers = handlers
         self._max_bytes = max_bytes
-        self._max_pending = max_pending
         self._replies = Replies(remembered)
-        self._pending: dict[asyncio.Task[None], Request[Any]] = {}
+        self._under_way = UnderWay(max_pending)
+        self._rates = Rates()
         self._overtaken: set[asyncio.Task[Any]] = set()
         self._log = RequestLog()
 
@@ -55,7 +67,7 @@ class Commands:
         """Serve until cancelled; requests under way are cancelled with it."""
         async with asyncio.TaskGroup() as group:
             while True:
-                await self._take(await self._router.receive(), group)
+                await self._take(await self._letters.receive(), group)
                 await asyncio.sleep(0)  # a flood of requests must not keep the loop from everything else
 
     async def _take(self, letter: Letter, group: asyncio.TaskGroup) -> None:
@@ -64,13 +76,13 @@ class Commands:
         if isinstance(numbered, BadRequest):
             if numbered.means_stop:
                 self._obey(_UNREADABLE, letter)
-            await self._router.answer(letter.route, encode_error(numbered.id, numbered.error))
+            self._letters.answer(letter.route, encode_error(numbered.id, numbered.error))
             return
         if is_stop := isinstance(numbered.request, STOPPING):
             self._obey(numbered.request, letter)
         reply = self._answer_at_once(numbered, letter, is_stop=is_stop)
         if reply is not None:
-            await self._router.answer(letter.route, reply)
+            self._letters.answer(letter.route, reply)
         # A repeat of what is under way is served by the one reply to come; a stop is obeyed and waited for each time.
         elif is_stop or not self._replies.is_under_way((letter.identity, numbered.id)):
             self._begin(numbered, letter, group)
@@ -78,10 +90,9 @@ class Commands:
     def _obey(self, stop: Stop | Disarm, letter: Letter) -> None:
         """Stop the robot, whatever is to be answered."""
         # An arm under way would go on to the next device after the stop.
-        for task, other in self._pending.items():
-            if isinstance(other, Arm):
-                self._overtaken.add(task)
-                task.cancel()
+        for task in self._under_way.arming():
+            self._overtaken.add(task)
+            task.cancel()
         try:
             self._handlers.halt(stop)
         except Exception:  # what takes the next stop must live on
@@ -94,25 +105,21 @@ class Commands:
         if not is_stop and self._replies.is_under_way(asker):
             return None
         given = None if is_stop else self._replies.given(asker)
-        # Stops have room of their own: requests that take long must not keep one from its answer.
-        if (
-            given is not None
-            or sum(isinstance(one, STOPPING) is is_stop for one in self._pending.values()) < self._max_pending
-        ):
+        if given is not None:
             return given
-        if is_stop:
-            return encode_result(numbered.id, Done())  # it was obeyed; only nobody waits for the mission's last word
-        return encode_error(numbered.id, ServerError(ErrorCode.BUSY, f"{self._max_pending} requests are under way"))
+        no_room = self._under_way.no_room(letter.identity, numbered.request)
+        if is_stop:  # it was obeyed; without room only nobody waits for the mission's last word
+            return None if no_room is None else encode_result(numbered.id, Done())
+        renews = isinstance(numbered.request, Renew)
+        if no_room is None and not self._rates.allow(letter.identity, only_its_own=renews):
+            no_room = _TOO_OFTEN
+        return None if no_room is None else encode_error(numbered.id, ServerError(ErrorCode.BUSY, no_room))
 
     def _begin(self, numbered: NumberedRequest, letter: Letter, group: asyncio.TaskGroup) -> None:
         self._replies.begin((letter.identity, numbered.id))
         task = group.create_task(self._serve(numbered, letter), name=f"request {numbered.request.cmd}")
-        self._pending[task] = numbered.request
-        task.add_done_callback(self._forget)
-
-    def _forget(self, task: asyncio.Task[None]) -> None:
-        del self._pending[task]
-        self._overtaken.discard(task)
+        self._under_way.begin(task, letter.identity, numbered.request)
+        task.add_done_callback(self._overtaken.discard)
 
     async def _serve(self, numbered: NumberedRequest, letter: Letter) -> None:
         asker: Asker = (letter.identity, numbered.id)
@@ -123,7 +130,7 @@ class Commands:
             # What was seen then is not what is now, so a repeat looks again; and a stop is never answered from memory.
             is_worth_it = not (numbered.request.only_looks or isinstance(numbered.request, STOPPING))
             self._replies.end(asker, reply if is_worth_it else None)
-        await self._router.answer(letter.route, reply)
+        self._letters.answer(letter.route, reply)
 
     async def _carry_out(self, numbered: NumberedRequest, letter: Letter) -> bytes:
         try:

@@ -1,46 +1,93 @@
-"""One XPUB socket: numbers what goes out, and tells who joins late what was said last."""
+"""One socket that publishes: numbers what goes out, and tells who joins late what was said last."""
 
 import asyncio
-import contextlib
-import logging
-from typing import NoReturn
-
-import zmq
-import zmq.asyncio
+from collections.abc import Callable
 
 from robotd.contract.topics import EVENTS, Published, Topic, encode_frame, to_wire
-from robotd.core.log_limit import LogLimit
+from robotd.server.connection import Connection
+from robotd.server.zmtp import Violation, message
 
-_JOIN = b"\x01"
-"""How a subscription begins on an XPUB socket; a zero ends one."""
-BETWEEN_GREETINGS_S = 0.02
-"""A greeting reaches all readers, so those who join within this are greeted together."""
-_MOST_JOINS = 1000
-"""At a time: who subscribes without end must not keep the loop."""
-_AFTER_ERROR_S = 0.1
-"""A socket that fails again and again must not keep the loop busy."""
-
-log = logging.getLogger(__name__)
+_JOIN, _LEAVE = b"\x01", b"\x00"
+"""How a subscription begins, and the end of one."""
+MOST_SUBSCRIPTIONS = 64
+"""Of one client, far more than there are topics."""
+GREETED_AFTER_S = 0.01
+"""Who subscribes to several topics is greeted when it has."""
 
 
 class Outlet:
-    """Publishes single frames and hears who subscribes; no message that goes wrong ends the daemon."""
+    """Publishes single frames to those who subscribed, as far as they take them."""
 
-    def __init__(self, socket: zmq.asyncio.Socket, session: str) -> None:
-        self._socket = socket
+    def __init__(self, session: str, asked_for: Callable[[Topic], None] | None = None) -> None:
+        """Publish in this session.
+
+        Args:
+            session: goes with every message.
+            asked_for: told of each topic that somebody joins, in place of telling that one what was said last.
+        """
         self._session = session
+        self._asked_for = asked_for
+        self._loop = asyncio.get_running_loop()
         self._seq: dict[Topic, int] = {}
         self._last: dict[Topic, bytes] = {}
-        self._complaints = LogLimit()
+        self._readers: dict[Connection, set[bytes]] = {}
+        """What each is subscribed to, as prefixes."""
+        self._new: dict[Connection, set[Topic]] = {}
 
-    async def send(self, topic: Topic, fields: dict[str, object]) -> None:
-        """Publish; a reader that is too slow misses it and sees the gap. Never waits."""
-        await self._send(topic, encode_frame(topic, self._session, self._number(topic), fields))
+    def send(self, topic: Topic, fields: dict[str, object]) -> None:
+        """Publish; a reader that is too slow misses it and sees the gap."""
+        self._send(topic, encode_frame(topic, self._session, self._number(topic), fields))
 
     async def send_large(self, event: Published) -> None:
         """Publish what takes long to encode; one call at a time, or the numbers may come out of order."""
         topic, _ = EVENTS[type(event)]
-        await self._send(topic, await asyncio.to_thread(_frame_of, event, self._session, self._number(topic)))
+        self._send(topic, await asyncio.to_thread(_frame_of, event, self._session, self._number(topic)))
+
+    def joined(self, connection: Connection) -> None:
+        """Let a client subscribe."""
+        self._readers[connection] = set()
+
+    def left(self, connection: Connection) -> None:
+        """Forget a client."""
+        self._readers.pop(connection, None)
+        self._new.pop(connection, None)
+
+    def heard(self, connection: Connection, frames: tuple[bytes, ...]) -> None:
+        """Take a subscription or the end of one; a Violation refuses what is neither, or too many."""
+        (said,) = frames
+        begin, prefix = said[:1], said[1:]
+        prefixes = self._readers[connection]
+        if begin == _LEAVE:
+            prefixes.discard(prefix)
+        elif begin == _JOIN:
+            prefixes.add(prefix)
+            if len(prefixes) > MOST_SUBSCRIPTIONS:
+                raise Violation(f"more than {MOST_SUBSCRIPTIONS} subscriptions")
+            self._welcome(connection, {topic for topic in Topic if topic.prefix.startswith(prefix)})
+        else:
+            raise Violation(f"{said[:20]!r}, which is no subscription")
+
+    def overheard(self, connection: Connection, frames: tuple[bytes, ...]) -> None:
+        """Leave it: what subscribes to too much says nothing that matters."""
+
+    def _welcome(self, connection: Connection, topics: set[Topic]) -> None:
+        if not self._new:
+            self._loop.call_later(GREETED_AFTER_S, self._greet)
+        self._new.setdefault(connection, set()).update(topics)
+
+    def _greet(self) -> None:
+        """Tell every new subscriber the last message of each topic.
+
+        The status comes last: when it arrives, every subscription made before it is in force.
+        """
+        new, self._new = self._new, {}
+        if self._asked_for is not None:
+            for topic in set().union(*new.values()):
+                self._asked_for(topic)
+            return
+        for connection, topics in new.items():
+            for topic in sorted(topics & self._last.keys(), key=lambda topic: topic is Topic.STATUS):
+                connection.send(self._last[topic])
 
     def _number(self, topic: Topic) -> int:
         seq = self._seq.get(topic, 0)
@@ -48,57 +95,14 @@ class Outlet:
         self._seq[topic] = seq + 1
         return seq
 
-    async def _send(self, topic: Topic, frame: bytes) -> None:
-        self._last[topic] = frame
-        await self._put(frame)
-
-    async def greet(self) -> NoReturn:
-        """Tell every new subscriber the last message of each topic, until cancelled.
-
-        XPUB cannot answer one subscriber alone: a repeat reaches all. So repeats are kept rare, and readers ignore
-        a number they have seen. The status comes last: when it arrives, every subscription made before it is in force.
-        """
-        while True:
-            for topic in sorted(await self.joined(), key=lambda topic: topic is Topic.STATUS):
-                if topic in self._last:
-                    await self._put(self._last[topic])
-            await asyncio.sleep(BETWEEN_GREETINGS_S)
-
-    async def joined(self) -> set[Topic]:
-        """Wait until somebody subscribes, and return to which topics."""
-        topics: set[Topic] = set()
-        while not topics:
-            try:
-                topics |= _topics_of(await self._socket.recv())
-            except Exception as error:
-                self._complain("a subscription could not be received", error)
-                await asyncio.sleep(_AFTER_ERROR_S)
-        with contextlib.suppress(Exception):  # none waits, or the next wait will tell
-            for _ in range(_MOST_JOINS):
-                topics |= _topics_of(await self._socket.recv(zmq.NOBLOCK))
-        return topics
-
-    async def _put(self, frame: bytes) -> None:
-        try:
-            await self._socket.send(frame)
-        except Exception as error:  # its readers see the gap
-            self._complain("a message could not be published", error)
-
-    def _complain(self, what: str, error: Exception) -> None:
-        if self._socket.closed:
-            raise error
-        said = error.strerror if isinstance(error, zmq.ZMQError) else repr(error)
-        if line := self._complaints.line(f"{what}: {said}"):
-            log.warning("%s", line)
+    def _send(self, topic: Topic, frame: bytes) -> None:
+        data = message(frame)  # made once: what waits for many readers is one and the same
+        self._last[topic] = data
+        for connection, prefixes in tuple(self._readers.items()):
+            if any(frame.startswith(prefix) for prefix in prefixes):
+                connection.send(data)
 
 
 def _frame_of(event: Published, session: str, seq: int) -> bytes:
     topic, fields = to_wire(event)
     return encode_frame(topic, session, seq, fields)
-
-
-def _topics_of(message: bytes) -> set[Topic]:
-    """Return the topics a subscription begins to match; none if it is something else."""
-    if not message.startswith(_JOIN):
-        return set()
-    return {topic for topic in Topic if topic.prefix.startswith(message[1:])}

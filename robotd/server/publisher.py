@@ -12,7 +12,7 @@ from robotd.core.errors import RobotdError
 from robotd.core.log_limit import LogLimit
 from robotd.server.control import Control
 from robotd.server.map_queue import MapQueue
-from robotd.server.outlet import BETWEEN_GREETINGS_S, Outlet
+from robotd.server.outlet import Outlet
 
 DEPTH = 4096
 """How many events may wait for their turn."""
@@ -23,12 +23,13 @@ log = logging.getLogger(__name__)
 class Publisher:
     """Publishes the events of the mission, and the lines of its log."""
 
-    def __init__(self, control: Control, events: Subscription[Published], state: Outlet, maps: Outlet) -> None:
+    def __init__(self, control: Control, events: Subscription[Published], session: str) -> None:
         """Take the events of ``control`` by a subscription that is open already, so that the very first are there."""
+        self.state = Outlet(session)
+        """Everything small."""
+        self.maps = Outlet(session, self._joined_maps)
         self._control = control
         self._events = events
-        self._state = state
-        self._maps = maps
         self._map_queue = MapQueue()
         self._complaints = LogLimit()
 
@@ -36,15 +37,13 @@ class Publisher:
         """Publish until cancelled."""
         async with asyncio.TaskGroup() as group:
             group.create_task(self._follow_events())
-            group.create_task(self._state.greet())
             group.create_task(self._follow_maps())
-            group.create_task(self._greet_map_readers())
 
     async def _follow_events(self) -> NoReturn:
         try:
             # From the first moment on there is a status for the greeting, which clients take as the sign to begin.
             status = await self._control.perform(GetStatus())
-            await self._publish(status)
+            self._publish(status)
         except Exception as error:  # the next one comes within a second
             self._complain("the first status", error)
         while True:
@@ -52,12 +51,12 @@ class Publisher:
             if isinstance(event, MapChanged):
                 self._map_queue.put(event)
             else:
-                await self._publish(event)
+                self._publish(event)
 
-    async def _publish(self, event: Published) -> None:
+    def _publish(self, event: Published) -> None:
         try:
             topic, fields = to_wire(event)
-            await self._state.send(topic, fields)
+            self.state.send(topic, fields)
         except Exception as error:  # one event that has no form on the wire must not end those that have one
             self._complain(type(event).__name__, error)
 
@@ -65,11 +64,9 @@ class Publisher:
         if line := self._complaints.line(f"{what} was not published: {error!r}"):
             log.error("%s", line)
 
-    async def _greet_map_readers(self) -> NoReturn:
-        while True:
-            if Topic.MAP in await self._maps.joined():
-                self._map_queue.ask_for_whole()
-            await asyncio.sleep(BETWEEN_GREETINGS_S)
+    def _joined_maps(self, topic: Topic) -> None:
+        if topic is Topic.MAP:
+            self._map_queue.ask_for_whole()
 
     async def _follow_maps(self) -> NoReturn:
         while True:
@@ -80,7 +77,7 @@ class Publisher:
 
     async def _publish_map(self, change: MapChanged) -> None:
         try:
-            await self._maps.send_large(change)
+            await self.maps.send_large(change)
         except Exception as error:  # no memory, no thread: the next one may have them
             self._complain(type(change).__name__, error)
 

@@ -81,6 +81,7 @@ class FakeControl:
         self.arming = asyncio.Event()
         self.arming.set()
         self.begun = asyncio.Event()
+        self.halted = asyncio.Event()
         self.armed = False
         self.map_in_use: MapChanged | None = None
         self.mission_id = 0
@@ -113,6 +114,7 @@ class FakeControl:
     def halt(self, request: Stop | Disarm) -> None:
         self.calls.append(f"stop: {request.reason}")
         self.armed = False
+        self.halted.set()
         self._stop_reason = request.reason
         if self._mission is not None:
             self._mission.cancel()

@@ -1,14 +1,12 @@
 """Requests side by side, bounded, once each; and a stop before all of them. Virtual time, a socket of lists."""
 
 import asyncio
-import errno
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
 import msgpack
 import pytest
-import zmq
 
 from robotd.contract.envelope import Reply, decode_reply, encode_request
 from robotd.contract.missions import DriveTo, Localize
@@ -23,34 +21,28 @@ from robotd.contract.requests import (
     MapSave,
     MapShow,
     RecordStop,
+    Renew,
     Stop,
 )
 from robotd.core.errors import ServerError
 from robotd.server.commands import Commands
 from robotd.server.handlers import Handlers
-from robotd.server.router import Router
+from robotd.server.letters import Letter, letter
 
 
 class ListSocket:
-    """Takes requests from a queue, keeps the replies; fails where a test says so."""
-
-    closed = False
+    """Takes requests from a queue, keeps the replies."""
 
     def __init__(self) -> None:
-        self.requests: asyncio.Queue[list[bytes] | zmq.ZMQError] = asyncio.Queue()
+        self.requests: asyncio.Queue[list[bytes]] = asyncio.Queue()
         self.sent: list[list[bytes]] = []
-        self.send_errors: list[zmq.ZMQError] = []
 
-    async def recv_multipart(self, copy: bool) -> list[zmq.Frame]:
-        frames = await self.requests.get()
-        if isinstance(frames, zmq.ZMQError):
-            raise frames
-        return [zmq.Frame(frame, copy=True) for frame in frames]
+    async def receive(self) -> Letter:
+        identity, *frames = await self.requests.get()
+        return letter(identity, tuple(frames), "")
 
-    async def send_multipart(self, frames: list[bytes]) -> None:
-        if self.send_errors:
-            raise self.send_errors.pop()
-        self.sent.append(frames)
+    def answer(self, route: tuple[bytes, ...], reply: bytes) -> None:
+        self.sent.append([*route, reply])
 
     def ask(self, number: int, command: Request[Any], client: bytes = b"A") -> None:
         self.requests.put_nowait([client, encode_request(number, command)])
@@ -71,7 +63,7 @@ class ListSocket:
 async def served(control: Any) -> AsyncIterator[ListSocket]:
     socket = ListSocket()
     commands = Commands(
-        Router(socket),  # type: ignore[arg-type]  # the two methods it uses
+        socket,
         Handlers(control, "session", 0.5),
         max_bytes=65536,
         max_pending=4,
@@ -172,17 +164,6 @@ async def test_a_stop_that_fails_in_the_daemon_does_not_end_what_takes_the_next(
         assert control.calls == ["stop: again"]
 
 
-@pytest.mark.parametrize("number", [errno.EAGAIN, errno.EMFILE, errno.ENOTSUP, errno.EHOSTUNREACH, errno.EINTR])
-async def test_no_error_of_the_socket_ends_the_daemon(make_control: Any, number: int) -> None:
-    async with served(make_control()) as socket:
-        socket.send_errors.append(zmq.ZMQError(number))
-        socket.requests.put_nowait(zmq.ZMQError(number))
-        socket.ask(1, Hello())
-        socket.ask(2, Hello())
-        await asyncio.sleep(1)
-        assert socket.outcome == {2: "ok"}
-
-
 async def test_the_log_says_who_asked_for_what_and_what_came_of_it(
     make_control: Any, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -236,11 +217,65 @@ async def test_too_many_at_a_time_are_refused_as_busy_but_a_stop_is_not(make_con
     control.arming.clear()
     async with served(control) as socket:
         for number in range(6):
-            socket.ask(number, Arm())
+            socket.ask(number, Arm(), b"AABBCC"[number : number + 1])
         socket.ask(9, Stop("enough"))
         await asyncio.sleep(1)
         assert control.calls == ["arm"] * 4 + ["stop: enough"]
         assert socket.outcome == {4: "busy", 5: "busy", 9: "ok"} | dict.fromkeys(range(4), "refused")
+
+
+async def test_slow_requests_of_one_client_leave_room_for_the_others_and_for_their_renewals(make_control: Any) -> None:
+    control = make_control()
+    control.armed = True
+    control.release.clear()
+    control.arming.clear()
+    async with served(control) as socket:
+        socket.ask(1, Localize(lease_s=0.5), b"B")
+        await asyncio.sleep(0.1)
+        for number in range(10, 20):
+            socket.ask(number, Arm(), b"A")
+        socket.ask(2, GetStatus(), b"B")
+        for number in range(3, 7):
+            socket.ask(number, Renew(1), b"B")
+            await asyncio.sleep(0.3)
+        assert control.is_busy, "its lease was kept"
+        assert socket.outcome == dict.fromkeys(range(1, 7), "ok") | dict.fromkeys(range(12, 20), "busy")
+
+
+async def test_a_client_that_floods_is_refused_and_others_are_not_and_its_stop_is_obeyed(make_control: Any) -> None:
+    control = make_control()
+    control.armed = True
+    async with served(control) as socket:
+        for number in range(1000):
+            socket.ask(number, Hello(), b"A")
+            await asyncio.sleep(0.0001)
+        socket.ask(1001, Stop("enough"), b"A")
+        socket.ask(1002, Hello(), b"B")
+        await asyncio.sleep(0.1)
+        outcome = socket.outcome
+        assert 700 < list(outcome.values()).count("busy") < 800
+        assert (outcome[1001], outcome[1002], control.armed) == ("ok", "ok", False)
+        await asyncio.sleep(1.0)
+        socket.ask(1003, Hello(), b"A")
+        await asyncio.sleep(0.1)
+        assert socket.outcome[1003] == "ok", "it may ask again after a while"
+
+
+async def test_a_flood_of_many_leaves_renewals_alone(make_control: Any) -> None:
+    control = make_control()
+    control.armed = True
+    control.release.clear()
+    async with served(control) as socket:
+        socket.ask(1, Localize(lease_s=0.5), b"B")
+        for client in range(20):
+            for number in range(150):
+                socket.ask(number, Hello(), b"F%d" % client)
+        for number in range(2, 7):
+            await asyncio.sleep(0.3)
+            socket.ask(number, Renew(1), b"B")
+        await asyncio.sleep(0.1)
+        assert control.is_busy
+        assert list(socket.outcome.values()).count("busy") > 0
 
 
 async def test_a_stop_overtakes_an_arm_and_the_robot_stays_disarmed(make_control: Any) -> None:

@@ -298,9 +298,9 @@ def test_a_path_too_long_for_a_socket_is_refused_at_once(tmp_path: Path) -> None
         Server(ServerSettings(runtime_dir=str(tmp_path / ("x" * 100))), unreached_control())
 
 
-async def test_what_stands_in_a_sockets_place_is_named(tmp_path: Path) -> None:
+async def test_what_stands_in_a_sockets_place_is_named(make_control: Any, tmp_path: Path) -> None:
     (tmp_path / "state.sock").mkdir()
-    server = Server(ServerSettings(runtime_dir=str(tmp_path)), unreached_control())
+    server = Server(ServerSettings(runtime_dir=str(tmp_path)), make_control())
     with pytest.raises(TransportError, match=r"state.sock: cannot be removed: Is a directory"):
         await server.run()
 

@@ -1,0 +1,130 @@
+"""What goes wrong on the way of an event to its readers concerns that event alone."""
+
+import asyncio
+import errno
+import logging
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+import pytest
+
+from robotd.contract.events import MapChanged
+from robotd.contract.request import Request
+from robotd.contract.requests import GetStatus, MapShow
+from robotd.contract.topics import Message, Topic, decode_frame
+from robotd.core.errors import LinkTimeout
+from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
+from robotd.server.connection import Process
+from robotd.server.publisher import Publisher
+from robotd.server.zmtp import GREETING, Reader, ready
+from robotd.server.zmtp import Message as Sent
+
+ERRORS = [OSError(errno.ENOMEM, "Out of memory"), MemoryError(), RuntimeError("can't start new thread")]
+
+
+class AConnection:
+    """Takes all that is sent."""
+
+    process = Process(1, 2)
+
+    def __init__(self) -> None:
+        self.sent: list[Message] = []
+        self._reader = Reader(longest_bytes=2**20, most_frames=1)
+        assert len(list(self._reader.feed(GREETING + ready(b"XPUB")))) == 1
+
+    def send(self, data: bytes) -> bool:
+        for said in self._reader.feed(data):
+            assert isinstance(said, Sent)
+            self.sent.append(decode_frame(said.frames[0]))
+        return True
+
+    def events(self, topic: Topic) -> list[Any]:
+        return [message.event for message in self.sent if message.topic == topic]
+
+
+@asynccontextmanager
+async def published(control: Any) -> AsyncIterator[tuple[asyncio.Task[None], AConnection, AConnection, Publisher]]:
+    with control.events.subscribe(100) as events:
+        publisher = Publisher(control, events, "session")
+        state, maps = AConnection(), AConnection()
+        for outlet, connection in ((publisher.state, state), (publisher.maps, maps)):
+            outlet.joined(connection)  # type: ignore[arg-type]  # what it uses of it
+            outlet.heard(connection, (b"\x01",))  # type: ignore[arg-type]  # as above
+        task = asyncio.create_task(publisher.run())
+        try:
+            yield task, state, maps, publisher
+        finally:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+
+
+async def test_an_event_that_has_no_form_on_the_wire_is_dropped_and_logged(
+    make_control: Any, make_map: Callable[..., MapChanged], caplog: pytest.LogCaptureFixture
+) -> None:
+    control = make_control()
+    broken = make_map(1)
+    object.__setattr__(broken, "spec", None)
+    async with published(control) as (task, state, maps, _):
+        control.events.publish(Odometry(2**70, IDENTITY, STANDSTILL))
+        control.events.publish(broken)
+        await asyncio.sleep(1)
+        control.events.publish(Odometry(1, IDENTITY, STANDSTILL))
+        control.events.publish(make_map(2))
+        await asyncio.sleep(1)
+        assert not task.done()
+        assert [event.time_ns for event in state.events(Topic.ODOMETRY)] == [1]
+        assert [event.generation for event in maps.events(Topic.MAP)] == [2]
+    assert "Odometry was not published" in caplog.text
+    assert "MapChanged was not published" in caplog.text
+
+
+@pytest.mark.parametrize("error", [*ERRORS, LinkTimeout("silent")], ids=repr)
+@pytest.mark.parametrize("request_type", [GetStatus, MapShow])
+async def test_a_request_of_its_own_that_fails_does_not_end_what_publishes(
+    make_control: Any, make_map: Callable[..., MapChanged], request_type: type[Request[Any]], error: Exception
+) -> None:
+    control = make_control()
+    control.map_in_use = make_map(1)
+    answer = control.perform
+
+    async def fail(request: Request[Any]) -> Any:
+        if isinstance(request, request_type):
+            raise error
+        return await answer(request)
+
+    control.perform = fail
+    async with published(control) as (task, state, maps, publisher):
+        await asyncio.sleep(1)
+        control.events.publish(Odometry(1, IDENTITY, STANDSTILL))
+        await asyncio.sleep(1)
+        control.perform = answer
+        publisher.maps.heard(maps, (b"\x01map\0",))  # type: ignore[arg-type]  # what it uses of it
+        await asyncio.sleep(1)
+        assert not task.done()
+        assert state.events(Topic.ODOMETRY)
+        assert maps.events(Topic.MAP)
+
+
+@pytest.mark.parametrize("error", ERRORS, ids=repr)
+async def test_a_map_that_cannot_be_packed_now_does_not_end_what_publishes(
+    make_control: Any,
+    make_map: Callable[..., MapChanged],
+    monkeypatch: pytest.MonkeyPatch,
+    error: Exception,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def fail(*_: object) -> bytes:
+        raise error
+
+    control = make_control()
+    async with published(control) as (task, _, maps, _):
+        with monkeypatch.context() as broken:
+            broken.setattr(asyncio, "to_thread", fail)
+            control.events.publish(make_map(1))
+            await asyncio.sleep(1)
+        control.events.publish(make_map(2))
+        await asyncio.sleep(1)
+        assert not task.done()
+        assert [event.generation for event in maps.events(Topic.MAP)] == [2]
+    assert [record.levelno for record in caplog.records] == [logging.ERROR]
