@@ -13,8 +13,10 @@ from robotd.hardware.devices.gaze import Gaze
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.address import connector, no_line
 from robotd.hardware.transport.transport import Connect
-from robotd.maps.store import MapStore
-from robotd.mission.compute import Compute, NotedCompute
+from robotd.head.compute import Compute
+from robotd.head.head import Head, NotedHead
+from robotd.head.settings import HeadSettings
+from robotd.maps.archive import Archive
 from robotd.mission.control import Control
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.settings import MissionSettings
@@ -50,12 +52,13 @@ def serial_connectors(config: Config) -> dict[str, Connect]:
 def compose(
     config: Config,
     connects: Mapping[str, Connect],
-    compute: Compute,
+    head: Head,
+    disk: Compute,
     journal: PrerollJournal,
     *,
     leases_end_by_causes: bool = False,
 ) -> Daemon:
-    """Build the daemon on these lines; nothing is opened yet.
+    """Build the daemon on these lines; nothing is opened yet. ``disk`` runs what waits for a disk off the loop.
 
     With ``leases_end_by_causes`` leases do not run out by themselves, only by :meth:`Causes.repeat`: for replays.
     """
@@ -70,7 +73,7 @@ def compose(
         pantilt(config.pantilt, wirings["pantilt"]),
         rangefinder(config.rangefinder, wirings["rangefinder"]),
     )
-    noted = NotedCompute(compute, lambda name, index: journal.computed(now_ns(), name, index))
+    noted = NotedHead(head, lambda name, index: journal.computed(now_ns(), name, index))
     settings = mission_settings(config)
     news = News(journal.note)
     supervisor = Supervisor(
@@ -82,12 +85,14 @@ def compose(
         note_cause=lambda name, arguments: journal.cause(now_ns(), name, arguments),
         make_lease=EndlessLease if leases_end_by_causes else Lease,
     )
-    store = MapStore(Path(config.maps.dir), config.grid, keep=config.maps.keep)
+    # What the files mean is for the head to say.
+    archive = Archive(Path(config.maps.dir), lambda content: content, keep=config.maps.keep)
     control = Control(
         supervisor,
-        store=store,
+        archive=archive,
         journal=journal,
-        compute=compute,  # what only clients ask for has no effect on the robot, and a replay does not ask for it
+        head=noted,
+        disk=disk,
         recordings_dir=Path(config.recording.dir),
         config_text=effective_text(config),
     )
@@ -102,6 +107,15 @@ def mission_settings(config: Config) -> MissionSettings:
         rangefinder=config.rangefinder.calibration,
         sweep=config.sweep,
         driving=config.driving,
+        grid=config.grid,
+        localization=config.localization,
+        judgement=config.judgement,
+    )
+
+
+def head_settings(config: Config) -> HeadSettings:
+    """Return what array work needs of the configuration."""
+    return HeadSettings(
         grid=config.grid,
         localization=config.localization,
         judgement=config.judgement,

@@ -9,10 +9,11 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
+from typing import NoReturn
 
 from robotd import __version__
 from robotd.app.callbacks import stopping_on_errors
-from robotd.app.compose import Daemon, compose, serial_connectors
+from robotd.app.compose import Daemon, compose, head_settings, serial_connectors
 from robotd.app.ending import Ending
 from robotd.app.health import Notifier, feed_watchdog, watchdog_s
 from robotd.app.lock import lock_directory
@@ -29,8 +30,8 @@ from robotd.core.log import LONGEST_LINE, configure
 from robotd.core.text import printable
 from robotd.front.heart_side import HeartSide
 from robotd.front.supervised import front_of
-from robotd.grid import kernels
-from robotd.mission.compute import ThreadCompute
+from robotd.head.compute import ThreadCompute
+from robotd.head.far import FarHead
 from robotd.recording.entries import CAUSES_ARE_NOTED, SILENCES_ARE_NOTED, RecordingHeader
 from robotd.recording.preroll import PrerollJournal
 
@@ -95,24 +96,36 @@ async def run(config: Config) -> int:
         # First of all: the one that has it is the only daemon here, and may open the lines.
         stack.enter_context(lock_directory(Endpoints(Path(config.server.runtime_dir)).runtime_dir))
         journal = new_journal(config)
-        compute = ThreadCompute()
-        stack.callback(compute.close)
-        daemon = compose(config, serial_connectors(config), compute, journal)
+        disk = ThreadCompute()
+        stack.callback(disk.close)
+        head = FarHead.spawned(head_settings(config), logging.getLevelName(logging.root.level))
+        daemon = compose(config, serial_connectors(config), head, disk, journal)
+        head.host = daemon.causes
         ending = Ending(daemon.robot.stop_now)
+        # Longer than all the rest: the last map must be made into files.
+        thinking = asyncio.create_task(head.run(), name="head")
         try:
             stalls = Stalls(daemon)
             with stopping_on_errors(partial(_halt, daemon)):
                 async with guarded(stalls.stop_past_loop, stalls.stalled):
-                    await _serve(config, daemon, ending)
+                    await _serve(config, daemon, thinking, ending)
         except asyncio.CancelledError:
             if not ending.is_hastened:
                 raise
         finally:
             try:
-                await daemon.control.keeping.keep_last()
-            finally:  # a disk that kept no map may still end a recording
-                await daemon.control.perform(RecordStop())
+                await _keep_last(daemon)
+            finally:
+                thinking.cancel()
+                await asyncio.wait({thinking})
     return ending.exit_code
+
+
+async def _keep_last(daemon: Daemon) -> None:
+    try:
+        await daemon.control.keeping.keep_last()
+    finally:  # a disk that kept no map may still end a recording
+        await daemon.control.perform(RecordStop())
 
 
 def _halt(daemon: Daemon, reason: str) -> None:
@@ -121,7 +134,7 @@ def _halt(daemon: Daemon, reason: str) -> None:
         daemon.control.halt(Stop(reason))
 
 
-async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
+async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoReturn]", ending: Ending) -> None:
     notifier = Notifier.of()
     side = HeartSide(daemon.control, config.server)
     front = front_of(side, partial(_without_clients, daemon, notifier))
@@ -133,7 +146,8 @@ async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
         keeping = group.create_task(daemon.control.keeping.run(), name="keep maps")
         going_on = group.create_task(keep_going(daemon, config.driving.silence_s), name="keep going")
         following = group.create_task(side.follow(), name="outcomes")
-        tasks = [serving, following, *parts.values(), keeping, going_on]
+        headed = group.create_task(_as_long_as(thinking), name="head is well")
+        tasks = [serving, following, *parts.values(), keeping, going_on, headed]
         for task in tasks:
             task.add_done_callback(partial(_stop_if_failed, daemon))
         within_s = watchdog_s()
@@ -148,6 +162,11 @@ async def _serve(config: Config, daemon: Daemon, ending: Ending) -> None:
         await _cancelled(serving, *(parts[device.name] for device in daemon.robot.devices))
         for task in tasks:
             task.cancel()
+
+
+async def _as_long_as(task: "asyncio.Task[NoReturn]") -> NoReturn:
+    """End with an error of a task's, and without ending the task."""
+    await asyncio.shield(task)
 
 
 def _stop_if_failed(daemon: Daemon, task: "asyncio.Task[None]") -> None:
@@ -167,7 +186,6 @@ async def _announce(front: Child, notifier: Notifier) -> None:
     await front.is_ready.wait()
     notifier.ready()
     notifier.status("serving")
-    log.info("%s", kernels.in_use().about)
     log.info("robotd %s is ready", __version__)
 
 

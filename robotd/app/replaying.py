@@ -7,13 +7,16 @@ from typing import Any
 
 from robotd import __version__
 from robotd.app.as_recorded import recorded_config
-from robotd.app.compose import Daemon, compose
+from robotd.app.compose import Daemon, compose, head_settings
 from robotd.config import Config
 from robotd.core.attention import attention
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RecordingError, RobotdError
 from robotd.core.text import printable
 from robotd.hardware.devices.catalogue import request_words
+from robotd.head.cores import cores
+from robotd.head.desk import Desk
+from robotd.head.in_process import InProcess
 from robotd.mission.noted import check_noted
 from robotd.mission.safety.causes import check_cause
 from robotd.recording.comparison import Difference, compare, results_digest
@@ -137,7 +140,9 @@ async def _play(recording: Recording, config: Config, journal: PrerollJournal) -
     # Before the daemon is made: a silence asks when it begins whether it is led.
     attention().are_led = recording.notes_silences
     connects = {device: playback.line(device).connect for device in DEVICES}
-    daemon = compose(config, connects, playback.compute, journal, leases_end_by_causes=recording.notes_causes)
+    head = InProcess(Desk(head_settings(config), threads=cores()), playback.compute)
+    # The store is asked by nobody: what clients only look at was not noted.
+    daemon = compose(config, connects, head, playback.compute, journal, leases_end_by_causes=recording.notes_causes)
     async with asyncio.TaskGroup() as group:
         parts = [group.create_task(part, name=name) for name, part in daemon.parts().items()]
         await playback.run()

@@ -49,11 +49,15 @@ def pack_map(change: MapChanged) -> MapPayload:
         origin_y_m=float(spec.origin_y_m),
         rows=int(spec.rows),
         cols=int(spec.cols),
-        cells_zlib=packed_cells(values) if change.whole else b"",
+        cells_zlib=_packed(change, values) if change.whole else b"",
         indices_u32le=b"" if change.whole else change.cells.astype(_INDEX).tobytes(),
         values_u8=b"" if change.whole else values.tobytes(),
         stops=change.stops,
     )
+
+
+def _packed(change: MapChanged, values: NDArray[np.uint8]) -> bytes:
+    return packed_cells(values) if change.packed is None else change.packed
 
 
 def unpack_map(payload: MapPayload) -> MapChanged:

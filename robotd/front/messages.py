@@ -43,6 +43,8 @@ class _MapHead(msgspec.Struct, frozen=True, array_like=True):
     whole: bool
     stops: int | None
     changed: int
+    is_packed: bool = False
+    """Whether its values are the whole grid as :mod:`robotd.core.grid_bytes` packs it."""
 
 
 def settings_message(settings: ServerSettings) -> bytes:
@@ -119,11 +121,12 @@ def _map(number: int, change: MapChanged) -> Parts:
             whole=change.whole,
             stops=change.stops,
             changed=len(change.cells),
+            is_packed=change.packed is not None,
         )
     )
     cells = change.cells.astype(_INDEX).tobytes()
-    values = np.ascontiguousarray(change.values, np.uint8)
-    return _MAP, len(head).to_bytes(_LENGTH, "little"), head, cells, values.reshape(-1).data
+    values = np.ascontiguousarray(change.values, np.uint8).reshape(-1).data
+    return _MAP, len(head).to_bytes(_LENGTH, "little"), head, cells, values if change.packed is None else change.packed
 
 
 def _unpacked(data: memoryview) -> tuple[int, MapChanged] | MapChanged:
@@ -132,7 +135,8 @@ def _unpacked(data: memoryview) -> tuple[int, MapChanged] | MapChanged:
     head = msgspec.msgpack.decode(data[_LENGTH : _LENGTH + length], type=_MapHead)
     spec = GridSpec(head.resolution_m, head.origin_x_m, head.origin_y_m, (head.rows, head.cols))
     cells = np.frombuffer(body[: head.changed * _INDEX.itemsize], _INDEX).astype(np.intp)
-    values = np.frombuffer(body[head.changed * _INDEX.itemsize :], np.uint8)
+    rest = body[head.changed * _INDEX.itemsize :]
+    values = np.frombuffer(b"" if head.is_packed else rest, np.uint8)
     change = MapChanged(
         time_ns=head.time_ns,
         map_id=head.map_id,
@@ -140,7 +144,8 @@ def _unpacked(data: memoryview) -> tuple[int, MapChanged] | MapChanged:
         spec=spec,
         whole=head.whole,
         cells=cells,
-        values=values.reshape(spec.shape) if head.whole else values,
+        values=values.reshape(spec.shape) if head.whole and not head.is_packed else values,
         stops=head.stops,
+        packed=bytes(rest) if head.is_packed else None,
     )
     return change if head.number == _NO_NUMBER else (head.number, change)

@@ -1,12 +1,10 @@
-"""A version of a stored map, as it is listed and as it is loaded."""
+"""A version of a stored map, as it is listed."""
 
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from robotd.core.grid_spec import GridSpec
-from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import OccupancyGrid
 from robotd.maps.manifest import Manifest
 
 UNSAVED = "unsaved"
@@ -55,13 +53,3 @@ class MapEntry:
     def is_unsaved(self) -> bool:
         """Whether nobody asked for it: it was kept so that it is not lost."""
         return self.metadata.get(UNSAVED) is True
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class StoredMap:
-    """A map from the store, whole."""
-
-    grid: OccupancyGrid
-    stops: MapStops | None
-    """What the grid was made of; None for maps of before stops were stored, and of other origin."""
-    entry: MapEntry

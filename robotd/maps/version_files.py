@@ -1,33 +1,34 @@
 """The files of one version of a map: ``manifest.json, cells.bin, stops.bin, map.pgm, map.yaml``.
 
 ``cells.bin`` is the grid (:mod:`robotd.core.grid_bytes`), ``stops.bin`` what it was made of (not there if that is not
-known); ``map.pgm`` and ``map.yaml`` are exports for other programs.
+known); ``map.pgm`` and ``map.yaml`` are exports for other programs. Here they are bytes with checksums; what they mean
+is known to :mod:`robotd.maps.grid_files`.
 """
 
-import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
-
-import numpy as np
+from typing import Any
 
 from robotd.core.errors import MapError
-from robotd.core.grid_bytes import cell_bytes, cells_of
-from robotd.grid.image import encode_pgm, trinary_from_cells
-from robotd.grid.map_stops import MapStops
-from robotd.grid.map_yaml import map_yaml
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.settings import GridSettings
+from robotd.core.grid_spec import GridSpec
 from robotd.maps.atomic import Buffer
-from robotd.maps.entry import MapEntry, StoredMap
 from robotd.maps.manifest import FileSum, Manifest, decode_manifest
-from robotd.maps.stops_file import decode_stops, encode_stops
 
 MANIFEST, CELLS, STOPS, IMAGE, YAML = "manifest.json", "cells.bin", "stops.bin", "map.pgm", "map.yaml"
 _MANIFEST_MAX_BYTES = 1 << 20
 
-_log = logging.getLogger(__name__)
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """What a version holds: the bytes of its files but for the manifest, and what that says of them."""
+
+    spec: GridSpec
+    digest: str
+    """Of the grid."""
+    files: dict[str, bytes]
+    stops: int | None
+    """How many stops ``stops.bin`` has; None if there is none."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,36 +36,22 @@ class NewVersion:
     """A map about to be stored."""
 
     name: str
-    grid: OccupancyGrid
-    digest: str
+    content: Content
+    sums: Mapping[str, FileSum]
     metadata: dict[str, Any]
     created_unix_ns: int
-    stops: int | None
-    stops_bin: bytes | None
 
     @classmethod
-    def of(
-        cls, name: str, grid: OccupancyGrid, stops: MapStops | None, metadata: dict[str, Any], created_unix_ns: int
-    ) -> Self:
-        """Return a map with its stops, if they are known and come to its grid again.
-
-        With others it could not be loaded, and the grid is what the robot goes by: the log says that they are left out.
-        """
-        packed = None
-        if stops is not None:
-            try:
-                packed = encode_stops(stops)
-                _check_derived(stops, grid)
-            except MapError as error:
-                packed = None
-                _log.warning("map %s is saved without its stops: %s", name, error)
-        count = len(stops.stops) if stops is not None and packed is not None else None
-        return cls(name, grid, grid.digest(), metadata, created_unix_ns, count, packed)
+    def of(cls, name: str, content: Content, metadata: dict[str, Any], created_unix_ns: int) -> "NewVersion":
+        """Return a map with the sums of its files, which take a while for a large one."""
+        sums = {file: FileSum.of(data) for file, data in content.files.items()}
+        return cls(name, content, sums, metadata, created_unix_ns)
 
     def is_like(self, manifest: Manifest) -> bool:
         """Return whether a version holds this already: the same grid, made of the same."""
-        sums = None if self.stops_bin is None else FileSum.of(self.stops_bin)
-        return (self.digest, sums) == (manifest.digest, manifest.files.get(STOPS))
+        return self.content.digest == manifest.digest and all(
+            self.sums.get(file) == manifest.files.get(file) for file in (CELLS, STOPS)
+        )
 
     def files(self, version: int) -> tuple[Mapping[str, Buffer], Manifest]:
         """Return its files by name, the manifest last, and what that says.
@@ -73,19 +60,13 @@ class NewVersion:
             MapError: its metadata could not be read again.
             TypeError: they hold something that JSON cannot.
         """
-        files: dict[str, Buffer] = {
-            CELLS: cell_bytes(self.grid.cells),
-            **({} if self.stops_bin is None else {STOPS: self.stops_bin}),
-            IMAGE: encode_pgm(trinary_from_cells(self.grid.cells)),
-            YAML: map_yaml(IMAGE, self.grid.spec).encode(),
-        }
-        sums = {file: FileSum.of(data) for file, data in files.items()}
+        it, sums = self.content, dict(self.sums)
         manifest = Manifest(
-            *(self.name, version, self.created_unix_ns, self.digest, self.grid.spec, sums, self.metadata, self.stops)
+            *(self.name, version, self.created_unix_ns, it.digest, it.spec, sums, self.metadata, it.stops)
         )
         described = manifest.encode()
         check_readable(self.name, described)
-        return {**files, MANIFEST: described}, manifest
+        return {**it.files, MANIFEST: described}, manifest
 
 
 def read_manifest(path: Path, name: str, version: int) -> Manifest:
@@ -96,64 +77,15 @@ def read_manifest(path: Path, name: str, version: int) -> Manifest:
     return manifest
 
 
-def read_version(path: Path, name: str, version: int, settings: GridSettings | None) -> StoredMap:
-    """Return the version in a directory, every byte checked.
-
-    Args:
-        path: the directory.
-        name: which map it must be.
-        version: which version.
-        settings: how further readings change a map that does not say itself how they did so far.
+def read_content(path: Path, manifest: Manifest) -> Content:
+    """Return the files in a version's directory, the checksums of all of them right.
 
     Raises:
-        MapError: it is damaged; says which file.
+        MapError: one is missing or was altered; says which.
     """
-    manifest = read_manifest(path, name, version)
     wanted = (CELLS, IMAGE, YAML, *([] if manifest.stops is None else [STOPS]))
     files = {file: _read_checked(path / file, manifest.files.get(file)) for file in wanted}
-    stops = None if manifest.stops is None else _stops_of(files[STOPS], manifest.stops)
-    # A map with stops goes on by the settings that it was made with, or it would not come to its stops again.
-    grid = _grid_of(manifest, files[CELLS], settings if stops is None else stops.settings)
-    if stops is not None:
-        _check_derived(stops, grid)
-    return StoredMap(grid, stops, MapEntry.of(manifest, path))
-
-
-def _stops_of(data: bytes, expected: int) -> MapStops:
-    try:
-        stops = decode_stops(data)
-    except MapError as error:
-        raise MapError(f"{STOPS}: {error}") from error
-    if len(stops.stops) != expected:
-        raise MapError(f"{STOPS} has {len(stops.stops)} stops, {MANIFEST} says {expected}")
-    return stops
-
-
-def _check_derived(stops: MapStops, grid: OccupancyGrid) -> None:
-    """Refuse stops that make another grid; if another arithmetic laid them in, the grid stands as it was made."""
-    derived = stops.grid_on(grid.spec)
-    others = int(np.count_nonzero(derived.cells != grid.cells))
-    if not others:
-        return
-    if stops.is_of_this_arithmetic:
-        raise MapError(f"{STOPS} does not make this map: {others} of {grid.cells.size} cells come out otherwise")
-    _log.info(
-        "this machine's arithmetic would draw %d of %d cells otherwise than that of the map's maker",
-        others,
-        grid.cells.size,
-    )
-
-
-def _grid_of(manifest: Manifest, data: bytes, settings: GridSettings | None) -> OccupancyGrid:
-    try:
-        cells = cells_of(data, manifest.spec)
-    except ValueError as error:
-        raise MapError(f"{CELLS} has {error}") from error
-    grid = OccupancyGrid(manifest.spec, cells, settings)
-    # The checksums say that no byte was altered; this, that these cells belong to this placement.
-    if grid.digest() != manifest.digest:
-        raise MapError(f"{MANIFEST} has another digest than the map")
-    return grid
+    return Content(manifest.spec, manifest.digest, files, manifest.stops)
 
 
 def check_readable(name: str, described: bytes) -> None:

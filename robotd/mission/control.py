@@ -19,8 +19,10 @@ from robotd.contract.requests import Arm, Clear, Disarm, GetConfig, GetStatus, R
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import MissionError
-from robotd.maps.store import MapStore
-from robotd.mission.compute import Compute
+from robotd.head.compute import Compute
+from robotd.head.head import Head
+from robotd.maps.archive import Archive
+from robotd.maps.version_files import Content
 from robotd.mission.map_requests import MapRequests
 from robotd.mission.noted import NotedMap, noted, request_of
 from robotd.mission.safety.modes import Occasion
@@ -42,20 +44,21 @@ class Control:
         self,
         supervisor: Supervisor,
         *,
-        store: MapStore,
+        archive: Archive[Content],
         journal: PrerollJournal,
-        compute: Compute,
+        head: Head,
+        disk: Compute,
         recordings_dir: Path,
         config_text: str,
     ) -> None:
         self._supervisor = supervisor
-        self._store = store
+        self._archive = archive
         self._journal = journal
-        self._compute = compute
+        self._disk = disk
         self._recordings_dir = recordings_dir
         self._config_text = config_text
-        self.keeping = Keeping(supervisor, store, compute)
-        self._maps = MapRequests(supervisor, store, journal, compute, self.keeping)
+        self.keeping = Keeping(supervisor, archive, head, disk)
+        self._maps = MapRequests(supervisor, archive, journal, head=head, disk=disk, keeping=self.keeping)
         self._rows: dict[type[Request[Any]], Callable[[Any], Awaitable[object]]] = {
             GetStatus: self._status,
             GetConfig: self._config,
@@ -100,7 +103,7 @@ class Control:
         """
         request = request_of(name, arguments)
         if isinstance(request, NotedMap):
-            self._maps.use(request, CommandEntry(now_ns(), name, arguments))
+            await self._maps.use(request, CommandEntry(now_ns(), name, arguments))
         else:
             await self._carry_out(request)
 
@@ -183,7 +186,7 @@ class Control:
             RecordingError: the file is to lie elsewhere, or it cannot be done now.
         """
         name = f"{now_ns() + wall_offset_ns()}.mcap" if request.path is None else request.path
-        file = await self._compute.run("make directory", make_place, self._recordings_dir, name, self._store.root)
+        file = await self._disk.run("make directory", make_place, self._recordings_dir, name, self._archive.root)
         self._journal.start(file)
         log.info("recording to %s", file)
         self._supervisor.publish_status()
@@ -197,7 +200,7 @@ class Control:
         # From here no entry is taken, so the status is true already; only the file waits for the disk.
         finish = self._journal.stop()
         self._supervisor.publish_status()
-        await self._compute.run("end recording", finish)
+        await self._disk.run("end recording", finish)
         log.info("the recording %s is complete", path)
         return RecordingFile(str(path))
 

@@ -3,8 +3,9 @@
 None but taking a map into use has an effect on the robot, and that is noted with the map itself: a replay has no store.
 """
 
+import contextlib
 import logging
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -15,18 +16,21 @@ from robotd.contract.answers import Done, MapEntryInfo, MapList
 from robotd.contract.events import MapChanged
 from robotd.contract.request import Request
 from robotd.contract.requests import ListMaps, MapDiscard, MapLoad, MapSave, MapShow
-from robotd.core.clock import now_ns, wall_offset_ns
+from robotd.core.clock import now_ns
 from robotd.core.errors import MapError, MissionError
 from robotd.core.pose import Pose2
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.maps.entry import MapEntry, StoredMap
-from robotd.maps.store import MapStore
-from robotd.mission.compute import Compute
+from robotd.head.compute import Compute
+from robotd.head.head import Head
+from robotd.head.jobs import HeldMap, ReadMap, ShowMap, TakeMap
+from robotd.maps.archive import Archive
+from robotd.maps.entry import MapEntry
+from robotd.maps.packed_content import PackedContent
+from robotd.maps.version_files import IMAGE, YAML, Content
 from robotd.mission.map_entries import entry_info
-from robotd.mission.noted import NotedMap, grid_of, noted_grid
+from robotd.mission.noted import NotedMap, noted_grid, packed_of
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.keeping import Keeping
-from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.map_in_use import MapInUse, whole
 from robotd.mission.whereabouts.tie import Tie
 from robotd.recording.encoding import encoded
 from robotd.recording.entries import CommandEntry
@@ -39,12 +43,20 @@ class MapRequests:
     """Carries them out."""
 
     def __init__(
-        self, supervisor: Supervisor, store: MapStore, journal: PrerollJournal, compute: Compute, keeping: Keeping
+        self,
+        supervisor: Supervisor,
+        archive: Archive[Content],
+        journal: PrerollJournal,
+        *,
+        head: Head,
+        disk: Compute,
+        keeping: Keeping,
     ) -> None:
         self._supervisor = supervisor
-        self._store = store
+        self._archive = archive
         self._journal = journal
-        self._compute = compute
+        self._head = head
+        self._disk = disk
         self._keeping = keeping
         self.rows: dict[type[Request[Any]], Callable[[Any], Awaitable[object]]] = {
             MapSave: self._save,
@@ -57,12 +69,14 @@ class MapRequests:
     async def _show(self, request: MapShow) -> MapChanged:
         """Return every cell of the map in use, or of a stored one; MapError if it is missing or damaged."""
         if request.name is None:
-            return self._place().whole(now_ns())
-        stored = await self._compute.run("read map", self._store.load, request.name, request.version)
-        return _place_of(stored).whole(now_ns())
+            place = self._place()
+            ref = place.ref
+            return whole(now_ns(), place.map_id, ref.generation, await self._head.ask(ShowMap(ref)))
+        async with self._read(request.name, request.version) as (entry, _, held):
+            return whole(now_ns(), entry.digest, 0, held)
 
     async def _list(self, _: ListMaps) -> MapList:
-        entries = await self._compute.run("list maps", self._store.list)
+        entries = await self._disk.run("list maps", self._archive.list)
         return MapList(tuple(map(entry_info, entries)))
 
     async def _save(self, request: MapSave) -> MapEntryInfo:
@@ -72,25 +86,19 @@ class MapRequests:
             MapError: there is none.
             MissionError: it cannot be written; what was there before is untouched.
         """
-        place = self._place()
-        try:
-            async with self._keeping.turn:
-                entry = await self._saved(place, request.name or place.name)
-        except MapError as error:
-            raise MissionError(str(error)) from error  # there is a map, but no room for it
+        self._place()  # refused at once, not after a wait for one's turn
+        async with self._keeping.turn:
+            place = self._place()
+            # As of now: the map may grow while the disk writes, and what comes later is not saved by this.
+            generation = place.generation
+            try:
+                entry = await self._keeping.store(place, request.name or place.name, {})
+            except MapError as error:
+                raise MissionError(str(error)) from error  # there is a map, but no room for it
+            place.saved(generation)
         log.info("map %s was saved as version %d of %s (%s)", place.name, entry.version, entry.name, entry.digest)
         self._supervisor.publish_status()
         return entry_info(entry)
-
-    async def _saved(self, place: MapInUse, name: str) -> MapEntry:
-        # As of now: the map may grow while the disk writes, and what comes later is not saved by this.
-        generation = place.generation
-        metadata: dict[str, Any] = {"generation": generation, "map_id": place.map_id}
-        created_ns = now_ns() + wall_offset_ns()
-        save = partial(self._store.save, in_place_of=place.kept_beside)
-        entry = await self._compute.run("save map", save, name, place.grid, metadata, created_ns, place.stops)
-        place.saved(generation)
-        return entry
 
     async def _discard(self, _: MapDiscard) -> Done:
         """Give up what nobody saved of the map in use, which stays in use.
@@ -114,19 +122,47 @@ class MapRequests:
             MissionError: a mission is under way, or the map in use would be lost, see :meth:`Keeping.make_way`.
         """
         self._supervisor.require_replaceable_map()
-        stored = await self._compute.run("read map", self._store.load, request.name, request.version)
-        # Refused before the disk was read; _use asks again, for a mission may have begun by now.
-        entry, place = stored.entry, _place_of(stored)
-        pose = None if request.robot_in_map is None else msgspec.to_builtins(request.robot_in_map)
-        arguments = {"map_id": entry.digest, "name": request.name, "robot_in_map": pose}
-        command = await self._compute.run("pack map", use_map, arguments, stored.grid)
-        await self._keeping.make_way()  # last of all, so that nothing changes the map meanwhile
-        self._use(command, place)
+        async with self._read(request.name, request.version) as (entry, number, held):
+            # Refused before the disk was read; _use asks again, for a mission may have begun by now.
+            pose = None if request.robot_in_map is None else msgspec.to_builtins(request.robot_in_map)
+            arguments = {"map_id": entry.digest, "name": request.name, "robot_in_map": pose}
+            command = await self._disk.run("pack map", use_map, arguments, held)
+            await self._keeping.make_way()  # last of all, so that nothing changes the map meanwhile
+            self._use(command, _place_of(entry, number, held))
         return entry_info(entry)
 
-    def use(self, noted: NotedMap, command: CommandEntry) -> None:
+    @contextlib.asynccontextmanager
+    async def _read(self, name: str, version: int | None) -> AsyncIterator[tuple[MapEntry, int, HeldMap]]:
+        """Hold a stored map, everything checked, under a number; let go of it afterwards, unless it is in use then.
+
+        Raises:
+            MapError: it is missing or damaged.
+        """
+        entry, content = await self._disk.run("read map", self._packed, name, version)
+        number = self._head.number()
+        try:
+            yield entry, number, await self._held(entry, ReadMap(number, content))
+        finally:
+            in_use = self._supervisor.whereabouts.map_in_use
+            if in_use is None or in_use.number != number:
+                self._head.forget(number)
+
+    def _packed(self, name: str, version: int | None) -> tuple[MapEntry, PackedContent]:
+        entry, content = self._archive.load(name, version)
+        return entry, PackedContent.of(content, IMAGE, YAML)
+
+    async def _held(self, entry: MapEntry, job: ReadMap) -> HeldMap:
+        try:
+            return await self._head.ask(job)
+        except MapError as error:  # no checksum is wrong, and yet it contradicts itself
+            why = partial(self._archive.damaged, entry.name, entry.version, error)
+            raise await self._disk.run("look for others", why) from error
+
+    async def use(self, noted: NotedMap, command: CommandEntry) -> None:
         """Take a map into use as ``command`` noted it."""
-        self._use(command, MapInUse(noted.map_id, noted.name, grid_of(noted)))
+        number, grid = self._head.number(), noted.grid
+        held = await self._head.ask(TakeMap(number, grid.spec, packed_of(noted), grid.settings))
+        self._use(command, MapInUse(noted.map_id, noted.name, number, held))
 
     def _use(self, command: CommandEntry, place: MapInUse) -> None:
         arguments = command.arguments
@@ -148,15 +184,14 @@ class MapRequests:
         return place
 
 
-def _place_of(stored: StoredMap) -> MapInUse:
-    """Return a stored map as one to use, made of what it was made of; nothing ties odometry to it yet."""
-    entry = stored.entry
-    place = MapInUse(entry.digest, entry.name, stored.grid, entry.digest, stored.stops)
+def _place_of(entry: MapEntry, number: int, held: HeldMap) -> MapInUse:
+    """Return a stored map as one to use; nothing ties odometry to it yet."""
+    place = MapInUse(entry.digest, entry.name, number, held)
     if entry.is_unsaved:
         place.found_unsaved(entry.version)
     return place
 
 
-def use_map(arguments: dict[str, Any], grid: OccupancyGrid) -> CommandEntry:
-    """Return the journal's entry of taking a map into use, encoded: for a large one that takes a second."""
-    return encoded(CommandEntry(0, "use_map", arguments | {"grid": noted_grid(grid)}))
+def use_map(arguments: dict[str, Any], held: HeldMap) -> CommandEntry:
+    """Return the journal's entry of taking a map into use, encoded: for a large one that takes a while."""
+    return encoded(CommandEntry(0, "use_map", arguments | {"grid": noted_grid(held)}))

@@ -9,8 +9,8 @@ from typing import Protocol
 
 from robotd.contract.events import Event
 from robotd.core.broadcast import Broadcast
-from robotd.mission.results import result_of
 from robotd.recording.entries import ResultEntry
+from robotd.recording.results import result_of
 
 
 class Publish(Protocol):

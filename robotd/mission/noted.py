@@ -10,10 +10,11 @@ from robotd.contract.missions import MISSIONS, Mission, MissionRequest, with_lea
 from robotd.contract.request import Request
 from robotd.contract.requests import REQUESTS
 from robotd.core.errors import RecordingError
-from robotd.core.grid_bytes import packed_cells, unpacked_cells
+from robotd.core.grid_bytes import unpacked_cells
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
-from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.settings import GridSettings
+from robotd.head.jobs import HeldMap
 
 _LEASE_MAX_S = 1e9
 """Far above what a client may ask for (``LeaseTime`` of the contract); beyond it is what no daemon noted."""
@@ -36,6 +37,9 @@ class _PackedGrid(msgspec.Struct):
     spec: GridSpec
     cells: str
     """Base64 of the packed cells."""
+    settings: GridSettings = GridSettings()
+    """How further readings change it, which the planner goes by, too: recordings of before lack it, and were replayed
+    by this."""
 
 
 class _NotedStart(msgspec.Struct):
@@ -86,7 +90,7 @@ def check_noted(name: str, arguments: dict[str, Any]) -> None:
     """
     request = request_of(name, arguments)
     if isinstance(request, NotedMap):
-        grid_of(request)
+        packed_of(request)
 
 
 def _mission_of(start: _NotedStart) -> Mission:
@@ -98,24 +102,25 @@ def _mission_of(start: _NotedStart) -> Mission:
     return with_lease(_converted(_MISSIONS[start.kind], _START, start.mission), start.lease_s)
 
 
-def grid_of(noted: NotedMap) -> OccupancyGrid:
-    """Return the grid of a map that was taken into use.
+def packed_of(noted: NotedMap) -> bytes:
+    """Return the packed cells of a map that was taken into use.
 
     Raises:
         RecordingError: it is larger than a map can be, or its cells are not as many as its shape says. Never more
             memory is taken than that.
     """
-    spec = noted.grid.spec
     try:
-        return OccupancyGrid(spec, unpacked_cells(base64.b64decode(noted.grid.cells, validate=True), spec))
+        packed = base64.b64decode(noted.grid.cells, validate=True)
+        unpacked_cells(packed, noted.grid.spec)
     except ValueError as error:
         raise RecordingError(f"request 'use_map': {error}") from error
+    return packed
 
 
-def noted_grid(grid: OccupancyGrid) -> dict[str, Any]:
-    """Return a grid as it is noted; for a large one that takes a second."""
-    cells = base64.b64encode(packed_cells(grid.cells)).decode()
-    return {"spec": msgspec.to_builtins(grid.spec), "cells": cells}
+def noted_grid(held: HeldMap) -> dict[str, Any]:
+    """Return the grid of a map as it is noted."""
+    cells, settings = base64.b64encode(held.packed).decode(), msgspec.to_builtins(held.settings)
+    return {"spec": msgspec.to_builtins(held.spec), "cells": cells, "settings": settings}
 
 
 def _converted(kind: type[T], name: str, value: object) -> T:

@@ -63,7 +63,7 @@ class Supervisor:
         self.halts = 0
         """How often the robot was stopped: who waited for something compares, and sees whether a stop came between."""
         self._current = CurrentMode(self.publish_status)
-        self._told = WhereaboutsTold(context.whereabouts, news.publish, self.publish_status)
+        self._told = WhereaboutsTold(context.whereabouts, news.publish, self.publish_status, context.head.forget)
         self.arming = Arming(self, self._current, lambda: faults_of(self.robot, battery_min_v))
         self.holding = Holding(self, context.hold, self.arming)
         self._watch = DeviceWatch(self, self.holding, self.arming, self._told.doubt, battery_min_v)
@@ -99,7 +99,7 @@ class Supervisor:
             map_id=place.map_id if place else None,
             map_name=place.name if place else None,
             recording=self._recording(),
-            held=self.holding.hold.cause,
+            held=self.holding.cause,
             map_unsaved=place is not None and place.is_unsaved,
             map_kept_version=place.kept_as if place else None,
         )

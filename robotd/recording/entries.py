@@ -91,7 +91,7 @@ class ResultEntry:
     time_ns: int
     kind: str
     content: dict[str, Any]
-    """Enough of it to show to people."""
+    """Enough of it to show to people; empty where it was encoded already, elsewhere."""
     digest: str
     """Of all of it."""
     encoded: bytes | None = field(default=None, compare=False, repr=False)

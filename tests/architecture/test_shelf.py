@@ -32,6 +32,7 @@ PROGRAMS = {
     "robotd.library.map",  # which `import robotd` loads when it is asked for
     "robotd.children.in_process",  # for tests and replays
     "robotd.front.__main__",
+    "robotd.head.__main__",  # a process of the daemon's
     *(f"robotd.cli.verbs.{module}" for module, *_ in WORDS.values()),
     "robotd.grid.kernels.build",  # these three make what is compiled and generated
     "robotd.sim.firmware.build",
@@ -80,7 +81,8 @@ def test_what_no_program_reaches_is_what_stands_on_the_shelf() -> None:
 
 def test_the_programs_are_there_and_reach_the_house() -> None:
     assert FILES.keys() >= PROGRAMS
-    assert {"robotd.localization.localizer", "robotd.hardware.link.dialogue"} <= reached({"robotd.app"})
+    assert "robotd.hardware.link.dialogue" in reached({"robotd.app"})
+    assert "robotd.localization.localizer" in reached({"robotd.head.__main__"})
     assert reached({"robotd.client"}) < reached(PROGRAMS)
 
 

@@ -17,7 +17,6 @@ from robotd.contract.missions import Localize, MapStart
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, Clear, Stop
 from robotd.core.errors import MissionError
-from robotd.mission.compute import Compute
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.sim.boards.rangefinder import RangefinderBoard
 from robotd.sim.buildings.world import load_world
@@ -29,6 +28,7 @@ from robotd.sim.robot import SimulatedRobot, own_board
 from tests.integration.conftest import Live
 from tests.integration.test_dialects import config_for
 from tests.support.living import AtOnce, Living, in_directory, until_ready
+from tests.support.places import head_on, unpaced
 
 QUICK = replace(Config(), sweep=SweepSettings(readings=120))
 
@@ -157,9 +157,8 @@ async def ended(daemon: Daemon, mission_id: int) -> list[Event]:
 async def test_without_a_base_it_still_says_where_it_stands(tmp_path: Path) -> None:
     robot = office()
     config = in_directory(Config(), tmp_path)
-    compute: Compute = AtOnce()  # type: ignore[assignment]  # object for any T: it hands back what it is given
     async with cables(robot) as laid:
-        daemon = compose(config, connects_of(laid), compute, new_journal(config))
+        daemon = compose(config, connects_of(laid), head_on(AtOnce(), config), unpaced(AtOnce()), new_journal(config))
         parts = [asyncio.create_task(part) for part in daemon.parts().values()]
         await until_ready(daemon)
         await daemon.control.perform(Arm())

@@ -39,7 +39,7 @@ async def record(live: Any, path: Path) -> tuple[str, list[Sweep]]:
     async with live(robot, QUICK) as it:
         await it.daemon.control.perform(RecordStart(str(path)))
         said = await it.done(MapStart.of("office", STOPS_M, robot.start, Legs.STRAIGHT))
-        digest = it.daemon.supervisor.whereabouts.map_in_use.grid.digest()
+        digest = it.daemon.supervisor.whereabouts.map_in_use.digest
         said += await it.done(Localize())
         await it.daemon.control.perform(RecordStop())
     assert len(sweeps(said)) == 1 + len(STOPS_M) + 1
@@ -55,7 +55,7 @@ async def repeat(live: Any, recording: Recording, *, dawdle_s: float) -> tuple[s
         await it.daemon.control.perform(Arm())
         await asyncio.sleep(dawdle_s)
         said = await it.done(MapStart.of("office", STOPS_M, robot.start, Legs.STRAIGHT))
-        digest = it.daemon.supervisor.whereabouts.map_in_use.grid.digest()
+        digest = it.daemon.supervisor.whereabouts.map_in_use.digest
         await asyncio.sleep(dawdle_s)
         said += await it.done(Localize())
         mismatches = fake.mismatches

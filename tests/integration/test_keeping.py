@@ -16,15 +16,16 @@ from robotd.contract.missions import Legs, Localize, MapStart, with_lease
 from robotd.contract.requests import Arm, ListMaps, MapDiscard, MapLoad, MapSave, RecordStart, RecordStop, Stop
 from robotd.core.clock import run_virtual
 from robotd.core.errors import MapError, MissionError
+from robotd.head.jobs import Insert
 from robotd.maps import atomic
 from robotd.maps.store import MapStore
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.whereabouts.keeping import EVERY_STOPS
-from robotd.mission.whereabouts.laying import lay
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.living import LEASE_S, Living
+from tests.support.places import head_of
 
 QUICK = replace(Config(), sweep=SweepSettings(readings=120))
 
@@ -56,7 +57,7 @@ async def kept(it: Living) -> Status:
 
 def digest_in_use(it: Living) -> str:
     assert it.daemon.supervisor.whereabouts.map_in_use is not None
-    return it.daemon.supervisor.whereabouts.map_in_use.grid.digest()
+    return it.daemon.supervisor.whereabouts.map_in_use.digest
 
 
 def fill(disk: pytest.MonkeyPatch) -> None:
@@ -102,11 +103,11 @@ async def test_mapping_stopped_after_two_of_five_stops_is_kept(live: Live) -> No
         assert status.map_kept_version == 1
         assert it.daemon.supervisor.whereabouts.map_in_use is not None
         assert it.daemon.supervisor.whereabouts.map_in_use.generation == 2
-        stored = MapStore(Path(it.daemon.control._store._root)).load("office")
+        stored = MapStore(it.daemon.control._archive.root).load("office")
         grid, entry = stored.grid, stored.entry
         assert (entry.metadata["generation"], grid.digest()) == (2, digest_in_use(it))
-        assert stored.stops == it.daemon.supervisor.whereabouts.map_in_use.stops
-        assert entry.stops == 2
+        assert stored.stops is not None
+        assert entry.stops == len(stored.stops.stops) == it.daemon.supervisor.whereabouts.map_in_use.stops == 2
 
 
 async def test_a_map_that_is_loaded_takes_its_stops_along(live: Live) -> None:
@@ -114,19 +115,20 @@ async def test_a_map_that_is_loaded_takes_its_stops_along(live: Live) -> None:
     async with live(robot, QUICK) as it:
         control = it.daemon.control
         await it.done(MapStart.of("office", robot.stops_m[:1], robot.start))
-        assert it.daemon.supervisor.whereabouts.map_in_use is not None
-        made = it.daemon.supervisor.whereabouts.map_in_use.stops
         await control.perform(MapSave())
+        made = MapStore(control._archive.root).load("office").stops
+        assert made is not None
         await control.perform(MapLoad.of("office", None, robot.start))
         place = it.daemon.supervisor.whereabouts.map_in_use
-        assert place.stops == made
-        assert made is not None
-        laid = lay(place.grid, place.latest, place.stops, made.stops[0].sweep, robot.start)
-        place.take(laid)
+        assert place is not None
+        assert place.stops == len(made.stops) == 2
+        place.take(await head_of(it.daemon).ask(Insert(place.ref, made.stops[0].sweep, robot.start)))
         await control.perform(MapSave("hall"))
-        stored = MapStore(control._store.root).load("hall")
+        stored = MapStore(control._archive.root).load("hall")
         assert stored.entry.stops == 3
-        assert (stored.stops, stored.grid.digest()) == (laid.stops, digest_in_use(it))
+        assert stored.stops is not None
+        assert stored.stops.stops[:2] == made.stops
+        assert stored.grid.digest() == digest_in_use(it)
 
 
 async def test_a_kill_at_any_step_of_mapping_costs_no_more_than_a_few_stops(live: Live) -> None:
@@ -134,7 +136,7 @@ async def test_a_kill_at_any_step_of_mapping_costs_no_more_than_a_few_stops(live
     stops_m = tuple((robot.start.x_m + 0.02 * number, robot.start.y_m) for number in range(1, 2 * EVERY_STOPS + 2))
     coarse = replace(Config(), sweep=SweepSettings(readings=24))
     async with live(robot, coarse) as it, keeping(it):
-        root = it.daemon.control._store.root
+        root = it.daemon.control._archive.root
         it.daemon.control.start(MapStart.of("office", stops_m, robot.start, Legs.STRAIGHT), LEASE_S)
         seen = set[int]()
         async for event in it.events:

@@ -24,6 +24,7 @@ from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot, own_board
 from tests.integration.conftest import Live
 from tests.support.living import Living, until_ready
+from tests.support.places import cells_in_use
 
 pytestmark = pytest.mark.slow
 
@@ -191,7 +192,7 @@ async def test_a_saved_map_comes_back_exactly_and_the_robot_is_found_in_it(live:
     robot = SimulatedRobot(load_world("office"), seed=1)
     async with live(robot) as it:
         said = await it.done(MapStart.of("office", robot.stops_m, robot.start))
-        cells = place(it).grid.cells.copy()
+        cells = await cells_in_use(it.daemon)
         entry = await it.daemon.control.perform(MapSave())
     changes = [event for event in said if isinstance(event, MapChanged) and not event.whole]
     assert [event.generation for event in changes] == list(range(1, len(robot.stops_m) + 2))
@@ -199,7 +200,7 @@ async def test_a_saved_map_comes_back_exactly_and_the_robot_is_found_in_it(live:
     async with live(again) as it:
         loaded = await it.daemon.control.perform(MapLoad.of("office", None, None))
         assert loaded.digest == entry.digest
-        assert np.array_equal(place(it).grid.cells, cells)
+        assert np.array_equal(await cells_in_use(it.daemon), cells)
         with pytest.raises(MissionError, match="tied to this map"):
             raise MissionError((await it.do(Localize()))[1].message)
         found = final_estimates(await it.done(Localize(again.truth.heading_rad)))[-1]

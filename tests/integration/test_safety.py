@@ -38,8 +38,6 @@ from robotd.grid.settings import GridSettings
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES
-from robotd.mission.compute import Compute
-from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
 from robotd.recording.entries import BytesEntry
 from robotd.recording.preroll import PrerollJournal
@@ -50,6 +48,7 @@ from robotd.sim.physics.head import Head
 from robotd.sim.robot import DEVICES, SimulatedRobot, board_of, own_board
 from robotd.sim.runtime import connectors
 from tests.support.living import in_directory, until_ready
+from tests.support.places import head_of, head_on, place_of, unpaced
 
 LEASE_S = 0.5
 REST_WITHIN_S = 1.5
@@ -165,8 +164,7 @@ def daemon_on(
         return connect_plugged
 
     wrapped = {name: plugged(name, connect) for name, connect in connects.items()}
-    computing: Compute = compute  # type: ignore[assignment]  # object for any T: it hands back what it is given
-    return compose(Config(), wrapped, computing, journal)
+    return compose(Config(), wrapped, head_on(compute), unpaced(compute), journal)
 
 
 @contextlib.asynccontextmanager
@@ -197,16 +195,17 @@ async def idle(rig: Rig) -> None:
     await rig.daemon.control.perform(Arm())
 
 
-def use_blank_map(rig: Rig) -> None:
+async def use_blank_map(rig: Rig) -> None:
     start, here = rig.robot.start, rig.daemon.robot.drive.odometry.latest
     grid = OccupancyGrid(GridSettings().spec_covering(((start.x_m, start.y_m),), 3.0))
     assert here is not None
-    rig.daemon.supervisor.use(MapInUse("blank", "blank", grid), Tie.between(start, here.in_odom))
+    blank = await place_of(head_of(rig.daemon), grid, "blank")
+    rig.daemon.supervisor.use(blank, Tie.between(start, here.in_odom))
 
 
 async def driving(rig: Rig) -> None:
     await rig.daemon.control.perform(Arm())
-    use_blank_map(rig)
+    await use_blank_map(rig)
     mission_id = rig.start(DriveTo(*rig.robot.stops_m[0], Legs.STRAIGHT))
     await rig.keep_alive(mission_id, lambda _: rig.robot._body.velocity[0] > 0.2)
 
@@ -266,7 +265,7 @@ async def computing(rig: Rig) -> None:
 async def preparing(rig: Rig) -> None:
     """The map is made ready to localize on, before the sweep."""
     await rig.daemon.control.perform(Arm())
-    use_blank_map(rig)
+    await use_blank_map(rig)
     rig.start(Localize())
     await asyncio.sleep(0.4)
 

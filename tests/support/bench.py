@@ -20,7 +20,7 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.wire.board import STOP_BYTES
-from robotd.mission.compute import Compute
+from robotd.head.compute import Compute
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.recording.entries import BytesEntry, Entry
 from robotd.recording.preroll import PrerollJournal
@@ -30,6 +30,7 @@ from robotd.sim.faults.cable import Cable
 from robotd.sim.faults.laid import cables, connects_of
 from robotd.sim.robot import DEVICES, SimulatedRobot
 from tests.support.living import AtOnce, in_directory, until_ready
+from tests.support.places import head_on, unpaced
 
 LEASE_S = 0.5
 _RENEW_S = 0.2
@@ -136,9 +137,9 @@ async def bench(
     config = replace(config, recording=replace(config.recording, preroll_bytes=_PREROLL_BYTES))
     robot = SimulatedRobot(load_world("laboratory"), seed=4, dialects=dialects)
     journal = new_journal(config)
-    compute: Compute = worker or AtOnce()  # type: ignore[assignment]  # object for any T: it hands back what it is given
+    compute = worker or unpaced(AtOnce())
     async with cables(robot) as laid:
-        daemon = compose(config, connects_of(laid), compute, journal)
+        daemon = compose(config, connects_of(laid), head_on(compute, config), compute, journal)
         await daemon.control.perform(RecordStart())
         with daemon.control.events.subscribe(depth=100_000) as events:
             parts = [asyncio.create_task(part, name=name) for name, part in daemon.parts().items()]

@@ -2,7 +2,6 @@
 
 import asyncio
 import contextlib
-import inspect
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,30 +13,18 @@ from robotd.contract.events import Event, MissionPhase, MissionProgress
 from robotd.contract.missions import Mission
 from robotd.contract.requests import Arm, Stop
 from robotd.core.broadcast import Subscription
-from robotd.mission.compute import Compute
 from robotd.recording.preroll import PrerollJournal
 from robotd.sim.robot import EmulatedRobot
 from robotd.sim.runtime import connectors
+from tests.support.places import head_on, unpaced
 
 LEASE_S = 10_000.0
 
 
-_OF_MISSIONS = {"begin map", "insert", "narrow", "plan", "prepare"}
-
-
 class AtOnce:
-    """Computes where it is asked; the virtual loop would do the same in its executor.
-
-    What missions let it compute must be what another process could be sent: a function that reaches nothing by itself,
-    and values. An object of the mission's would let the worker see, or change, what the loop lives on.
-    """
+    """Computes where it is asked; the virtual loop would do the same in its executor."""
 
     async def run(self, name: str, function: Callable[..., object], *args: object) -> object:
-        if name in _OF_MISSIONS:
-            assert inspect.isfunction(function), f"{name}: {function} brings an object along"
-            assert function.__closure__ is None, f"{name}: {function} reaches what it was made in"
-            own = [arg for arg in args if type(arg).__module__.startswith("robotd.mission")]
-            assert own == [], f"{name}: handed over what is the mission's own"
         return function(*args)
 
 
@@ -74,9 +61,8 @@ async def living(
     """Bring a daemon to life on an emulated robot; whatever it writes goes to a directory."""
     config = in_directory(config or Config(), directory)
     journal = new_journal(config)
-    compute: Compute = AtOnce()  # type: ignore[assignment]  # object for any T: it hands back what it is given
     async with connectors(robot) as connects:
-        daemon = compose(config, connects, compute, journal)
+        daemon = compose(config, connects, head_on(AtOnce(), config), unpaced(AtOnce()), journal)
         with daemon.control.events.subscribe(depth=1_000_000) as events:
             tasks = [asyncio.create_task(part, name=name) for name, part in daemon.parts().items()]
             try:

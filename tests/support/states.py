@@ -10,12 +10,12 @@ from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, Map
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm
 from robotd.core.pose import Odometry
-from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
 from robotd.mission.map_requests import use_map
 from robotd.mission.motion.legs import next_odometry
 from robotd.sim.robot import own_board
 from tests.support.bench import Bench
+from tests.support.places import held
 
 _FAST_MPS = 0.2
 _FAST_RADPS = 0.3
@@ -130,6 +130,6 @@ def _is_fast(event: Event) -> bool:
 async def _use_blank_map(bench: Bench) -> None:
     start = bench.robot.start
     await next_odometry(bench.daemon.robot.drive, 1.0)
-    grid = OccupancyGrid(GridSettings().spec_covering(((start.x_m, start.y_m),), 3.0))
-    command = use_map({"map_id": "blank", "name": "blank", "robot_in_map": msgspec.to_builtins(start)}, grid)
+    blank = held(GridSettings().spec_covering(((start.x_m, start.y_m),), 3.0))
+    command = use_map({"map_id": "blank", "name": "blank", "robot_in_map": msgspec.to_builtins(start)}, blank)
     await bench.daemon.control.repeat("use_map", command.arguments)  # through the journal, so that a replay has it, too

@@ -32,8 +32,8 @@ from robotd.evaluation.tally import Tally
 from robotd.evaluation.verdict import RIGHT_M, RIGHT_RAD
 from robotd.grid import kernels
 from robotd.grid.settings import GridSettings
+from robotd.head.cores import cores
 from robotd.logs.scan import RecordedLog, Scan
-from robotd.mission.compute import cores
 
 _Draw = Callable[[Path, Job, Scan, Result], None]
 _Say = Callable[[dict[str, Any]], None]

@@ -14,7 +14,7 @@ from robotd.recording.entries import BytesEntry
 from robotd.recording.reader import Recording, read
 
 if TYPE_CHECKING:
-    from robotd.app import ReplayReport
+    from robotd.app.replaying import ReplayReport
 
 
 def _start(arguments: argparse.Namespace) -> int:
@@ -81,7 +81,7 @@ def _facts(recording: Recording) -> dict[str, Any]:
 
 
 def _replay(arguments: argparse.Namespace) -> int:
-    from robotd.app import replay_recording  # noqa: PLC0415  # no other verb needs a daemon inside
+    from robotd.app.replaying import replay_recording  # noqa: PLC0415  # no other verb needs a daemon inside
 
     report = replay_recording(arguments.file)
     if arguments.json:

@@ -8,14 +8,14 @@ from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepDo
 from robotd.core.clock import now_ns
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.core.text import printable
-from robotd.mission.compute import Compute
+from robotd.head.head import Head
 from robotd.mission.missions.settings import MissionSettings
 from robotd.mission.missions.stop_and_sweep import Sweeper
 from robotd.mission.news import Publish
-from robotd.mission.results import result_of
 from robotd.mission.robot import Robot
 from robotd.mission.safety.hold import Hold
 from robotd.mission.whereabouts.whereabouts import Whereabouts
+from robotd.recording.results import result_of
 
 _PROGRESS_EVERY = 10
 _LONGEST_MESSAGE = 500
@@ -45,11 +45,11 @@ class Reporter:
 
 @dataclass(frozen=True, slots=True)
 class MissionContext:
-    """Robot, settings, worker, ear of the world, and where the robot is on which map."""
+    """Robot, settings, who does array work, ear of the world, and where the robot is on which map."""
 
     robot: Robot
     settings: MissionSettings
-    compute: Compute
+    head: Head
     publish: Publish
     whereabouts: Whereabouts = field(default_factory=Whereabouts)
     hold: Hold = field(default_factory=Hold)

@@ -1,19 +1,13 @@
 """From here to a place on the map: plan, then leg by leg."""
 
-import numpy as np
-from numpy.typing import NDArray
-
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import DriveTo, Legs
 from robotd.core.errors import MissionError
 from robotd.core.pose import Odometry, Pose2
-from robotd.grid.latest import HIT
-from robotd.grid.occupancy import OccupancyGrid
+from robotd.head.jobs import Plan
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.motion.legs import drive_leg, next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
-from robotd.planning.path import Path, Unreachable, plan
-from robotd.planning.settings import PlanningSettings
 
 
 async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: float, legs: Legs) -> Odometry:
@@ -45,21 +39,10 @@ async def _drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: f
 async def _planned(
     context: MissionContext, place: MapInUse, start: Pose2, goal_m: tuple[float, float]
 ) -> tuple[tuple[float, float], ...]:
-    route = await context.compute.run("plan", _plan, place.grid, place.latest, start, goal_m, context.settings.planning)
-    if not isinstance(route, Path):
-        raise MissionError(f"({goal_m[0]:.2f}, {goal_m[1]:.2f}) m cannot be reached: {route.reason}")
-    return route.waypoints_m
-
-
-def _plan(
-    grid: OccupancyGrid,
-    latest: NDArray[np.uint8],
-    start: Pose2,
-    goal_m: tuple[float, float],
-    settings: PlanningSettings,
-) -> Path | Unreachable:
-    # What was hit last is an obstacle whatever the cell's value: one beam is enough (decision 20).
-    return plan(grid, start, goal_m, settings, latest == HIT)
+    planned = await context.head.ask(Plan(place.ref, start, goal_m))
+    if planned.hindrance:
+        raise MissionError(f"({goal_m[0]:.2f}, {goal_m[1]:.2f}) m cannot be reached: {planned.hindrance}")
+    return planned.waypoints_m
 
 
 async def run_driving(context: MissionContext, place: MapInUse, mission: DriveTo, report: Reporter) -> str:

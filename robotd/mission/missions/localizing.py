@@ -1,6 +1,6 @@
 """Where am I? Sweep here, and narrow the feasible poses down reading by reading, while the sweep goes on.
 
-Readings go to the localizer in batches of a fixed count, so what is estimated after which reading never depends
+Readings go to the head in batches of a fixed count, so what is estimated after which reading never depends
 on how fast this machine happens to be.
 """
 
@@ -15,15 +15,11 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import RangeReading
-from robotd.localization.estimator import Estimator
-from robotd.localization.localizer import Localizer
-from robotd.mission.compute import cores
+from robotd.head.jobs import Narrow, Prepare
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.stop_and_sweep import faults_text, standing
-from robotd.mission.results import result_of
 from robotd.mission.whereabouts.map_in_use import MapInUse
-from robotd.mission.whereabouts.readiness import made_ready
-from robotd.recording.entries import ResultEntry
+from robotd.recording.results import result_of
 
 _BATCH = 20
 """Readings between two estimates while the heading is known and readings are counted as they come."""
@@ -39,21 +35,33 @@ async def run_localizing(
     here = await context.hold.through(lambda: standing(context.robot, settings.sweep.settle_s, settings.driving))
     headings_rad = _headings(context, mission, here)
     report.at(MissionPhase.SWEEPING)
-    narrowing = await Narrowing.begin(context, place, mission, headings_rad)
+    stop = context.head.number()
+    try:
+        await context.head.ask(Prepare(stop, place.ref, place.map_id, headings_rad, mission.within))
+        narrowing = Narrowing(context, stop, _between(context, mission))
+        estimate, in_odom = await _looked_round(context, report, narrowing, number)
+    finally:
+        context.head.forget(stop)
+    # Without a base there is no odometry that a tie could be made with.
+    if mission.tie and context.robot.has_base:
+        _learn(context, in_odom, estimate)
+    return estimate
+
+
+async def _looked_round(
+    context: MissionContext, report: Reporter, narrowing: "Narrowing", number: int
+) -> tuple[PoseEstimate, Pose2]:
+    """Sweep, narrow down meanwhile, and return the last word, and where odometry put the robot."""
     narrowed = asyncio.create_task(narrowing.run(), name="narrowing")
     try:
         sweep = await context.sweep(number, narrowing.offer)
         report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
         narrowing.end(sweep.in_odom)
-        estimate = await narrowed
+        return await narrowed, sweep.in_odom
     finally:
         # Whatever ended the sweep: a task is not left behind by its owner.
         narrowed.cancel()
         await asyncio.wait((narrowed,))
-    # Without a base there is no odometry that a tie could be made with.
-    if mission.tie and context.robot.has_base:
-        _learn(context, sweep.in_odom, estimate)
-    return estimate
 
 
 def _learn(context: MissionContext, in_odom: Pose2, estimate: PoseEstimate) -> None:
@@ -79,34 +87,22 @@ def _headings(context: MissionContext, mission: Localize, here: Odometry) -> tup
     return settings.headings_near(heading_rad)
 
 
+def _between(context: MissionContext, mission: Localize) -> int:
+    """Return how many readings there are between two estimates."""
+    # Rounded up: down would add an estimate for the few readings that are left over.
+    return -(-context.settings.sweep.readings // _ESTIMATES) if mission.heading is PriorHeading.UNKNOWN else _BATCH
+
+
 class Narrowing:
     """A sweep under way: takes readings as they come, publishes estimates as they firm up."""
 
-    def __init__(self, context: MissionContext, estimator: Estimator, readings_between: int) -> None:
+    def __init__(self, context: MissionContext, stop: int, readings_between: int) -> None:
         self._context = context
-        self._estimator = estimator
+        self._stop = stop
         self._readings_between = readings_between
         self._batches: asyncio.Queue[tuple[RangeReading, ...] | None] = asyncio.Queue()  # bounded by one sweep
         self._batch: list[RangeReading] = []
         self._in_odom: Pose2 | None = None
-
-    @classmethod
-    async def begin(
-        cls, context: MissionContext, place: MapInUse, mission: Localize, headings_rad: tuple[float, ...]
-    ) -> "Narrowing":
-        """Make the map ready, and try these headings on it."""
-        settings, (before, changed) = context.settings, place.readiness.hand_over()
-        ready = await context.compute.run(
-            "prepare", made_ready, place.grid, settings.localization, settings.error_model, before, changed
-        )
-        place.readiness.keep(ready)
-        judgement = settings.judgement
-        estimator = Localizer.at_stop(
-            ready, place.map_id, headings_rad, mission.within, judgement=judgement, threads=cores()
-        )
-        is_searched = mission.heading is PriorHeading.UNKNOWN
-        # Rounded up: down would add an estimate for the few readings that are left over.
-        return cls(context, estimator, -(-settings.sweep.readings // _ESTIMATES) if is_searched else _BATCH)
 
     def offer(self, reading: RangeReading) -> None:
         """Take a reading."""
@@ -130,12 +126,12 @@ class Narrowing:
         while True:
             batch = await self._batches.get()
             final = batch is None
-            estimate, made = await self._context.compute.run(
-                "narrow", _narrow, self._estimator, batch or (), now_ns(), final
-            )
-            # On the loop: the worker sees nothing of the whereabouts (decision 30).
+            readings = tuple(reading for reading in batch or () if reading.is_measured)
+            narrowed = await self._context.head.ask(Narrow(self._stop, readings, now_ns(), final))
+            estimate, made = narrowed.estimate, narrowed.entry
+            # Here: who does array work sees nothing of the whereabouts (decision 30).
             told = self._weighed(estimate)
-            # The journal has what was told, so the entry that the worker made will not do.
+            # The journal has what was told, so the entry that came along will not do.
             if told is not estimate:
                 estimate, made = told, result_of(told)
             self._context.whereabouts.said(estimate)
@@ -149,18 +145,6 @@ class Narrowing:
             return estimate
         near_m = self._context.settings.judgement.second_look.same_within_m
         return self._context.whereabouts.weighed(estimate, self._in_odom, near_m=near_m)
-
-
-def _narrow(
-    estimator: Estimator, batch: tuple[RangeReading, ...], time_ns: int, final: bool
-) -> tuple[PoseEstimate, ResultEntry | None]:
-    """Return what the readings so far say, and its entry in the journal, encoded off the loop.
-
-    The estimator is the worker's from its first batch on: the loop only hands it back, and never looks inside.
-    """
-    estimator.add(*(reading for reading in batch if reading.is_measured))
-    estimate = estimator.estimate(time_ns, final=final)
-    return estimate, result_of(estimate)
 
 
 def pose_text(pose: Pose2) -> str:

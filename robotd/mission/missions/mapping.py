@@ -8,13 +8,13 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
 from robotd.core.reading import Sweep
+from robotd.head.jobs import Insert
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.driving import drive_to
 from robotd.mission.missions.looking_again import looking_again
 from robotd.mission.missions.stop_and_sweep import faults_text
-from robotd.mission.results import map_result
-from robotd.mission.whereabouts.laying import lay
 from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.recording.results import map_result
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +55,10 @@ async def run_mapping(context: MissionContext, place: MapInUse, mission: MapStar
         sweep = await looking_again(context, report, lambda: context.sweep(next(context.sweep_numbers)))
         faulty += [f"stop {stop}: {text}" for text in [faults_text(sweep)] if text]
         report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
-        laid = await context.compute.run(
-            "insert", lay, place.grid, place.latest, place.stops, sweep, _taken_at(context, sweep)
-        )
-        place.take(laid)
-        change = place.changes(now_ns(), laid.cells)
-        context.publish(change, map_result(change, laid.digest))
+        inserted = await context.head.ask(Insert(place.ref, sweep, _taken_at(context, sweep)))
+        place.take(inserted)
+        change = place.changes(now_ns(), inserted)
+        context.publish(change, map_result(change, inserted.digest))
     return MappingResult(1 + len(mission.stops_m) - len(unreachable), tuple(unreachable), tuple(faulty))
 
 

@@ -17,10 +17,7 @@ from robotd.contract.missions import (
     Turn,
 )
 from robotd.core.errors import MissionError
-from robotd.core.grid_spec import GridSpec
-from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.settings import GridSettings
+from robotd.head.jobs import BeginMap
 from robotd.mission.missions.by_head import run_look, run_measure, run_scan
 from robotd.mission.missions.by_odometry import run_straight, run_turning
 from robotd.mission.missions.context import MissionContext, Reporter
@@ -126,17 +123,12 @@ async def _begin_map(context: MissionContext, mission: MapStart, report: Reporte
         spec = settings.spec_covering(points_m, _MARGIN_M)
     except ValueError as error:
         raise MissionError(f"these stops do not fit on one map: {error}") from error
-    grid, digest = await context.compute.run("begin map", _blank, spec, settings)
+    number = context.head.number()
+    begun = await context.head.ask(BeginMap(number, spec, settings))
     silence_s = context.settings.driving.silence_s
     here = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
-    place = MapInUse(f"new-{report.mission_id}", mission.name, grid, digest, MapStops(settings))
+    place = MapInUse(f"new-{report.mission_id}", mission.name, number, begun)
     return place, Tie.between(mission.start.pose, here.in_odom)
-
-
-def _blank(spec: GridSpec, settings: GridSettings) -> tuple[OccupancyGrid, str]:
-    """Return a map on which nothing is known, and its digest."""
-    grid = OccupancyGrid(spec, settings=settings)
-    return grid, grid.digest()
 
 
 def describe(estimate: PoseEstimate) -> str:

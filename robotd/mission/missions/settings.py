@@ -4,12 +4,10 @@ from dataclasses import dataclass, field
 
 from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
-from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
-from robotd.planning.settings import PlanningSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,5 +21,3 @@ class MissionSettings:
     grid: GridSettings = field(default_factory=GridSettings)
     localization: LocalizationSettings = field(default_factory=LocalizationSettings)
     judgement: Judgement = field(default_factory=Judgement)
-    error_model: ErrorModel = field(default_factory=ErrorModel)
-    planning: PlanningSettings = field(default_factory=PlanningSettings)

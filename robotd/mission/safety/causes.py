@@ -5,16 +5,20 @@ have to guess, and it would guess another moment: so each of these is noted wher
 up there, with its own clocks silenced.
 """
 
+import logging
 from collections.abc import Callable
 from typing import Any
 
 import msgspec
 
+from robotd.contract.modes import Mode
 from robotd.core.attention import attention
 from robotd.core.clock import now_ns
 from robotd.core.errors import RecordingError
+from robotd.core.text import printable
 from robotd.mission.safety.hold import Stall
 from robotd.mission.safety.holding import Holding
+from robotd.mission.safety.modes import Occasion
 from robotd.mission.safety.stopper import Stopper
 from robotd.recording.journal import Journal
 
@@ -22,13 +26,18 @@ STALL = "stall"
 LEASE = "lease"
 GO_ON = "go_on"
 GIVE_UP = "give_up"
+HEAD = "head"
+"""Array work cannot be done, for the reason in its argument ``why``."""
 SILENCE = "silence"
 """A time ran out in which something should have come, of whatever its argument ``of`` says."""
 _ARGUMENTS: dict[str, tuple[str, tuple[type, ...]]] = {
     STALL: ("stood_still_s", (float, int)),
     LEASE: ("mission_id", (int,)),
 }
+_TEXTS = {SILENCE: "of", HEAD: "why"}
 _MAX = 1e9
+
+log = logging.getLogger(__name__)
 
 
 class Causes:
@@ -65,6 +74,21 @@ class Causes:
         self._journal.cause(now_ns(), GIVE_UP, {})
         self._holding.give_up()
 
+    def head_away(self, why: str | None) -> None:
+        """Say that the mission waits for the head, or does so no longer: nothing else comes of it."""
+        self._holding.head_away(why)
+
+    def head_lost(self, why: str) -> None:
+        """Take up that array work cannot be done: a robot that cannot think is not to move either."""
+        if self._stopper.mode in {Mode.DISARMED, Mode.FAULT}:
+            log.error("%s", why)
+            return
+        # Before the note: a stop waits for no note.
+        self._stopper.robot.stop_now()
+        why = printable(why)
+        self._journal.cause(now_ns(), HEAD, {"why": why})
+        self._stopper.halt(Occasion.STOP, why)
+
     def repeat(self, name: str, arguments: dict[str, Any]) -> None:
         """Take up a cause as the journal noted it; one of a later version is left out.
 
@@ -80,6 +104,8 @@ class Causes:
             self.give_up()
         elif name == LEASE:
             self._lease_expired(arguments["mission_id"])
+        elif name == HEAD:
+            self.head_lost(arguments["why"])
         elif name == SILENCE:
             attention().let_fall(arguments["of"])
 
@@ -96,8 +122,9 @@ def check_cause(name: str, arguments: dict[str, Any]) -> None:
         raise RecordingError(f"cause {name!r}: expected a number {key!r}, got {str(arguments)[:80]}")
     if name == STALL:
         _check_stall(arguments)
-    if name == SILENCE and type(arguments.get("of")) is not str:
-        raise RecordingError(f"cause {SILENCE!r}: expected a text 'of', got {str(arguments)[:80]}")
+    text = _TEXTS.get(name)
+    if text is not None and type(arguments.get(text)) is not str:
+        raise RecordingError(f"cause {name!r}: expected a text {text!r}, got {str(arguments)[:80]}")
 
 
 def _check_stall(arguments: dict[str, Any]) -> None:

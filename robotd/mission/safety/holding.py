@@ -42,7 +42,24 @@ class Holding:
         self._stopper = stopper
         self._stall: Stall | None = None
         self._going_on: asyncio.Task[None] | None = None
+        self._why_head_is_away: str | None = None
         hold.wait_for_base = self._wait_for_base
+
+    @property
+    def cause(self) -> str | None:
+        """Why the mission under way is held, or waits; None if it does neither."""
+        return self.hold.cause or self._why_head_is_away
+
+    def head_away(self, why: str | None) -> None:
+        """Let the mission wait for the head, and say why; None if it does not wait any more.
+
+        Nothing is stopped: a mission that asks for array work stands, and sweeps at most.
+        """
+        before = self._why_head_is_away
+        self._why_head_is_away = None if why is None else f"the head is away ({why}); it goes on by itself"
+        if self._why_head_is_away != before:
+            log.warning("%s", self._why_head_is_away or "the head is back, and the mission goes on")
+            self._stopper.publish_status()
 
     def stalled(self, stall: Stall) -> None:
         """Take note of a stall; if the base was stopped, hold the mission."""

@@ -7,14 +7,18 @@ nothing.
 import asyncio
 import logging
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns, wall_offset_ns
-from robotd.core.errors import MapError, MissionError
+from robotd.core.errors import MissionError, RobotdError
+from robotd.head.compute import Compute
+from robotd.head.head import Head
+from robotd.head.jobs import MakeFiles
+from robotd.head.wire import JobFailed
+from robotd.maps.archive import Archive
 from robotd.maps.entry import UNSAVED, MapEntry
-from robotd.maps.store import MapStore
-from robotd.mission.compute import Compute
+from robotd.maps.version_files import Content
 from robotd.mission.news import News
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.whereabouts import Whereabouts
@@ -45,10 +49,11 @@ class KeepingHost(Protocol):
 class Keeping:
     """Watches the map in use and keeps it when a mission has changed it, and every few stops while one does."""
 
-    def __init__(self, host: KeepingHost, store: MapStore, compute: Compute) -> None:
+    def __init__(self, host: KeepingHost, archive: Archive[Content], head: Head, disk: Compute) -> None:
         self._host = host
-        self._store = store
-        self._compute = compute
+        self._archive = archive
+        self._head = head
+        self._disk = disk
         self.turn = asyncio.Lock()
         """Held while a map goes to the store: what is kept and what is saved must know of each other."""
         self._tried: tuple[str, int] | None = None
@@ -74,7 +79,7 @@ class Keeping:
                 self._tried = _state_of(place)
                 try:
                     entry = await self._kept(place)
-                except MapError as error:
+                except (RobotdError, JobFailed) as error:
                     log.error("the unsaved map %s is in memory alone: %s", place.name, error)  # noqa: TRY400  # foreseen
                     return str(error)
                 log.info("map %s is not saved, but kept as version %d: robotctl map save", entry.name, entry.version)
@@ -107,12 +112,24 @@ class Keeping:
 
     async def _kept(self, place: MapInUse) -> MapEntry:
         generation = place.generation
-        metadata = {"generation": generation, "map_id": place.map_id, UNSAVED: True}
-        created_ns = now_ns() + wall_offset_ns()
-        save = partial(self._store.save, in_place_of=place.kept_beside)
-        entry = await self._compute.run("keep map", save, place.name, place.grid, metadata, created_ns, place.stops)
+        entry = await self.store(place, place.name, {UNSAVED: True})
         place.kept(generation, entry.version)
         return entry
+
+    async def store(self, place: MapInUse, name: str, metadata: dict[str, Any]) -> MapEntry:
+        """Bring a map to the store as it is now: it may grow while the disk writes. To be called in one's turn.
+
+        Raises:
+            MapError: the disk refused, or the name is none.
+            ChildError: there is no head to make files of it.
+        """
+        told = {"generation": place.generation, "map_id": place.map_id, **metadata}
+        created_ns = now_ns() + wall_offset_ns()
+        made = await self._head.ask(MakeFiles(place.ref))
+        if made.remark is not None:
+            log.warning("map %s goes to the store without its stops: %s", name, made.remark)
+        save = partial(self._archive.save, in_place_of=place.kept_beside)
+        return await self._disk.run("save map", lambda: save(name, made.content.unpacked(), told, created_ns))
 
 
 def _state_of(place: MapInUse) -> tuple[str, int]:

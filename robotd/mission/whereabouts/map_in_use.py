@@ -1,43 +1,39 @@
 """The map the robot lives on now, and how much of it is on the disk."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robotd.contract.events import MapChanged
-from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.window import CellWindow
-from robotd.mission.whereabouts.laying import Laid
-from robotd.mission.whereabouts.readiness import Readiness
+from robotd.core.grid_spec import GridSpec
+from robotd.head.jobs import HeldMap, Inserted, MapRef
 
 _NO_CELLS: NDArray[np.intp] = np.empty(0, dtype=np.intp)
+_NO_VALUES: NDArray[np.uint8] = np.empty(0, dtype=np.uint8)
 
 
 @dataclass(slots=True)
 class MapInUse:
-    """One map: its cells, how often they changed, and what of it is on the disk.
+    """One map: which one, how often it changed, and what of it is on the disk.
 
-    The grid is never changed, only replaced, and on the loop: who holds one, on any thread, holds a snapshot. Where the
-    robot is on it is another matter, see :class:`robotd.mission.whereabouts.whereabouts.Whereabouts`.
+    Its cells are where array work is done, under its number. Where the robot is on it is another matter, see
+    :class:`robotd.mission.whereabouts.whereabouts.Whereabouts`.
     """
 
     map_id: str
     """Digest of its content when it was loaded or begun."""
     name: str
-    grid: OccupancyGrid
-    digest: str = ""
-    """Of the grid as it is now; made where the grid was, since for the largest it takes a tenth of a second."""
-    stops: MapStops | None = None
-    """What the grid is made of; None if that is not known, as of maps that did not keep it. Replaced with the grid."""
+    number: int
+    """By which it is asked for."""
+    begun: HeldMap
+    """As it came into use."""
+    digest: str = field(init=False)
+    """Of the map as it is now."""
+    stops: int | None = field(init=False)
+    """How many stops it is made of by now; None if that is not known, as of maps that did not keep them."""
     generation: int = 0
     """Counts its changes since it came into use."""
-    readiness: Readiness = field(default_factory=Readiness)
-    """What localization has made of it."""
-    latest: NDArray[np.uint8] = field(init=False)
-    """``uint8[rows, cols]``: what the latest sweep that met each cell said of it, of those laid in since this map came
-    into use; what was seen before is in the grid alone. Never changed, only replaced."""
     settled_generation: int = 0
     """The change up to which it is as somebody saved it, or gave it up; -1 if it came into use unsaved."""
     kept_generation: int = 0
@@ -46,11 +42,18 @@ class MapInUse:
     """Which version of its name that is."""
 
     def __post_init__(self) -> None:
-        """Make the digest, unless somebody did; nothing was said of any cell yet."""
-        self.digest = self.digest or self.grid.digest()
-        self.latest = np.zeros(
-            self.grid.spec.shape, np.uint8
-        )  # NOTHING, and not touched: that would take long on the loop
+        """Begin as it came."""
+        self.digest, self.stops = self.begun.digest, self.begun.stops
+
+    @property
+    def spec(self) -> GridSpec:
+        """Where its cells lie."""
+        return self.begun.spec
+
+    @property
+    def ref(self) -> MapRef:
+        """What it is asked for by, as it is now."""
+        return MapRef(self.number, self.generation)
 
     @property
     def is_unsaved(self) -> bool:
@@ -90,21 +93,27 @@ class MapInUse:
         """Take note that it came from a version of the store that nobody had saved."""
         self.settled_generation, self.kept_version = -1, version
 
-    def take(self, laid: Laid) -> None:
-        """Go on with the grid that a sweep was laid in."""
-        self.grid, self.latest, self.digest, self.stops = laid.grid, laid.latest, laid.digest, laid.stops
+    def take(self, inserted: Inserted) -> None:
+        """Go on with the map that a sweep was laid in."""
+        self.digest, self.stops = inserted.digest, inserted.stops
         self.generation += 1
-        self.readiness.note(CellWindow.bounding(laid.cells, laid.grid.spec.shape))
 
-    def changes(self, time_ns: int, cells: NDArray[np.intp]) -> MapChanged:
-        """Return the event for these changed cells."""
-        values, stops = self.grid.cells.reshape(-1)[cells], None if self.stops is None else len(self.stops.stops)
-        return MapChanged(time_ns, self.map_id, self.generation, self.grid.spec, False, cells, values, stops)
+    def changes(self, time_ns: int, inserted: Inserted) -> MapChanged:
+        """Return the event for what was inserted last."""
+        cells = np.frombuffer(inserted.cells, "<i8").astype(np.intp, copy=False)
+        values = np.frombuffer(inserted.values, np.uint8)
+        return MapChanged(time_ns, self.map_id, self.generation, self.spec, False, cells, values, self.stops)
 
     def whole(self, time_ns: int) -> MapChanged:
-        """Return the event that carries every cell."""
-        event = self.changes(time_ns, _NO_CELLS)
-        return replace(event, whole=True, values=self.grid.cells)
+        """Return the event that carries every cell, as it came into use."""
+        return whole(time_ns, self.map_id, 0, self.begun)
+
+
+def whole(time_ns: int, map_id: str, generation: int, shown: HeldMap) -> MapChanged:
+    """Return the event that carries every cell of a map."""
+    return MapChanged(
+        *(time_ns, map_id, generation, shown.spec, True, _NO_CELLS, _NO_VALUES, shown.stops), packed=shown.packed
+    )
 
 
 def in_place_of(place: MapInUse | None) -> str:

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from robotd.core.clock import now_ns
 from robotd.core.pose import Odometry
 from robotd.mission.news import Publish
-from robotd.mission.results import map_result
 from robotd.mission.whereabouts.map_in_use import MapInUse, in_place_of
 from robotd.mission.whereabouts.tie import Tie
 from robotd.mission.whereabouts.whereabouts import Whereabouts, unlocalized
+from robotd.recording.results import map_result
 
 log = logging.getLogger(__name__)
 
@@ -17,11 +17,18 @@ log = logging.getLogger(__name__)
 class WhereaboutsTold:
     """Changes the whereabouts, and says so at once: not to know where the robot is, is said and not left to silence."""
 
-    def __init__(self, whereabouts: Whereabouts, publish: Publish, publish_status: Callable[[], None]) -> None:
-        """Change ``whereabouts``; another map is told of in the status, too."""
+    def __init__(
+        self,
+        whereabouts: Whereabouts,
+        publish: Publish,
+        publish_status: Callable[[], None],
+        let_go: Callable[[int], None],
+    ) -> None:
+        """Change ``whereabouts``; another map is told of in the status, too, and ``let_go`` of the one before."""
         self._whereabouts = whereabouts
         self._publish = publish
         self._publish_status = publish_status
+        self._let_go = let_go
 
     def begin(self) -> None:
         """Say that nothing is known yet."""
@@ -29,8 +36,11 @@ class WhereaboutsTold:
 
     def adopt(self, place: MapInUse, tie: Tie | None) -> None:
         """Take another map into use."""
-        log.info("map %s (%s) is in use%s", place.name, place.map_id, in_place_of(self._whereabouts.map_in_use))
+        before = self._whereabouts.map_in_use
+        log.info("map %s (%s) is in use%s", place.name, place.map_id, in_place_of(before))
         self._whereabouts.adopt(place, tie)
+        if before is not None and before.number != place.number:
+            self._let_go(before.number)
         whole = place.whole(now_ns())
         # The journal has the digest alone; the cells may be megabytes.
         self._publish(whole, map_result(whole, place.digest))

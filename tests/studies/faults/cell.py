@@ -135,12 +135,12 @@ class _Cell:
             return
         if self._state.startswith("map"):
             self._check(place.generation >= 1, "the map so far is gone")
-        digest = place.grid.digest()
+        digest = place.digest
         entry = await it.daemon.control.perform(MapSave("kept"))
         await it.daemon.control.perform(MapLoad.of(entry.name, None, None))
         self._check(it.daemon.supervisor.whereabouts.map_in_use is not place, "the saved map did not come into use")
         loaded = it.daemon.supervisor.whereabouts.map_in_use
-        self._check(loaded is not None and loaded.grid.digest() == digest, "the saved map is another one")
+        self._check(loaded is not None and loaded.digest == digest, "the saved map is another one")
 
     async def _check_arming(self, it: Bench) -> None:
         if it.mode is Mode.FAULT:

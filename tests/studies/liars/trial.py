@@ -19,13 +19,13 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.mission.motion.legs import next_odometry
-from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
 from robotd.sim.robot import own_board
 from tests.studies.liars.liar import Liar
 from tests.studies.liars.lies import Tongue
 from tests.support.bench import Bench
 from tests.support.living import until_ready
+from tests.support.places import head_of, place_of
 
 LOOK_S = 0.1
 REST_S = 1.6
@@ -262,4 +262,5 @@ async def _use_blank_map(it: Bench) -> None:
     start = it.robot.start
     here = await next_odometry(it.daemon.robot.drive, 1.0)
     grid = OccupancyGrid(GridSettings().spec_covering(((start.x_m, start.y_m),), 3.0))
-    it.daemon.supervisor.use(MapInUse("blank", "blank", grid), Tie.between(it.robot.truth, here.in_odom))
+    blank = await place_of(head_of(it.daemon), grid, "blank")
+    it.daemon.supervisor.use(blank, Tie.between(it.robot.truth, here.in_odom))

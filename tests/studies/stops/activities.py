@@ -10,9 +10,9 @@ from robotd.contract.requests import Arm
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
 from robotd.mission.motion.legs import next_odometry
-from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
 from tests.studies.stops.rig import Rig, start
+from tests.support.places import head_of, place_of
 
 _FAST_MPS, _FAST_RADPS = 0.2, 0.3
 _PHASE_S = 0.1
@@ -60,7 +60,7 @@ async def _on_the_way(
     here = rig.robot.truth
     grid = OccupancyGrid(GridSettings().spec_covering(((here.x_m, here.y_m),), 4.0))
     tie = Tie.between(here, (await next_odometry(daemon.robot.drive, 1.0)).in_odom)
-    daemon.supervisor.use(MapInUse("blank", "blank", grid), tie)
+    daemon.supervisor.use(await place_of(head_of(daemon), grid, "blank"), tie)
     way_rad = here.heading_rad + bearing_rad
     goal_m = here.x_m + 1.2 * math.cos(way_rad), here.y_m + 1.2 * math.sin(way_rad)
     client = await start(daemon, DriveTo(*goal_m, Legs.STRAIGHT))

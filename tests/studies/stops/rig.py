@@ -20,13 +20,15 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES
-from robotd.mission.compute import Compute
+from robotd.head.compute import Compute
+from robotd.head.head import Head
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.recording.preroll import PrerollJournal
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.robot import DEVICES, SimulatedRobot
 from robotd.sim.runtime import connectors
+from tests.support.places import NearHead
 
 LEASE_S = 5.0
 READINGS = 24
@@ -101,7 +103,11 @@ class Rig:
         self.wires.clear()
         signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup would have it ignored, and that is respected
         self.composed = asyncio.get_running_loop().create_future()
-        with mock.patch.object(program, "compose", self._compose), mock.patch.object(program, "guarded", _unguarded):
+        with (
+            mock.patch.object(program, "compose", self._compose),
+            mock.patch.object(program, "guarded", _unguarded),
+            mock.patch.object(program, "FarHead", NearHead),
+        ):
             running = asyncio.create_task(program.run(self.config), name="program")
             try:
                 yield running, await self.composed
@@ -109,8 +115,10 @@ class Rig:
                 running.cancel()
                 await asyncio.wait({running})
 
-    def _compose(self, config: Config, _: Mapping[str, Connect], compute: Compute, journal: PrerollJournal) -> Daemon:
-        daemon = compose(config, {name: self._watched(name) for name in self.connects}, compute, journal)
+    def _compose(
+        self, config: Config, _: Mapping[str, Connect], head: Head, disk: Compute, journal: PrerollJournal
+    ) -> Daemon:
+        daemon = compose(config, {name: self._watched(name) for name in self.connects}, head, disk, journal)
         assert self.composed is not None
         self.composed.set_result(daemon)
         return daemon

@@ -21,16 +21,17 @@ from robotd.core.errors import TransportError
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.hardware.transport.transport import Connect, Transport
+from robotd.head.compute import Compute
+from robotd.head.head import Head
 from robotd.maps.store import MapStore
-from robotd.mission.compute import Compute
 from robotd.mission.whereabouts.keeping import Keeping
-from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import read
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.runtime import connectors
 from tests.support.living import until_ready
+from tests.support.places import head_of, place_of
 
 
 @pytest.fixture(name="short")
@@ -115,8 +116,10 @@ class Captured:
         self.composed: asyncio.Future[Daemon] = asyncio.get_running_loop().create_future()
         monkeypatch.setattr(program, "compose", self._compose)
 
-    def _compose(self, config: Config, _: Mapping[str, Connect], compute: Compute, journal: PrerollJournal) -> Daemon:
-        daemon = compose(config, self._connects, compute, journal)
+    def _compose(
+        self, config: Config, _: Mapping[str, Connect], head: Head, disk: Compute, journal: PrerollJournal
+    ) -> Daemon:
+        daemon = compose(config, self._connects, head, disk, journal)
         self.composed.set_result(daemon)
         return daemon
 
@@ -179,8 +182,8 @@ async def test_a_map_that_nobody_saved_outlives_sigterm(short: Path, monkeypatch
         running = asyncio.create_task(run(config_in(short)))
         daemon = await captured.composed
         await until_ready(daemon)
-        place = MapInUse("new-1", "lab", grid)
-        place.generation = 2
+        place = await place_of(head_of(daemon), grid, "lab")
+        place.settled_generation = place.kept_generation = -1
         daemon.supervisor.use(place)
         os.kill(os.getpid(), signal.SIGTERM)
         await asyncio.wait_for(running, 5.0)

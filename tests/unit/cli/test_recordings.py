@@ -67,7 +67,7 @@ class Report:
 def test_a_replay_that_gave_the_same_is_exit_code_0(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("robotd.app.replay_recording", lambda path: Report())
+    monkeypatch.setattr("robotd.app.replaying.replay_recording", lambda path: Report())
     assert main(["replay", "a.mcap"]) == 0
     assert capsys.readouterr().out == "3 results in 12.5 s of recording: the same\ndigest ab12\n"
     assert main(["replay", "a.mcap", "--json"]) == 0
@@ -89,7 +89,9 @@ def test_a_replay_that_differs_shows_where_and_is_exit_code_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     difference = Difference(1_250_000_000, "drive", "Arm()", "nothing")
-    monkeypatch.setattr("robotd.app.replay_recording", lambda path: Report(differences=(difference,), complete=False))
+    monkeypatch.setattr(
+        "robotd.app.replaying.replay_recording", lambda path: Report(differences=(difference,), complete=False)
+    )
     assert main(["replay", "a.mcap"]) == 1
     first, verdict, _ = capsys.readouterr().out.splitlines()
     assert first == "1.250000 s drive: expected Arm(), got nothing"
@@ -108,7 +110,7 @@ def test_a_replay_of_another_version_that_differs_names_both(
     difference = Difference(1_250_000_000, "drive", "Arm()", "nothing")
     for differences, is_told in (((), False), ((difference,), True)):
         report = Report(differences=differences, recorded_by="0.1.0")
-        monkeypatch.setattr("robotd.app.replay_recording", lambda path, report=report: report)
+        monkeypatch.setattr("robotd.app.replaying.replay_recording", lambda path, report=report: report)
         assert main(["replay", "a.mcap"]) == int(is_told)
         said = " ".join(capsys.readouterr().out.split())
         assert ("recorded by robotd 0.1.0, replayed by robotd 0.2.0: between versions planned ways" in said) == is_told
@@ -120,6 +122,6 @@ def test_a_replay_that_cannot_go_on_is_one_line(
     def fail(path: Path) -> Report:
         raise RecordingError("it holds nothing")
 
-    monkeypatch.setattr("robotd.app.replay_recording", fail)
+    monkeypatch.setattr("robotd.app.replaying.replay_recording", fail)
     assert main(["replay", "a.mcap"]) == 1
     assert capsys.readouterr().err == "robotctl: it holds nothing\n"

@@ -4,7 +4,7 @@ import asyncio
 import contextlib
 import logging
 from collections.abc import AsyncIterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import msgpack
@@ -20,6 +20,7 @@ from robotd.contract.request import Request
 from robotd.contract.requests import Arm, Clear, GetStatus, MapShow, Renew, Stop
 from robotd.contract.topics import LogEntry
 from robotd.core.errors import ChildError, MissionError, ServerError
+from robotd.core.grid_bytes import packed_cells
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.together import together
 from robotd.front.heart_side import HeartSide
@@ -207,10 +208,12 @@ async def test_a_front_that_takes_nothing_costs_bounded_memory_and_is_obeyed_all
 
 async def test_a_map_goes_over_as_it_is() -> None:
     async with fronted() as front:
-        front.control.map_in_use = whole_map(1)
-        front.asks(MapShow())
-        (shown,) = (await front.answers(1)).values()
-        assert_same(shown, whole_map(1))
+        packed = replace(whole_map(1), values=np.empty(0, np.uint8), packed=packed_cells(whole_map(1).values))
+        for the_map in (whole_map(1), packed):
+            front.control.map_in_use = the_map
+            front.asks(MapShow())
+            (shown,) = (await front.answers(1)).values()
+            assert_same(shown, the_map)
         change = MapChanged(
             time_ns=2,
             map_id="d1",
@@ -230,7 +233,7 @@ async def test_a_map_goes_over_as_it_is() -> None:
 def assert_same(one: MapChanged, other: MapChanged) -> None:
     np.testing.assert_array_equal(one.cells, other.cells)
     np.testing.assert_array_equal(one.values, other.values)
-    for name in ("time_ns", "map_id", "generation", "spec", "whole", "stops"):
+    for name in ("time_ns", "map_id", "generation", "spec", "whole", "stops", "packed"):
         assert getattr(one, name) == getattr(other, name)
 
 

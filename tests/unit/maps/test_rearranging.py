@@ -103,7 +103,7 @@ def test_what_is_not_there_is_said(tmp_path: Path) -> None:
 
 def test_writers_take_turns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     store = store_of(tmp_path)
-    monkeypatch.setattr("robotd.maps.store.sole_writer", lambda root: sole_writer(root, wait_s=0.0))
+    monkeypatch.setattr("robotd.maps.archive.sole_writer", lambda root: sole_writer(root, wait_s=0.0))
     with sole_writer(tmp_path):
         for act in (lambda: store.rename("lab", "hall"), lambda: store.delete("lab")):
             with pytest.raises(MapError, match="nothing was changed"):

@@ -17,21 +17,19 @@ from robotd.core.broadcast import Broadcast, Subscription
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, MissionError, RobotdError, TransportError
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2, Twist2
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
 from robotd.hardware.devices.rangefinder import Shot
-from robotd.mission.compute import ThreadCompute
+from robotd.head.compute import ThreadCompute
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.settings import MissionSettings
 from robotd.mission.news import News
 from robotd.mission.robot import Robot
 from robotd.mission.safety.modes import Occasion
 from robotd.mission.supervisor import Supervisor
-from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
+from tests.support.places import head_on, place
 
 TELEMETRY_S = 0.04
 GONE = {"link": LinkState.ABSENT, "armed": False, "detail": "the line was cut"}
@@ -158,8 +156,7 @@ class Rig:
         raise AssertionError("a subscription never ends")
 
     def use_map(self) -> None:
-        grid = OccupancyGrid(GridSettings(rows=40, cols=40).spec_covering(((0.0, 0.0),), 0.5))
-        self.supervisor.use(MapInUse("m", "m", grid), Tie(IDENTITY))
+        self.supervisor.use(place(), Tie(IDENTITY))
 
 
 @asynccontextmanager
@@ -169,7 +166,7 @@ async def rig(*, armed: bool = True, talking: bool = True, battery_min_v: float 
     compute = ThreadCompute()
     settings = MissionSettings(HeadMount(), RangefinderCalibration())
     news = News(lambda _: None)
-    context = MissionContext(robot, settings, compute, news.publish)
+    context = MissionContext(robot, settings, head_on(compute), news.publish)
     supervisor = Supervisor(context, news, battery_min_v=battery_min_v)
     with news.events.subscribe(10_000) as events:
         tasks = [asyncio.create_task(supervisor.run())]
@@ -514,9 +511,8 @@ async def test_one_mission_at_a_time_under_a_lease_that_only_it_renews() -> None
 
 async def test_a_pose_is_never_predicted_where_nothing_ties_odometry_to_the_map() -> None:
     async with rig(armed=False, talking=False) as r:
-        grid = OccupancyGrid(GridSettings(rows=40, cols=40).spec_covering(((0.0, 0.0),), 0.5))
         with r.supervisor.news.events.subscribe() as events:
-            r.supervisor.use(MapInUse("m", "m", grid))
+            r.supervisor.use(place())
             r.drive.odometry.publish(Odometry(now_ns(), Pose2(1.0, 2.0, 0.0), STANDSTILL))
             await turns()
             said = [await events.get() for _ in range(4)]

@@ -1,15 +1,20 @@
 """Narrowing asks whatever estimates, by the protocol alone: in batches, and publishes what is said after each."""
 
-from collections.abc import Callable
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import cast
 
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.pose import IDENTITY
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.localization.estimator import Estimator
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.head.desk import Desk
+from robotd.head.in_process import InProcess
+from robotd.head.jobs import Prepare
+from robotd.head.settings import HeadSettings
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.localizing import Narrowing
+from tests.support.living import AtOnce
+from tests.support.places import held, place_of, unpaced
 
 
 class Counting:
@@ -25,23 +30,19 @@ class Counting:
         return PoseEstimate(time_ns, PoseState.LOST, None, (), 0, len(self.taken), final, "another estimator's")
 
 
-class Inline:
-    """Computes at once."""
-
-    async def run(self, name: str, function: Callable[..., Any], *arguments: Any) -> Any:  # as Compute
-        return function(*arguments)
-
-
 async def test_another_estimator_is_asked_after_each_batch_and_given_what_was_measured() -> None:
     published: list[PoseEstimate] = []
+    head = InProcess(Desk(HeadSettings(), begin=lambda _ready, _job: Counting()), unpaced(AtOnce()))
+    here = await place_of(head, OccupancyGrid(held().spec), "m")
+    stop = head.number()
+    await head.ask(Prepare(stop, here.ref, here.map_id, (0.0,), None))
     context = SimpleNamespace(
-        compute=Inline(),
+        head=head,
         whereabouts=SimpleNamespace(said=lambda estimate: None),
         robot=SimpleNamespace(has_base=False),
         publish=lambda estimate, made: published.append(estimate),
     )
-    estimator: Estimator = Counting()
-    narrowing = Narrowing(cast("MissionContext", context), estimator, 4)
+    narrowing = Narrowing(cast("MissionContext", context), stop, 4)
     for number in range(10):
         status = ReadingStatus.WEAK if number == 5 else ReadingStatus.OK
         narrowing.offer(RangeReading(number, 0.1 * number, status, None if number == 5 else 1.0))

@@ -6,11 +6,9 @@ import pytest
 
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.settings import GridSettings
-from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
 from robotd.mission.whereabouts.whereabouts import Whereabouts
+from tests.support.places import place
 
 NEAR_M = 0.3
 ROW = (0.0, 0.0, 0.0)
@@ -26,9 +24,8 @@ def found(x_m: float, y_m: float = 0.0, heading_rad: float = 0.0, *, final: bool
 @pytest.fixture
 def whereabouts() -> Whereabouts:
     """At the origin, by a tie that is believed."""
-    grid = OccupancyGrid(GridSettings(rows=20, cols=20).spec_covering(((0.0, 0.0),), 0.2))
     at_home = Whereabouts()
-    at_home.adopt(MapInUse("m", "m", grid, "digest"), Tie.between(IDENTITY, IDENTITY))
+    at_home.adopt(place("m"), Tie.between(IDENTITY, IDENTITY))
     return at_home
 
 
@@ -91,9 +88,7 @@ def test_who_knows_nothing_takes_the_first_fix(whereabouts: Whereabouts) -> None
 
 def test_another_map_has_its_own_history(whereabouts: Whereabouts) -> None:
     look(whereabouts, found(8.0))
-    other = MapInUse("n", "n", whereabouts.map_in_use.grid, "d") if whereabouts.map_in_use else None
-    assert other is not None
-    whereabouts.adopt(other)
+    whereabouts.adopt(place("n"))
     assert look(whereabouts, found(-3.0)).state is PoseState.LOCALIZED
 
 

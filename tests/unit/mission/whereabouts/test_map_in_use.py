@@ -1,62 +1,24 @@
-"""The map in use is replaced, never changed under those who hold it; what is saved of it, and what is at risk."""
+"""What is told of the map in use as it changes; what is saved of it, and what is at risk."""
 
 import numpy as np
 
-from robotd.core.pose import IDENTITY, Pose2
-from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.map_stops import MapStops
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.settings import GridSettings
-from robotd.mission.whereabouts.laying import lay
-from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.core.grid_bytes import unpacked_cells
+from robotd.head.jobs import Inserted, MapRef
+from tests.support.places import held, place
 
 
-def place() -> MapInUse:
-    grid = OccupancyGrid(GridSettings(rows=60, cols=60).spec_covering(((0.0, 0.0),), 1.0))
-    return MapInUse("m", "office", grid)
-
-
-def sweep_at(in_odom: Pose2) -> Sweep:
-    readings = (RangeReading(number, number * 0.2, ReadingStatus.OK, 1.0) for number in range(30))
-    return Sweep(0, in_odom, tuple(readings))
-
-
-def test_a_sweep_makes_a_new_grid_and_leaves_every_snapshot_alone() -> None:
-    here = place()
-    before, snapshot = here.grid, here.whole(1)
-    laid = lay(here.grid, here.latest, here.stops, sweep_at(IDENTITY), IDENTITY)
-    assert here.grid is before
-    assert np.all(before.cells == before.cells[0, 0])
-    here.take(laid)
-    assert here.grid is laid.grid
-    assert here.digest == laid.grid.digest() != before.digest()
-    assert here.generation == 1
-    assert np.all(snapshot.values == before.cells)
-    change = here.changes(2, laid.cells)
-    patched = snapshot.values.copy()
-    patched.reshape(-1)[change.cells] = change.values
-    assert np.array_equal(patched, here.whole(3).values)
-    assert (snapshot.generation, change.generation) == (0, 1)
-
-
-def test_a_map_is_made_of_the_stops_that_were_laid_in_and_no_snapshot_of_them_changes() -> None:
-    here, map_from_odom = place(), Pose2(0.5, 0.25, 0.3)
-    here.stops = before = MapStops(here.grid.settings)
-    for x_m in (0.0, 0.1):
-        sweep = sweep_at(Pose2(x_m, 0.0, 0.0))
-        here.take(lay(here.grid, here.latest, here.stops, sweep, map_from_odom @ sweep.in_odom))
-    assert here.stops is not None
-    assert before.stops == ()
-    assert [stop.map_from_robot for stop in here.stops.stops] == [
-        map_from_odom @ Pose2(x_m, 0.0, 0.0) for x_m in (0.0, 0.1)
-    ]
-    assert here.stops.grid_on(here.grid.spec).digest() == here.digest
-
-
-def test_a_map_whose_stops_are_not_known_does_not_get_to_know_them() -> None:
-    here = place()
-    here.take(lay(here.grid, here.latest, here.stops, sweep_at(IDENTITY), IDENTITY))
-    assert here.stops is None
+def test_a_change_is_told_and_the_map_goes_on_from_there() -> None:
+    here = place("office", held(stops=0))
+    whole = here.whole(1)
+    assert whole.packed is not None
+    assert (whole.whole, whole.generation, whole.stops, here.ref) == (True, 0, 0, MapRef(here.number, 0))
+    assert unpacked_cells(whole.packed, whole.spec).shape == here.spec.shape
+    inserted = Inserted(np.array([3, 7], "<i8").tobytes(), bytes([20, 200]), "another", 1)
+    here.take(inserted)
+    change = here.changes(2, inserted)
+    assert (change.generation, change.cells.tolist(), change.values.tolist()) == (1, [3, 7], [20, 200])
+    assert (change.whole, change.packed, change.stops) == (False, None, 1)
+    assert (here.digest, here.ref) == ("another", MapRef(here.number, 1))
 
 
 def test_what_is_saved_kept_and_given_up_is_known_by_the_change_up_to_which_it_is() -> None:

@@ -11,19 +11,17 @@ from numpy.typing import NDArray
 
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.settings import GridSettings
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
 from robotd.mission.whereabouts.whereabouts import Whereabouts, unlocalized
+from tests.support import places
 
 NEAR_M, NEAR_RAD = 0.3, 0.2
-GRID = OccupancyGrid(GridSettings(rows=20, cols=20).spec_covering(((0.0, 0.0),), 0.2))
 ROW = (0.0, 0.0, 0.0)
 
 
 def a_map(name: str = "m") -> MapInUse:
-    return MapInUse(name, name, GRID, "digest")
+    return places.place(name)
 
 
 def at(x_m: float, y_m: float = 0.0, heading_rad: float = 0.0) -> Odometry:

@@ -1,6 +1,7 @@
 """What was hit since it was last seen free is an obstacle for the planner, however thin, whatever was seen before."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,10 +12,11 @@ from robotd.grid.binary import FREE_MAX
 from robotd.grid.latest import HIT, NOTHING, PASSED
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings, UpdatePolicy
-from robotd.mission.missions.driving import _plan
-from robotd.mission.whereabouts.laying import lay
-from robotd.mission.whereabouts.map_in_use import MapInUse
-from robotd.planning.path import Path
+from robotd.head.desk import Desk
+from robotd.head.held import Held
+from robotd.head.jobs import MapRef, Plan
+from robotd.head.settings import HeadSettings
+from robotd.head.table import perform
 from robotd.planning.settings import PlanningSettings
 
 WALLS_M = 2.5
@@ -25,13 +27,18 @@ SLOW_TO_BELIEVE = GridSettings(rows=120, cols=120, raise_alpha=0.9)
 """One hit does not make an obstacle of what was seen free."""
 
 
-def place(settings: GridSettings) -> MapInUse:
-    return MapInUse("m", "room", OccupancyGrid(settings.spec_covering(((0.0, 0.0),), 1.0), settings=settings))
+ROBOT = HeadSettings(planning=PlanningSettings(robot_radius_m=0.3, clearance_m=0.0))
 
 
-def see(here: MapInUse, seen: Sweep) -> None:
-    """Lay a sweep into the map, taken at its origin."""
-    here.take(lay(here.grid, here.latest, None, seen, IDENTITY))
+def blank(settings: GridSettings) -> Held:
+    return Held.of(OccupancyGrid(settings.spec_covering(((0.0, 0.0),), 1.0), settings=settings), None)
+
+
+def seen(here: Held, *sweeps: Sweep) -> Held:
+    """Return a map with sweeps laid in that were taken at its origin."""
+    for sweep in sweeps:
+        here, _ = here.with_sweep(sweep, IDENTITY)
+    return here
 
 
 def sweep(leg_beams: int = 0) -> Sweep:
@@ -43,11 +50,13 @@ def sweep(leg_beams: int = 0) -> Sweep:
     return Sweep(0, IDENTITY, tuple(readings))
 
 
-def keeps_off_m(here: MapInUse) -> float:
+def keeps_off_m(here: Held) -> float:
     """Return how near the plan comes to the leg."""
-    path = _plan(here.grid, here.latest, IDENTITY, GOAL_M, PlanningSettings(robot_radius_m=0.3, clearance_m=0.0))
-    assert isinstance(path, Path)
-    legs = (np.array([one, other]) for one, other in path.legs_m)
+    desk = Desk(ROBOT)
+    desk.hold(MapRef(1), here)
+    corners_m = ((0.0, 0.0), *perform(desk, Plan(MapRef(1), IDENTITY, GOAL_M)).waypoints_m)
+    assert len(corners_m) > 1
+    legs = (np.array(leg) for leg in pairwise(corners_m))
     shares = np.linspace(0.0, 1.0, 500)[:, None]
     return min(float(np.hypot(*(leg[0] + shares * (leg[1] - leg[0]) - (LEG_M, 0.0)).T).min()) for leg in legs)
 
@@ -58,40 +67,33 @@ def keeps_off_m(here: MapInUse) -> float:
 def test_a_thin_leg_hit_once_is_gone_round_until_it_is_seen_through(
     beams: int, policy: UpdatePolicy, alpha: float
 ) -> None:
-    here = place(GridSettings(rows=120, cols=120, raise_alpha=alpha, policy=policy))
-    for _ in range(3):
-        see(here, sweep())
+    here = blank(GridSettings(rows=120, cols=120, raise_alpha=alpha, policy=policy))
+    here = seen(here, *[sweep()] * 3)
     assert keeps_off_m(here) < 0.01
-    see(here, sweep(beams))
+    here = seen(here, sweep(beams))
     assert keeps_off_m(here) >= 0.3 - here.grid.spec.resolution_m
-    see(here, sweep())
-    assert keeps_off_m(here) < 0.01
+    assert keeps_off_m(seen(here, sweep())) < 0.01
 
 
 def test_a_leg_that_was_there_from_the_beginning_is_gone_round_too() -> None:
-    here = place(GridSettings(rows=120, cols=120))
-    see(here, sweep(1))
+    here = seen(blank(GridSettings(rows=120, cols=120)), sweep(1))
     assert keeps_off_m(here) >= 0.3 - here.grid.spec.resolution_m
 
 
 def test_what_was_said_last_is_kept_beside_the_grid_and_every_snapshot_is_left_alone() -> None:
-    here = place(SLOW_TO_BELIEVE)
+    here = blank(SLOW_TO_BELIEVE)
     leg, beyond = here.grid.spec.cell_at(LEG_M, 0.0), here.grid.spec.cell_at(LEG_M + 0.5, 0.0)
     assert here.latest[leg] == NOTHING
-    see(here, sweep())
-    see(here, sweep())
-    before = here.latest
-    assert before[leg] == before[beyond] == PASSED
-    see(here, sweep(1))
-    assert (before[leg], here.latest[leg], here.latest[beyond]) == (PASSED, HIT, PASSED)
-    assert here.grid.cells[leg] <= FREE_MAX
+    before = seen(here, sweep(), sweep())
+    assert before.latest[leg] == before.latest[beyond] == PASSED
+    after = seen(before, sweep(1))
+    assert (before.latest[leg], after.latest[leg], after.latest[beyond]) == (PASSED, HIT, PASSED)
+    assert after.grid.cells[leg] <= FREE_MAX
 
 
 def test_a_map_that_comes_from_the_store_has_its_cells_and_nothing_else() -> None:
     """One hit on unknown or free ground makes a cell an obstacle with the settings that are the default; that stays."""
-    here = place(GridSettings(rows=120, cols=120))
-    for beams in (0, 0, 1):
-        see(here, sweep(beams))
-    loaded = MapInUse("m", "room", here.grid)
+    here = seen(blank(GridSettings(rows=120, cols=120)), *map(sweep, (0, 0, 1)))
+    loaded = Held.of(here.grid, None)
     assert not loaded.latest.any()
     assert keeps_off_m(loaded) >= 0.3 - here.grid.spec.resolution_m

@@ -4,7 +4,6 @@ import asyncio
 import contextlib
 import os
 import threading
-from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Protocol, TypeVar
@@ -36,6 +35,10 @@ class ThreadCompute:
         """Wait for the job under way, drop those behind it, and end the thread."""
         self._executor.shutdown(cancel_futures=True)
 
+    def abandon(self) -> None:
+        """Wait for nothing: the job under way has no more to say, and with it the thread ends."""
+        self._executor.shutdown(wait=False, cancel_futures=True)
+
 
 def _give_way() -> None:
     """Let this thread, and those that it starts, have no precedence; on Linux niceness is a thread's own."""
@@ -44,32 +47,3 @@ def _give_way() -> None:
     if os.getpriority(os.PRIO_PROCESS, thread) < 0:
         with contextlib.suppress(OSError):  # where that is forbidden it stays as it is
             os.setpriority(os.PRIO_PROCESS, thread, 0)
-
-
-def cores() -> int:
-    """Return how many processor cores this process may use."""
-    # Not os.cpu_count(): a service may be confined to some of them.
-    return len(os.sched_getaffinity(0))
-
-
-class NotedCompute:
-    """Notes when each job was handed back: a replay hands it back no sooner."""
-
-    def __init__(self, inner: Compute, note: Callable[[str, int], None]) -> None:
-        self._inner = inner
-        self._note = note
-        self._done: Counter[str] = Counter()
-
-    async def run(self, name: str, function: Callable[..., T], *args: object) -> T:
-        """Return ``function(*args)``, or raise what it raises, and note that it is done."""
-        try:
-            result = await self._inner.run(name, function, *args)
-        except Exception:  # that it failed is taken up too, and leads to something
-            self._note_next(name)
-            raise
-        self._note_next(name)
-        return result
-
-    def _note_next(self, name: str) -> None:
-        self._note(name, self._done[name])
-        self._done[name] += 1

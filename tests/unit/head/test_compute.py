@@ -1,11 +1,11 @@
-"""Array work is done in order, off the loop, and what was handed back is noted."""
+"""Work is done in order, off the loop."""
 
 import asyncio
 import threading
 
 import pytest
 
-from robotd.mission.compute import NotedCompute, ThreadCompute
+from robotd.head.compute import ThreadCompute
 
 
 @pytest.mark.real_clock
@@ -49,19 +49,6 @@ async def test_at_the_end_the_job_under_way_is_waited_for_and_those_behind_it_ar
     assert done == ["first"]
     await asyncio.wait(jobs, timeout=1.0)
     assert jobs[1].cancelled()
-
-
-async def test_what_was_handed_back_is_noted_by_name_and_number_and_what_failed_too() -> None:
-    noted: list[tuple[str, int]] = []
-    inner = ThreadCompute()
-    compute = NotedCompute(inner, lambda name, index: noted.append((name, index)))
-    for name in ("narrow", "insert", "narrow"):
-        await compute.run(name, lambda: None)
-    with pytest.raises(ZeroDivisionError):
-        await compute.run("narrow", lambda: 1 // 0)
-    await compute.run("narrow", lambda: None)
-    inner.close()
-    assert noted == [("narrow", 0), ("insert", 0), ("narrow", 1), ("narrow", 2), ("narrow", 3)]
 
 
 @pytest.mark.real_clock

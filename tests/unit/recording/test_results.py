@@ -8,15 +8,13 @@ from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepDone
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.settings import GridSettings
+from robotd.head.jobs import Inserted
 from robotd.mission.news import News
-from robotd.mission.results import map_result, result_of
-from robotd.mission.whereabouts.laying import lay
-from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.whereabouts import unlocalized
 from robotd.recording.entries import ResultEntry
 from robotd.recording.journal import MemoryJournal
+from robotd.recording.results import map_result, result_of
+from tests.support.places import place
 
 READING = RangeReading(10, 0.5, ReadingStatus.OK, 2.0)
 SWEEP = Sweep(0, IDENTITY, (READING, RangeReading(20, 1.5, ReadingStatus.WEAK, None)))
@@ -47,14 +45,13 @@ def test_times_are_left_out_of_a_digest_and_everything_else_is_in_it() -> None:
 
 
 def test_a_map_is_noted_whenever_it_changes() -> None:
-    place = MapInUse("m", "m", OccupancyGrid(GridSettings(rows=60, cols=60).spec_covering(((0.0, 0.0),), 1.0)))
-    before = noted(place.whole(1), map_result(place.whole(1), place.digest))
-    laid = lay(place.grid, place.latest, None, SWEEP, IDENTITY)
-    place.take(laid)
-    change = place.changes(2, laid.cells)
-    after = noted(change, map_result(change, laid.digest))
+    here = place("m")
+    before = noted(here.whole(1), map_result(here.whole(1), here.digest))
+    here.take(inserted := Inserted(b"", b"", "another", None))
+    change = here.changes(2, inserted)
+    after = noted(change, map_result(change, inserted.digest))
     assert before is not None
-    assert after == ResultEntry(2, "map", {"map_id": "m", "generation": 1}, place.grid.digest())
+    assert after == ResultEntry(2, "map", {"map_id": "m", "generation": 1}, "another")
     assert after.digest != before.digest
     with pytest.raises(ValueError, match="noted by its digest"):
         noted(change)

@@ -1,0 +1,32 @@
+"""``python -m robotd.head``: started by the daemon, for the daemon."""
+
+import asyncio
+import logging
+import os
+import sys
+
+from robotd.children.inside import Birth, adopted
+from robotd.core.log import configure
+from robotd.head.program import serve
+
+
+async def _main(birth: Birth) -> None:
+    life, lanes = birth.channels()
+    await serve(life, lanes)
+
+
+def main() -> None:
+    """Serve until the parent hangs up."""
+    birth = adopted(sys.argv[1:])
+    configure(*birth.arguments)
+    code = 1
+    try:
+        asyncio.run(_main(birth))
+        code = 0
+    except Exception:
+        logging.getLogger("robotd.head").exception("the head ends")
+    os._exit(code)  # whatever is computed still: nobody waits for it any more
+
+
+if __name__ == "__main__":
+    main()

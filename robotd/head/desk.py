@@ -1,0 +1,77 @@
+"""Where maps and stops are held by number, and what is done with them; the same in a process of its own and in a test.
+
+One job at a time, each to its end, so nothing here waits, reads a clock or shares anything with a thread.
+"""
+
+from collections.abc import Callable
+
+from robotd.head.held import Held
+from robotd.head.jobs import MapRef, Prepare
+from robotd.head.settings import HeadSettings
+from robotd.head.wire import NotHeld
+from robotd.localization.estimator import Estimator
+from robotd.localization.localizer import Localizer
+from robotd.localization.ready_map import ReadyMap
+
+Begin = Callable[[ReadyMap, Prepare], Estimator]
+"""The seam for another estimator: begins a stop on a map, with no readings."""
+
+
+class Desk:
+    """Everything that is held."""
+
+    def __init__(self, settings: HeadSettings, *, threads: int = 1, begin: Begin | None = None) -> None:
+        """Hold nothing yet.
+
+        Args:
+            settings: what all jobs are done by.
+            threads: how many threads may share the work when it is much; no answer depends on it.
+            begin: begins a stop; a :class:`Localizer` if there is none.
+        """
+        self.settings = settings
+        self._maps: dict[int, dict[int, Held]] = {}
+        """By number, then by generation."""
+        self._stops: dict[int, Estimator] = {}
+        self._threads = threads
+        self._begin = begin or self._localizer
+
+    def hold(self, ref: MapRef, held: Held) -> Held:
+        """Hold a map."""
+        self._maps.setdefault(ref.number, {})[ref.generation] = held
+        return held
+
+    def map(self, ref: MapRef) -> Held:
+        """Return a map, and let go of its generations before that one: who asks goes on from here.
+
+        Raises:
+            NotHeld: there is none.
+        """
+        generations = self._maps.get(ref.number, {})
+        if ref.generation not in generations:
+            raise NotHeld(f"no map {ref.number} of generation {ref.generation} is held")
+        for older in [generation for generation in generations if generation < ref.generation]:
+            del generations[older]
+        return generations[ref.generation]
+
+    def begin(self, job: Prepare) -> None:
+        """Hold a stop, on its map made ready."""
+        held, ready = self.map(job.map).made_ready(self.settings.localization, self.settings.error_model)
+        self.hold(job.map, held)
+        self._stops[job.number] = self._begin(ready, job)
+
+    def stop(self, number: int) -> Estimator:
+        """Return a stop; NotHeld if there is none."""
+        if number not in self._stops:
+            raise NotHeld(f"no stop {number} is held")
+        return self._stops[number]
+
+    def forget(self, number: int) -> None:
+        """Hold what has this number no longer, if anything has."""
+        self._maps.pop(number, None)
+        self._stops.pop(number, None)
+
+    def _localizer(self, ready: ReadyMap, job: Prepare) -> Estimator:
+        judgement = self.settings.judgement
+        return Localizer.at_stop(
+            ready, job.map_id, job.headings_rad, job.within, judgement=judgement, threads=self._threads
+        )

@@ -1,0 +1,242 @@
+"""Every job there is: what is asked, declared once; :mod:`robotd.head.table` says what carries it out.
+
+Who asks knows maps and stops by number alone, and chooses the numbers. A map in a number is a row of *generations*: an
+insertion makes the next of one and leaves that one as it is, so a mission that is stopped while a sweep is laid in goes
+on with the map that it had.
+"""
+
+from typing import Any
+
+import msgspec
+
+from robotd.contract.area import Area
+from robotd.contract.estimate import PoseEstimate
+from robotd.core.grid_spec import GridSpec
+from robotd.core.pose import Pose2
+from robotd.core.reading import RangeReading, Sweep
+from robotd.grid.settings import GridSettings
+from robotd.head.job import Done, Job, Made
+from robotd.maps.packed_content import PackedContent
+from robotd.maps.version_files import STOPS
+from robotd.recording.entries import ResultEntry
+
+
+class MapRef(msgspec.Struct, frozen=True):
+    """A map as it was after that number of changes."""
+
+    number: int
+    generation: int = 0
+
+
+class HeldMap(msgspec.Struct, frozen=True):
+    """What is told of a map that came to be held."""
+
+    spec: GridSpec
+    digest: str
+    packed: bytes
+    """Its cells, as :mod:`robotd.core.grid_bytes` packs them."""
+    stops: int | None
+    """How many stops it was made of; None if that is not known."""
+    settings: GridSettings
+    """How further readings change it."""
+
+
+class BeginMap(Job[HeldMap], frozen=True):
+    """Begin a map on which nothing is known."""
+
+    name, answer, is_noted = "begin map", HeldMap, True
+    number: int
+    spec: GridSpec
+    settings: GridSettings
+
+    @property
+    def makes(self) -> Made:
+        """A map, or a stop, of its number."""
+        return Made(self.number, 0)
+
+
+class TakeMap(Job[HeldMap], frozen=True):
+    """Hold a map by its packed cells, as the journal notes them."""
+
+    name, answer = "take map", HeldMap
+    number: int
+    spec: GridSpec
+    packed: bytes
+    settings: GridSettings
+    stops: bytes | None = None
+    """``stops.bin``, packed, if there is one; it was checked before."""
+
+    @property
+    def makes(self) -> Made:
+        """A map, or a stop, of its number."""
+        return Made(self.number, 0)
+
+
+class ReadMap(Job[HeldMap], frozen=True):
+    """Hold a map from the store, everything checked; MapError if it contradicts itself."""
+
+    name, answer = "read map", HeldMap
+    number: int
+    content: PackedContent
+    """Of its exports nothing is read."""
+
+    @property
+    def makes(self) -> Made:
+        """A map, or a stop, of its number."""
+        return Made(self.number, 0)
+
+    def again(self, answer: HeldMap) -> TakeMap:
+        """Return the map as it is held: packed it is a tenth, and all is checked already."""
+        return TakeMap(self.number, answer.spec, answer.packed, answer.settings, self.content.files.get(STOPS))
+
+
+class ShowMap(Job[HeldMap], frozen=True):
+    """Pack the cells of a map."""
+
+    name, answer = "show map", HeldMap
+    map: MapRef
+
+
+class FilesMade(msgspec.Struct, frozen=True):
+    """What the store writes of a map."""
+
+    content: PackedContent
+    remark: str | None
+    """Why it goes without its stops, for the log; None if it does not."""
+
+
+class MakeFiles(Job[FilesMade], frozen=True):
+    """Make of a map what the store writes, and check that it can be read again."""
+
+    name, answer = "make files", FilesMade
+    map: MapRef
+
+
+class Inserted(msgspec.Struct, frozen=True):
+    """What an insertion changed."""
+
+    cells: bytes
+    """Flat indices ``row * cols + col`` of the cells that changed, ascending, eight bytes each, little-endian."""
+    values: bytes
+    """Their values, a byte each."""
+    digest: str
+    """Of the map now."""
+    stops: int | None
+
+
+class Insert(Job[Inserted], frozen=True):
+    """Make the next generation of a map: a sweep laid in."""
+
+    name, answer, is_noted = "insert", Inserted, True
+    map: MapRef
+    sweep: Sweep
+    map_from_robot: Pose2
+    """Where the sweep began."""
+
+    @property
+    def makes(self) -> Made:
+        """The next generation, after the job that made the first and one insertion for each since."""
+        return Made(self.map.number, 1 + self.map.generation)
+
+
+class Prepare(Job[Done], frozen=True):
+    """Make a map ready, and begin a stop on it: a robot stands somewhere on it, and nothing was measured yet."""
+
+    name, answer, is_noted = "prepare", Done, True
+    number: int
+    """Of the stop."""
+    map: MapRef
+    map_id: str
+    """What estimates call the map."""
+    headings_rad: tuple[float, ...]
+    """To try, map frame, ascending."""
+    within: Area | None
+    """Where the robot is; None is anywhere."""
+
+    @property
+    def makes(self) -> Made:
+        """A map, or a stop, of its number."""
+        return Made(self.number, 0)
+
+
+class TakeReadings(Job[Done], frozen=True):
+    """Take readings of a stop, and say nothing of them."""
+
+    name, answer = "take readings", Done
+    stop: int
+    readings: tuple[RangeReading, ...]
+    """Measured ones."""
+
+
+class Narrowed(msgspec.Struct, frozen=True):
+    """What the readings of a stop say so far, and its entry in the journal."""
+
+    estimate: PoseEstimate
+    digest: str | None
+    encoded: bytes | None
+    """Both None if it is no result."""
+
+    @property
+    def entry(self) -> ResultEntry | None:
+        """Its entry, ready to be noted; what is in it was encoded where it was made, and is not decoded again."""
+        if self.digest is None:
+            return None
+        return ResultEntry(self.estimate.time_ns, "estimate", {}, self.digest, self.encoded)
+
+
+class Narrow(Job[Narrowed], frozen=True):
+    """Take more readings of a stop, and estimate."""
+
+    name, answer, is_noted = "narrow", Narrowed, True
+    stop: int
+    readings: tuple[RangeReading, ...]
+    """Measured ones."""
+    time_ns: int
+    """When the robot was there."""
+    final: bool
+    """Whether the sweep is whole."""
+
+    @property
+    def makes(self) -> Made:
+        """A stop of which more is known."""
+        return Made(self.stop, None)
+
+    def again(self, answer: Narrowed) -> TakeReadings:
+        """Return the readings alone: what they say was told."""
+        return TakeReadings(self.stop, self.readings)
+
+
+class Planned(msgspec.Struct, frozen=True):
+    """A way, or why there is none."""
+
+    waypoints_m: tuple[tuple[float, float], ...]
+    """Corners of the way after the start, map frame; the last is the goal itself. Empty if there is no way."""
+    hindrance: str
+    """For people; empty if there is a way."""
+
+
+class Plan(Job[Planned], frozen=True):
+    """Plan a way on a map."""
+
+    name, answer, is_noted = "plan", Planned, True
+    map: MapRef
+    start: Pose2
+    goal_m: tuple[float, float]
+
+
+class Forget(Job[Done], frozen=True):
+    """Hold a map, or a stop, no longer."""
+
+    name, answer = "forget", Done
+    number: int
+
+
+JOBS: dict[str, type[Job[Any]]] = {
+    kind.name: kind
+    for kind in (
+        *(BeginMap, TakeMap, ReadMap, ShowMap, MakeFiles, Insert),
+        *(Prepare, Narrow, TakeReadings),
+        *(Plan, Forget),
+    )
+}
+"""Every job there is, by its name."""

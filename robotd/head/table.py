@@ -1,0 +1,128 @@
+"""What carries out each job: a table, a row each."""
+
+import zlib
+from collections.abc import Callable
+from typing import Any
+
+from robotd.core.grid_bytes import unpacked_cells
+from robotd.grid.latest import HIT
+from robotd.grid.map_stops import MapStops
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.head.desk import Desk
+from robotd.head.held import Held
+from robotd.head.job import A, Done, Job
+from robotd.head.jobs import (
+    BeginMap,
+    FilesMade,
+    Forget,
+    HeldMap,
+    Insert,
+    Inserted,
+    MakeFiles,
+    MapRef,
+    Narrow,
+    Narrowed,
+    Plan,
+    Planned,
+    Prepare,
+    ReadMap,
+    ShowMap,
+    TakeMap,
+    TakeReadings,
+)
+from robotd.maps.grid_files import content_of, map_of
+from robotd.maps.packed_content import PackedContent
+from robotd.maps.stops_file import decode_stops
+from robotd.planning.path import Path, plan
+from robotd.recording.results import result_of
+
+
+def perform(desk: Desk, job: Job[A]) -> A:
+    """Carry out a job and return its answer.
+
+    Raises:
+        RobotdError: it cannot be done; says why.
+        NotHeld: it is about a map, or a stop, that is not held.
+    """
+    answer: A = _TABLE[type(job)](desk, job)
+    return answer
+
+
+def _begin_map(desk: Desk, job: BeginMap) -> HeldMap:
+    grid = OccupancyGrid(job.spec, settings=job.settings)
+    return desk.hold(MapRef(job.number), Held.of(grid, MapStops(job.settings))).told
+
+
+def _take_map(desk: Desk, job: TakeMap) -> HeldMap:
+    stops = None if job.stops is None else decode_stops(zlib.decompress(job.stops))
+    grid = OccupancyGrid(job.spec, unpacked_cells(job.packed, job.spec), job.settings)
+    return desk.hold(MapRef(job.number), Held.of(grid, stops)).told
+
+
+def _read_map(desk: Desk, job: ReadMap) -> HeldMap:
+    grid, stops = map_of(job.content.unpacked(), desk.settings.grid)
+    return desk.hold(MapRef(job.number), Held.of(grid, stops)).told
+
+
+def _show_map(desk: Desk, job: ShowMap) -> HeldMap:
+    return desk.map(job.map).told
+
+
+def _make_files(desk: Desk, job: MakeFiles) -> FilesMade:
+    held = desk.map(job.map)
+    content, remark = content_of(held.grid, held.stops)
+    return FilesMade(PackedContent.of(content), remark)
+
+
+def _insert(desk: Desk, job: Insert) -> Inserted:
+    before = desk.map(job.map)
+    held, cells = before.with_sweep(job.sweep, job.map_from_robot)
+    desk.hold(MapRef(job.map.number, job.map.generation + 1), held)
+    values = held.grid.cells.reshape(-1)[cells]
+    stops = None if held.stops is None else len(held.stops.stops)
+    return Inserted(cells.astype("<i8", copy=False).tobytes(), values.tobytes(), held.digest, stops)
+
+
+def _prepare(desk: Desk, job: Prepare) -> Done:
+    desk.begin(job)
+    return Done()
+
+
+def _take_readings(desk: Desk, job: TakeReadings) -> Done:
+    desk.stop(job.stop).add(*job.readings)
+    return Done()
+
+
+def _narrow(desk: Desk, job: Narrow) -> Narrowed:
+    estimator = desk.stop(job.stop)
+    estimator.add(*job.readings)
+    estimate = estimator.estimate(job.time_ns, final=job.final)
+    entry = result_of(estimate)
+    return Narrowed(estimate, None, None) if entry is None else Narrowed(estimate, entry.digest, entry.encoded)
+
+
+def _plan(desk: Desk, job: Plan) -> Planned:
+    held = desk.map(job.map)
+    # What was hit last is an obstacle whatever the cell's value: one beam is enough (decision 20).
+    way = plan(held.grid, job.start, job.goal_m, desk.settings.planning, held.latest == HIT)
+    return Planned(way.waypoints_m, "") if isinstance(way, Path) else Planned((), way.reason)
+
+
+def _forget(desk: Desk, job: Forget) -> Done:
+    desk.forget(job.number)
+    return Done()
+
+
+_TABLE: dict[type[Job[Any]], Callable[[Desk, Any], Any]] = {
+    BeginMap: _begin_map,
+    TakeMap: _take_map,
+    ReadMap: _read_map,
+    ShowMap: _show_map,
+    MakeFiles: _make_files,
+    Insert: _insert,
+    Prepare: _prepare,
+    TakeReadings: _take_readings,
+    Narrow: _narrow,
+    Plan: _plan,
+    Forget: _forget,
+}
