@@ -3,12 +3,25 @@
 import asyncio
 import contextlib
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from robotd.contract.missions import DriveTo, Localize, MapStart
 from robotd.contract.modes import Mode
-from robotd.contract.requests import Arm, Clear, ListMaps, MapLoad, MapSave, RecordStart, RecordStop, Stop
+from robotd.contract.request import Request
+from robotd.contract.requests import (
+    REQUESTS,
+    Arm,
+    Clear,
+    ListMaps,
+    MapLoad,
+    MapSave,
+    RecordStart,
+    RecordStop,
+    Renew,
+    Stop,
+)
 from robotd.core.errors import MapError, MissionError, RobotdError
 from robotd.core.pose import IDENTITY
 from robotd.recording.entries import CommandEntry
@@ -44,6 +57,21 @@ async def test_ten_thousand_refusals_leave_nothing_in_the_journal(live: Live) ->
         for _ in range(2000):
             await refuse_everything(it)
         assert [entry for entry in it.journal.remembered if isinstance(entry, CommandEntry)] == before
+
+
+@pytest.mark.parametrize("kind", [kind for kind in REQUESTS.values() if kind.only_looks], ids=lambda kind: kind.cmd)
+async def test_who_looks_without_end_leaves_nothing_in_the_journal(live: Live, kind: type[Request[Any]]) -> None:
+    """Be it answered or refused: no client uses up the pre-roll, or fills a recording, by asking how things are."""
+    robot = SimulatedRobot(load_world("office"), seed=4)
+    async with live(robot, armed=False) as it:
+        before = list(it.journal.remembered)
+        for _ in range(1000):
+            with contextlib.suppress(RobotdError, LookupError):  # hello is answered before it gets here
+                await it.daemon.control.perform(kind(*LOOKS_AT.get(kind, ())))
+        assert list(it.journal.remembered) == before
+
+
+LOOKS_AT: dict[type[Request[Any]], tuple[Any, ...]] = {Renew: (1,)}
 
 
 async def test_a_client_that_renews_without_end_leaves_nothing_in_the_journal_and_replays(
