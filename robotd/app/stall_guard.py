@@ -92,11 +92,13 @@ class _Guard:
         has_stopped = self._has_stopped.is_set()
         if late_s < LATE_S and not has_stopped:
             return
+        if has_stopped:
+            late_s = max(late_s, STALL_S)  # so long the thread waited, whatever of it was told before it got its turn
         self._has_stopped.clear()
         self._due_s = now_s + _BEAT_EVERY_S
         where, self._stuck_in = self._stuck_in or "an unknown place: it was too short to look", ""
         try:
-            self._stalled(max(late_s, 0.0), has_stopped, where)
+            self._stalled(late_s, has_stopped, where)
         except Exception as error:  # a mistake of ours must not end the beat, nor the reader who asked
             fail(error, "a stall could not be told")
 

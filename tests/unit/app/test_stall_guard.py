@@ -7,7 +7,7 @@ import time
 import pytest
 
 from robotd.app.callbacks import stopping_on_errors
-from robotd.app.stall_guard import STALL_S, guarded
+from robotd.app.stall_guard import STALL_S, _Guard, guarded
 from robotd.core.attention import attention
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.pty import open_pty
@@ -57,6 +57,18 @@ async def test_a_loop_that_turns_is_left_alone_and_each_stall_is_told_once() -> 
     assert all(stood_still_s > STALL_S and "time.sleep" in where for stood_still_s, _, where in stalls)
     assert [was_stopped for _, was_stopped, _ in stalls] == [True, False]
     assert attention().missed_s == 0.0  # for those who are told to add up
+
+
+async def test_a_stop_is_told_with_what_the_thread_waited_though_the_loop_told_of_the_stall_before() -> None:
+    """A process that stood still wakes as a whole: now the loop is first to see it, now the thread."""
+    stalls: list[tuple[float, bool]] = []
+    guard = _Guard(lambda _: True, lambda stood_still_s, was_stopped, _: stalls.append((stood_still_s, was_stopped)))
+    guard._due_s = asyncio.get_running_loop().time() - 5.0
+    guard.look()
+    guard._has_stopped.set()
+    guard.look()
+    guard.look()
+    assert stalls == [(5.0, False), (STALL_S, True)]
 
 
 @pytest.mark.real_clock
