@@ -45,14 +45,15 @@ class OccupancyGrid:
         Returns:
             Flat indices ``row * cols + col`` of the cells whose value changed, ascending. O(readings x cells a beam).
         """
-        return self._insert(Readings.of(self.usable(sweep)), map_from_robot)
+        return self.lay(Readings.of(self.usable(sweep)), map_from_robot)
 
     def lay_in(self, stop: MapStop) -> NDArray[np.intp]:
         """Update the cells by a stop as :meth:`insert` does by its sweep, without making that of it."""
         beams = stop.beams(misses=self.settings.over_range is OverRange.CLEAR)
-        return self._insert(Readings(beams), stop.map_from_robot)
+        return self.lay(Readings(beams), stop.map_from_robot)
 
-    def _insert(self, readings: Readings, map_from_robot: Pose2) -> NDArray[np.intp]:
+    def lay(self, readings: Readings, map_from_robot: Pose2) -> NDArray[np.intp]:
+        """Update the cells as :meth:`insert` does, by readings of one stop that are columns already; all of them."""
         tables, at_once = (self._lower, self._raise), self.settings.policy is UpdatePolicy.PER_SWEEP
         is_filled = self.settings.between_beams is not BetweenBeams.UNSEEN
         return kernels.in_use().insert.insert_sweep(

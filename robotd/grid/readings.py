@@ -1,5 +1,6 @@
 """Readings as columns, for everything that computes on many at once."""
 
+import math
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 
 
@@ -102,6 +104,12 @@ class Readings:
         x_m = self.start_x_m + self.range_m * np.cos(self.bearing_rad)
         y_m = self.start_y_m + self.range_m * np.sin(self.bearing_rad)
         return np.stack((x_m, y_m), axis=1)
+
+    def heads_at(self, pose: Pose2) -> NDArray[np.float64]:
+        """Return where each beam ends if the robot is at a pose, ``float64[n, 2]``: x, y in the frame of that."""
+        cosine, sine = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+        heads_m: NDArray[np.float64] = self.heads_m @ np.array([[cosine, sine], [-sine, cosine]]) + (pose.x_m, pose.y_m)
+        return heads_m
 
 
 _FIVE = struct.Struct("5d")

@@ -217,6 +217,7 @@ def _scan(one: _Placed, robot: Pose2, frame: _Frame, bearings: Bearings | None, 
         ranges_m=record.ranges_m,
         hit=(record.ranges_m >= _NEAREST_M) & ~missed & np.isfinite(record.ranges_m),
         missed=missed,
+        time_s=record.time_s,
     )
 
 

@@ -42,6 +42,8 @@ class Scan:
     """Where something came back, ``bool[n]``."""
     missed: NDArray[np.bool_]
     """Where nothing came back, ``bool[n]``; neither hit nor missed is a failed measurement."""
+    time_s: float | None = None
+    """When the log says that it was taken; such times may run backwards, and file order is right all the same."""
 
     @property
     def laser_pose(self) -> Pose2:

@@ -21,7 +21,6 @@ ON_THE_SHELF = {
     "separated_orientation",
     "sharpest_direction",
     "smallest_error",
-    "tracking",
 }
 TWINS_ELSEWHERE = {"robotd.exact.pairwise"}
 """The slow twin of the plane sweep stands beside it."""

@@ -15,9 +15,9 @@ from robotd.grid.ternary import TernaryMap
 from robotd.grid.wall_field import WallField
 from robotd.localization.fit.refinement import PoseBox, refine
 from robotd.localization.fit.refinement_settings import RefinementSettings
+from robotd.localization.fit.tracking import Tracked, TrackingSettings, track
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.unknown_cells import UnknownCells
-from robotd.localization.reference.tracking import Tracked, TrackingSettings, track
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk
 from robotd.sim.buildings.log_file import read_log

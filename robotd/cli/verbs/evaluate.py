@@ -18,6 +18,7 @@ from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import positive, whole, within
 from robotd.cli.show.evaluation_tables import print_parameters, print_report, print_summary
 from robotd.cli.show.terminal import err
+from robotd.cli.surveys import evaluate_surveys
 from robotd.cli.verb import INTERRUPTED, OK, Verb
 from robotd.core.errors import RecordingError
 from robotd.evaluation.division import Division
@@ -78,6 +79,9 @@ class _Task:
 
 
 def _eval(arguments: argparse.Namespace) -> int:
+    if arguments.slam:
+        with _lines(arguments.json) as say:
+            return evaluate_surveys(arguments, say, shows=not _is_standard_output(arguments.json))
     plan = _plan(arguments)
     draw = _drawing() if arguments.pictures is not None else None
     logs = _logs(arguments)
@@ -220,6 +224,12 @@ def _protocol_word(text: str) -> str:
 def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("log", type=Path, nargs="+", metavar="LOG", help=f"{LOG_HELP}; its poses are the truth")
     parser.add_argument("--raw", action="store_true", help=RAW_HELP)
+    parser.add_argument(
+        "--slam",
+        action="store_true",
+        help="map each log from its raw odometry, as the daemon maps, and tell how far it is from the relations in the "
+        "file beside it (intel.relations beside intel.raw.clf); nothing is sought then",
+    )
     parser.add_argument("--cases", type=whole(1), default=100, metavar="N", help="scans to seek (default: 100)")
     parser.add_argument("--seed", type=whole(0), default=0, metavar="N", help="chooses them (default: 0)")
     parser.add_argument(

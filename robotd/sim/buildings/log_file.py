@@ -17,6 +17,7 @@ from typing import BinaryIO, cast
 from robotd.core.errors import RecordingError
 from robotd.logs.carmen import parse_carmen
 from robotd.logs.records import LINE_MAX
+from robotd.logs.relations import Relations, parse_relations
 from robotd.logs.scan import RecordedLog
 
 STANDARD_INPUT = "-"
@@ -56,6 +57,16 @@ def read_log(path: Path, *, fov_rad: float | None = None) -> RecordedLog:
     """
     with _opened(path) as lines:
         return parse_carmen(lines, file=str(path), fov_rad=fov_rad)
+
+
+def read_relations(path: Path, log: RecordedLog) -> Relations:
+    """Return the relations between the scans of a log from a file, plain or packed.
+
+    Raises:
+        RecordingError: the file cannot be read, or is none of this log; :func:`parse_relations` objects.
+    """
+    with _opened(path) as lines:
+        return parse_relations(lines, log.scans, str(path))
 
 
 @contextmanager

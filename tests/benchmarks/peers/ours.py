@@ -13,8 +13,8 @@ from robotd.grid.wall_field import WallField
 from robotd.localization.even_headings import even_headings
 from robotd.localization.fit.refinement import PoseBox, refine
 from robotd.localization.fit.refinement_settings import RefinementSettings, Walls
+from robotd.localization.fit.tracking import Tracked, TrackingSettings, track
 from robotd.localization.obstacles.beam_obstacles import Obstacles
-from robotd.localization.reference.tracking import Tracked, TrackingSettings, track
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from tests.benchmarks import workload
 from tests.benchmarks.peers.questions import PRIOR_M, PRIOR_RAD, Questions

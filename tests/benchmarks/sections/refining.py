@@ -17,7 +17,7 @@ from robotd.grid.wall_field import WallField
 from robotd.grid.window import CellWindow
 from robotd.localization.fit.refinement import DISTANCES, Heads, PoseBox, expected_ranges, refine
 from robotd.localization.fit.refinement_settings import RefinementSettings, Walls
-from robotd.localization.reference.tracking import Tracked, TrackingSettings, track
+from robotd.localization.fit.tracking import Tracked, TrackingSettings, track
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing, timed
 

@@ -1,7 +1,6 @@
-"""Where is the robot, when it is known within a few decimetres and degrees? No program asks this yet.
+"""Where is the robot, when it is known within a few decimetres and degrees?
 
-The daemon counts within the prior (:mod:`robotd.localization.stop`); this is what it is measured against, by tests and
-benchmarks.
+Asked at every stop of a map in the making (:mod:`robotd.localization.placing`).
 
 In three steps: a lattice of poses in the prior box, on which the heads of a part of the readings are laid; the best of
 them refined (:mod:`robotd.localization.fit.refinement`) within the box; and the count of the readings that this pose
@@ -103,12 +102,22 @@ class Tracked:
     """``bool[m]``: which."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class NotHere:
-    """The robot is not within the prior box, or cannot be told to be; the evidence is that of the best pose in it."""
+    """The robot is not within the prior box, or cannot be told to be."""
 
-    explained_share: float
-    residual_m: float
+    best: Tracked | None = None
+    """The pose in it that explains the most all the same; None where there were too few readings to look."""
+
+    @property
+    def explained_share(self) -> float:
+        """Share of the readings that the best pose explains."""
+        return 0.0 if self.best is None else self.best.explained_share
+
+    @property
+    def residual_m(self) -> float:
+        """How far the heads lie from the walls there."""
+        return math.inf if self.best is None else self.best.residual_m
 
 
 def track(
@@ -131,7 +140,7 @@ def track(
     """
     heads = Heads.of(readings, field.spec.resolution_m)
     if len(readings) < settings.readings_min or len(heads.at_cells) == 0:
-        return NotHere(0.0, math.inf)
+        return NotHere()
     search = _Search(field, readings, heads, prior, settings, refinement)
     starts = search.starts()
     best = search.best_of([next(starts)])
@@ -140,11 +149,9 @@ def track(
     rivals = [] if settled else list(islice(starts, settings.rivals))
     if rivals:
         best = max(best, search.best_of(rivals), key=attrgetter("share"))
-    if best.share < settings.here_share:
-        return NotHere(best.share, best.residual_m)
-    return Tracked(
-        best.poses.pose(best.number), best.poses.covariances[best.number], best.residual_m, best.share, best.explained
-    )
+    pose, covariance = best.poses.pose(best.number), best.poses.covariances[best.number]
+    found = Tracked(pose, covariance, best.residual_m, best.share, best.explained)
+    return found if best.share >= settings.here_share else NotHere(found)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

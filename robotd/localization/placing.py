@@ -1,0 +1,262 @@
+"""Where a sweep was taken, on a map that is young and where odometry has a word: placing one stop after the other.
+
+What a map in the making says is weighed, never obeyed: in a corridor nothing on it tells how far the robot has come, so
+what is found is fused with what odometry says, each by its covariance. Five things may come of it (:class:`Outcome`).
+"""
+
+import enum
+import functools
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.contract.area import Area
+from robotd.contract.estimate import PoseState
+from robotd.core.angles import wrap_rad
+from robotd.core.pose import Pose2
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.readings import Readings
+from robotd.grid.ternary import TernaryMap
+from robotd.grid.wall_field import WallField
+from robotd.localization.fit.agreement import Agreement, agreement
+from robotd.localization.fit.refinement import PoseBox
+from robotd.localization.fit.refinement_settings import RefinementSettings
+from robotd.localization.fit.tracking import NotHere, Tracked, TrackingSettings, track
+from robotd.localization.localizer import Localizer
+from robotd.localization.ready_map import ReadyMap
+from robotd.localization.settings import LocalizationSettings
+
+
+class Outcome(enum.StrEnum):
+    """What came of placing a sweep."""
+
+    PLACED = "placed"
+    """The map explains it near where odometry says."""
+    WIDE = "wide"
+    """The map explains it, farther off than odometry errs."""
+    WEAK = "weak"
+    """The map explains part of it."""
+    NEW_GROUND = "new_ground"
+    """The map says next to nothing of it: odometry's word stands."""
+    CONTRADICTS = "contradicts"
+    """The map speaks against it, wherever the robot may have been: it is not laid into the map."""
+
+    @property
+    def is_found(self) -> bool:
+        """Whether the map had a word in it."""
+        return self in {Outcome.PLACED, Outcome.WIDE, Outcome.WEAK}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Believed:
+    """A pose and how sure it is."""
+
+    pose: Pose2
+    """Map frame."""
+    covariance: NDArray[np.float64]
+    """``float64[3, 3]`` of x, y [m] and heading [rad], map frame."""
+
+    @property
+    def deviation_m(self) -> float:
+        """Of the place, along the worse axis of the map."""
+        return math.sqrt(max(self.covariance[0, 0], self.covariance[1, 1]))
+
+    @property
+    def deviation_rad(self) -> float:
+        """Of the heading."""
+        return math.sqrt(self.covariance[2, 2])
+
+    def no_surer(self, than_m: float, than_rad: float) -> "Believed":
+        """Return it with that much more doubt: who claims too much turns robust weights against the truth."""
+        return Believed(self.pose, self.covariance + np.diag([than_m**2, than_m**2, than_rad**2]))
+
+    def fused(self, measured: Pose2, covariance: NDArray[np.float64]) -> "Believed":
+        """Return it after a measurement: each has a say by how sure it is, in each direction."""
+        gain = self.covariance @ np.linalg.inv(self.covariance + covariance)
+        off = (
+            measured.x_m - self.pose.x_m,
+            measured.y_m - self.pose.y_m,
+            wrap_rad(measured.heading_rad - self.pose.heading_rad),
+        )
+        x_m, y_m, turned_rad = (gain @ off).tolist()
+        pose = Pose2(self.pose.x_m + x_m, self.pose.y_m + y_m, wrap_rad(self.pose.heading_rad + turned_rad))
+        left = (np.eye(3) - gain) @ self.covariance
+        return Believed(pose, (left + left.T) / 2.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placed:
+    """What came of it, and where the sweep is then believed to have been taken."""
+
+    outcome: Outcome
+    believed: Believed
+    agreement: Agreement
+    """Of the map with the sweep at the best pose that was found on it."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlacingSettings:
+    """When a map explains a sweep, and how far around odometry's word it is looked for. The same for all buildings."""
+
+    box_sigmas: float = 2.5
+    box_m: float = 0.05
+    placed_consent: float = 0.7
+    placed_share: float = 0.12
+    weak_consent: float = 0.5
+    weak_factor: float = 4.0
+    """A sweep that is explained in part has a covariance greater by this factor."""
+    weak_m: float = 0.25
+    weak_rad: float = math.radians(10.0)
+    """What is explained in part is believed only where odometry is no less sure than this: over a wide box some pose
+    always explains half of a sweep."""
+    told_share: float = 0.12
+    """Where the map says something of fewer readings, the ground is new."""
+    new_ground_factor: float = 2.0
+    wide_m: float = 2.5
+    wide_rad: float = math.radians(45.0)
+    wide_sigmas: float = 2.0
+    wide_share: float = 0.4
+    """What a pose must explain to be asked whether it is the place; see ``localized_share``."""
+    wide_gain: float = 0.02
+    readings_min: int = 12
+    """With fewer readings nothing is looked for."""
+    tracking: TrackingSettings = field(default_factory=TrackingSettings)
+    refinement: RefinementSettings = field(default_factory=RefinementSettings)
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """A map to place sweeps on; what is seldom needed is made when it is."""
+
+    grid: OccupancyGrid
+    localization: LocalizationSettings
+
+    @functools.cached_property
+    def ternary(self) -> TernaryMap:
+        """In three values."""
+        return TernaryMap.from_grid(self.grid)
+
+    @functools.cached_property
+    def walls(self) -> WallField:
+        """Walls alone block: unknown cells are holes as often as not on a map of few stops."""
+        return WallField.of(self.ternary.spec, self.ternary.occupied, self.ternary.occupied)
+
+    @functools.cached_property
+    def ready(self) -> ReadyMap:
+        """For the search."""
+        return ReadyMap.of(self.grid, self.localization)
+
+    def agreement(self, readings: Readings, pose: Pose2) -> Agreement:
+        """Return what it says of a sweep at a pose."""
+        return agreement(self.walls, self.ternary.vacant, readings, pose)
+
+
+def place(ground: Ground, readings: Readings, prior: Believed, settings: PlacingSettings) -> Placed:
+    """Return where a sweep was taken.
+
+    Args:
+        ground: the map, of stops near by.
+        readings: the sweep.
+        prior: odometry's word, carried on from the last stop.
+        settings: when it is explained.
+    """
+    near = near_prior(ground, readings, prior, settings)
+    if near is None:
+        nothing = np.zeros(len(readings), np.bool_)
+        return Placed(Outcome.NEW_GROUND, _widened(prior, settings), Agreement(nothing, nothing))
+    found, agreed = near
+    if _is_explained(agreed, settings):
+        return Placed(Outcome.PLACED, prior.fused(found.pose, found.covariance), agreed)
+    wide = _wide(ground, readings, prior, settings)
+    if wide is not None and _worth(wide[1], settings) > _worth(agreed, settings) + settings.wide_gain:
+        found, agreed = wide
+        # Odometry was wrong by more than it errs: it has no say in where.
+        return Placed(Outcome.WIDE, Believed(found.pose, found.covariance), agreed)
+    told = agreed.explained_share + agreed.contradicted_share
+    if told < settings.told_share:
+        return Placed(Outcome.NEW_GROUND, _widened(prior, settings), agreed)
+    is_narrow = prior.deviation_m <= settings.weak_m and prior.deviation_rad <= settings.weak_rad
+    if agreed.consent >= settings.weak_consent and is_narrow:
+        return Placed(Outcome.WEAK, prior.fused(found.pose, settings.weak_factor * found.covariance), agreed)
+    return Placed(Outcome.CONTRADICTS, prior, agreed)
+
+
+def near_prior(
+    ground: Ground, readings: Readings, prior: Believed, settings: PlacingSettings
+) -> tuple[Tracked, Agreement] | None:
+    """Return the best pose about where a sweep is believed to have been taken; None with too few readings."""
+    half_m = settings.box_sigmas * prior.deviation_m + settings.box_m
+    return _in_box(
+        ground, readings, PoseBox.around(prior.pose, half_m, settings.box_sigmas * prior.deviation_rad), settings
+    )
+
+
+def place_in_box(
+    ground: Ground, readings: Readings, around: Pose2, half: tuple[float, float], settings: PlacingSettings
+) -> Believed | None:
+    """Return where a sweep was taken, by the map alone, within some metres and radians of a pose.
+
+    None where the map does not explain it.
+    """
+    found = _in_box(ground, readings, PoseBox.around(around, *half), settings)
+    if found is None or not _is_explained(found[1], settings):
+        return None
+    return Believed(found[0].pose, np.array(found[0].covariance))
+
+
+def _in_box(
+    ground: Ground, readings: Readings, box: PoseBox, settings: PlacingSettings
+) -> tuple[Tracked, Agreement] | None:
+    if len(readings) < settings.readings_min:
+        return None
+    found = track(ground.walls, readings, box, settings.tracking, settings.refinement)
+    best = found.best if isinstance(found, NotHere) else found
+    return None if best is None else (best, ground.agreement(readings, best.pose))
+
+
+def found_within(
+    ground: Ground, readings: Readings, area: Area, headings_rad: tuple[float, float], least_share: float
+) -> Believed | None:
+    """Return the one place in a disk where a sweep was taken; None if it is not there, or in doubt where.
+
+    Args:
+        ground: the map.
+        readings: the sweep.
+        area: where to look.
+        headings_rad: the middle of the headings to try, and how far to either side.
+        least_share: what the best pose must explain to be looked at.
+    """
+    settings = replace(
+        ground.localization, localized_share=least_share, heading_error_rad=min(headings_rad[1], math.pi)
+    )
+    ready = replace(ground.ready, settings=settings)
+    localizer = Localizer.at_stop(ready, "", settings.headings_near(headings_rad[0]), area)
+    localizer.stop.add(readings)
+    estimate = localizer.estimate(0, final=True)
+    if estimate.state is not PoseState.LOCALIZED or estimate.best is None:
+        return None
+    return Believed(estimate.best, np.array(estimate.regions[0].covariance))
+
+
+def _wide(
+    ground: Ground, readings: Readings, prior: Believed, settings: PlacingSettings
+) -> tuple[Tracked, Agreement] | None:
+    radius_m = settings.wide_m + settings.wide_sigmas * prior.deviation_m
+    half_rad = settings.wide_rad + settings.wide_sigmas * prior.deviation_rad
+    area = Area(prior.pose.x_m, prior.pose.y_m, radius_m)
+    found = found_within(ground, readings, area, (prior.pose.heading_rad, half_rad), settings.wide_share)
+    return None if found is None else near_prior(ground, readings, found, settings)
+
+
+def _is_explained(agreed: Agreement, settings: PlacingSettings) -> bool:
+    return agreed.consent >= settings.placed_consent and agreed.explained_share >= settings.placed_share
+
+
+def _worth(agreed: Agreement, settings: PlacingSettings) -> float:
+    return agreed.consent * min(1.0, agreed.explained_share / settings.wide_share)
+
+
+def _widened(prior: Believed, settings: PlacingSettings) -> Believed:
+    return Believed(prior.pose, settings.new_ground_factor * prior.covariance)
