@@ -146,6 +146,7 @@ def _log(reader: _Reader, placed: list[_Placed], file: str, fov_rad: float | Non
     scanner = "rear" if kind in {"RLASER", "ROBOTLASER2", "RAWLASER2"} else "front"
     frame = _Frame(
         mount=mount_of(records, reader.params, scanner),
+        # All scans but one: a log may end between a scan and the line that copies its pose.
         is_corrected=reader.track.copies >= len(placed) - 1 > 0 and bool(reader.track.lines),
         is_raw=kind in RAW_KINDS,
     )
@@ -168,6 +169,7 @@ def _log(reader: _Reader, placed: list[_Placed], file: str, fov_rad: float | Non
         *_flat(records),
         *_flipped(reader, scanner),
     )
+    # Found in two passes, line by line and by layout; people look for them from top to bottom.
     problems = tuple(sorted(reader.problems, key=lambda problem: problem.line))
     return RecordedLog(scans, min(code_m, *limits_m), poses, why, problems, reader.damaged_lines, assumed)
 

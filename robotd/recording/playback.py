@@ -224,6 +224,7 @@ class ReplayTransport:
 
     def close(self) -> None:
         """Give the line up."""
+        # One who still reads must find the end, not what is left: in the recording nobody read it.
         self._chunks.clear()
         self.lose(f"{self._name}: closed")
 
@@ -264,6 +265,7 @@ class RecordedCompute:
         Jobs of one name keep their order.
         """
         try:
+            # On the loop itself: no robot waits for a replay, and when it is handed back is for the recording to say.
             result = function(*args)
         except Exception:
             # The first recordings did not note that a job failed: to wait would be to wait for their end.
@@ -274,6 +276,7 @@ class RecordedCompute:
         return result
 
     async def _wait(self, name: str) -> None:
+        # In that recording it was done where it stood, so its end is noted nowhere.
         if self._is_first_format and name in _ADDED_JOBS:
             return
         async with self._turns[name]:

@@ -207,6 +207,7 @@ class _Units:
 
 def _in_metres(fits: Fits, heads: Heads, units: _Units) -> RefinedPoses:
     beyond_m = fits.beyond * units.resolution_m
+    # Misses have no head: their places are kept, so that all that is told of a sweep counts by reading.
     if len(heads.at_cells) < len(heads.is_hit):
         of_hits, beyond_m = beyond_m, np.full((len(fits.poses), len(heads.is_hit)), math.nan)
         beyond_m[:, heads.is_hit] = of_hits

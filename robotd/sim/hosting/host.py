@@ -100,6 +100,7 @@ class _Life:
                 await asyncio.wait({task}, timeout=self._pass_time())
         finally:
             task.cancel()
+            # Seen to its end: a read left running would take what the next one is to hear.
             await asyncio.gather(task, return_exceptions=True)
         return task.result()
 
