@@ -1,7 +1,7 @@
 """Several duties that belong together, of which none may outlive another."""
 
 import asyncio
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Iterable
 from typing import Any, NoReturn
 
 
@@ -10,11 +10,18 @@ async def together(*duties: Coroutine[Any, Any, object]) -> NoReturn:
     tasks = [asyncio.ensure_future(duty) for duty in duties]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-        ended = next(task for task in tasks if task.done())  # in their order: the same every time
+        first = next(task for task in tasks if task.done())  # in their order: the same every time
     finally:
-        for task in tasks:
-            task.cancel()
-        # Each is seen to its end: one left running would go on with what is given up.
-        await asyncio.gather(*tasks, return_exceptions=True)
-    ended.result()
+        await ended(tasks)
+    first.result()
     raise AssertionError("a duty only ends with an error")
+
+
+async def ended(tasks: Iterable["asyncio.Future[Any]"]) -> list[Exception]:
+    """Cancel tasks, see each to its end, and return what they raised by themselves: to be cancelled is no error."""
+    waited = list(tasks)
+    for task in waited:
+        task.cancel()
+    # One left running would go on with what is given up.
+    outcomes = await asyncio.gather(*waited, return_exceptions=True)
+    return [outcome for outcome in outcomes if isinstance(outcome, Exception)]

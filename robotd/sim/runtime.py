@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator, Callable, Iterator
 from pathlib import Path
 
 from robotd.core.errors import TransportError
+from robotd.core.together import ended
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.pty import open_pty
 from robotd.hardware.transport.transport import Connect, Transport
@@ -87,13 +88,9 @@ async def _served(
         try:
             yield tasks
         finally:
-            for task in tasks:
-                task.cancel()
-            outcomes = await asyncio.gather(*tasks, return_exceptions=True)
-    for outcome in outcomes:
-        # Being cancelled is none: what a board raised by itself must not be lost with its task.
-        if isinstance(outcome, Exception):
-            raise outcome
+            errors = await ended(tasks)
+    for error in errors:
+        raise error  # what a board raised must not be lost with its task
 
 
 @contextlib.contextmanager

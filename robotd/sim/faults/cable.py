@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from robotd.core.errors import ConfigError, TransportError
+from robotd.core.together import ended
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
@@ -140,14 +141,12 @@ class Cable:
         try:
             await asyncio.wait(carrying, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            for task in carrying:
-                task.cancel()
-            outcomes = await asyncio.gather(*carrying, return_exceptions=True)
+            errors = await ended(carrying)
             board.close()
-        for outcome in outcomes:
+        for error in errors:
             # That a line ends is what cables are for; all else is a mistake of ours.
-            if isinstance(outcome, Exception) and not isinstance(outcome, TransportError):
-                raise outcome
+            if not isinstance(error, TransportError):
+                raise error
 
     async def _carry(self, source: Transport, sink: Transport, way: Direction) -> NoReturn:
         while True:

@@ -8,6 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from robotd.core.errors import TransportError
+from robotd.core.together import ended
 from robotd.hardware.transport.pty import PtyEnd, open_pty
 from robotd.hardware.transport.transport import Connect
 from robotd.sim.buildings.world import load_world
@@ -43,12 +44,9 @@ async def cables(
         try:
             yield laid
         finally:
-            for task in tasks:
-                task.cancel()
-            outcomes = await asyncio.gather(*tasks, return_exceptions=True)
-        for outcome in outcomes:
-            if isinstance(outcome, Exception):
-                raise outcome
+            errors = await ended(tasks)
+        for error in errors:
+            raise error
 
 
 async def run_faulty_on_ptys(
