@@ -63,11 +63,13 @@ static void pack_row(const search_map *map, const uint8_t *cells, int32_t row, i
                      int32_t last, uint64_t *words)
 {
     const uint64_t beyond = outside ? ~(uint64_t)0 : 0;
-    const int is_inside = row >= 0 && row < map->rows;
+    const int32_t inside_first = first > 1 ? first : 1, inside_last = clamp(last, 0, row_words(map) - 1);
     for (int32_t w = first; w < last; w++)
-        words[w] = is_inside && w > 0 && w + 1 < row_words(map)
-                       ? packed(cells + (size_t)row * (size_t)map->cols, 64 * (w - 1), map->cols, beyond)
-                       : beyond;
+        words[w] = beyond;
+    if (row < 0 || row >= map->rows)
+        return;
+    for (int32_t w = inside_first; w < inside_last; w++)
+        words[w] = packed(cells + (size_t)row * (size_t)map->cols, 64 * (w - 1), map->cols, beyond);
 }
 
 /* Rows of 16 cells into the columns of a plane. */
