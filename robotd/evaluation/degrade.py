@@ -115,6 +115,7 @@ def _turned(degrees: float) -> Callable[[OccupancyGrid, np.random.Generator], De
         """Turn it about the origin of its frame."""
         by, spec = Pose2(0.0, 0.0, math.radians(degrees)), grid.spec
         corner = GridSpec(spec.resolution_m, *by.transform(spec.origin_x_m, spec.origin_y_m), spec.shape)
+        # About the frame's origin, as a map that was made with another heading: poses turn with it.
         cells, to = turned(grid.cells, corner, by.heading_rad)
         return Degraded(OccupancyGrid(to, cells, grid.settings), by)
 

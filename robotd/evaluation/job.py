@@ -61,6 +61,7 @@ class Job:
         """Seek a scan, nothing known."""
         ready_map, settings = _ready_map_of(self), self.settings
         readings = readings_of(query.scan, settings.reach)
+        # Both: what compares versions on a busy machine, and what a robot would wait.
         cpu_s, wall_s = time.process_time(), time.perf_counter()
         headings_rad = settings.localization.headings_all_round()
         localizer = Localizer.at_stop(

@@ -52,9 +52,11 @@ def _until_one_dies(
 ) -> Generator[Answer, None, deque[_Batch[Case]]]:
     """Work through batches, and return those that were under way when a process died."""
     under_way: dict[Future[list[Answer]], _Batch[Case]] = {}
+    # Spawned: a fork copies locks that threads of this process hold, and nobody would ever let go of them.
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         try:
             while True:
+                # Two a worker: one under way and one at hand, so that none is idle while its answers are read.
                 for batch in islice(batches, 2 * workers - len(under_way)):
                     under_way[pool.submit(_answers, job, batch.cases)] = batch
                 if not under_way:
