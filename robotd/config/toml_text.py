@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from robotd.config.lines import key_lines
 from robotd.config.problems import Problems
-from robotd.config.reader import Bad, read_table
+from robotd.config.table_reader import Bad, read_table
 from robotd.core.errors import ConfigError, ConfigErrors
 
 T = TypeVar("T")

@@ -7,8 +7,8 @@ import threading
 from collections.abc import Callable
 
 from robotd.core.errors import TransportError
+from robotd.hardware.transport.descriptor_readiness import Readiness
 from robotd.hardware.transport.outbox import Outbox
-from robotd.hardware.transport.readiness import Readiness
 
 _READ_BYTES = 4096
 """What the kernel holds for a terminal: one call takes it all."""

@@ -7,7 +7,7 @@ import select
 import tty
 
 from robotd.hardware.transport.descriptor import DescriptorTransport, wake
-from robotd.hardware.transport.readiness import InThread
+from robotd.hardware.transport.descriptor_readiness import InThread
 
 _LOOK_AGAIN_S = 0.02
 

@@ -18,9 +18,9 @@ import serial
 
 from robotd.core.errors import TransportError
 from robotd.hardware.transport.descriptor import DescriptorTransport
+from robotd.hardware.transport.descriptor_readiness import InThread
 from robotd.hardware.transport.holder import holder_of
 from robotd.hardware.transport.line_format import LineFormat
-from robotd.hardware.transport.readiness import InThread
 
 _PTY_SLAVE_MAJORS = range(136, 144)
 """Device numbers by which Linux knows the slaves of pseudo-terminals."""

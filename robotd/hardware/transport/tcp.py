@@ -5,7 +5,7 @@ import socket
 
 from robotd.core.errors import TransportError
 from robotd.hardware.transport.descriptor import DescriptorTransport
-from robotd.hardware.transport.readiness import OnLoop
+from robotd.hardware.transport.descriptor_readiness import OnLoop
 
 _CONNECT_TIMEOUT_S = 5.0
 _MOST_ADDRESSES = 4

@@ -9,9 +9,9 @@ from collections.abc import Callable
 
 import pytest
 
+from robotd.hardware.transport.descriptor_readiness import InThread, OnLoop, Readiness
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.pty import open_pty
-from robotd.hardware.transport.readiness import InThread, OnLoop, Readiness
 from robotd.hardware.transport.serial_port import open_serial
 
 pytestmark = pytest.mark.real_clock
@@ -47,7 +47,7 @@ async def test_the_loop_turns_while_the_kernel_keeps_who_asks_about_a_line_waiti
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     board = open_pty()
-    monkeypatch.setattr("robotd.hardware.transport.readiness.select.poll", SlowPoll)
+    monkeypatch.setattr("robotd.hardware.transport.descriptor_readiness.select.poll", SlowPoll)
     line = await open_serial(board.path, LineFormat(115_200))
     reading = asyncio.create_task(line.read())
     board.write(b"late")
