@@ -21,6 +21,7 @@ from typing import Generic, NoReturn, Protocol, Self, TypeVar
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RobotdError, TransportError
 from robotd.core.silence import idle, within
+from robotd.core.together import ended
 from robotd.hardware.link.tapped import TappedLine
 
 M = TypeVar("M")
@@ -126,10 +127,7 @@ class Dialogue(Generic[M]):
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._reader.cancel()
-        await asyncio.wait({self._reader})
-        if not self._reader.cancelled():
-            self._reader.exception()  # known already, or of no interest any more
+        await ended((self._reader,))  # what it raised is known already, or of no interest any more
         self._lose(TransportError(f"{self._device}: the session is over"))
 
     @property

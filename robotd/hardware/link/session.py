@@ -20,6 +20,7 @@ from firmware_proto.schema import Message
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError, RobotdError, TransportError
 from robotd.core.silence import within
+from robotd.core.together import ended
 from robotd.hardware.link.clock_sync import AHEAD_MAX_NS, ClockSync
 from robotd.hardware.link.pending_request import PendingRequest, answered_type, result_of
 from robotd.hardware.link.round_trip import RoundTrip
@@ -100,10 +101,7 @@ class Session:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._reader.cancel()
-        await asyncio.wait({self._reader})
-        if not self._reader.cancelled():
-            self._reader.exception()  # known already, or of no interest any more
+        await ended((self._reader,))  # what it raised is known already, or of no interest any more
         self._lose(TransportError(f"{self.device}: the session is over"))
 
     # What a device may do
