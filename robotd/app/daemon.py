@@ -154,7 +154,7 @@ async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoRetur
         if within_s is not None:
             feeding = feed_watchdog(notifier, within_s, lambda: not any(task.done() for task in tasks))
             tasks.append(group.create_task(feeding, name="watchdog"))
-        tasks.append(group.create_task(_announce(front, notifier), name="announce"))
+        tasks.append(group.create_task(_announce(front, notifier, config), name="announce"))
         await ending.asked.wait()
         log.info("stopping: %s", ending.reason)
         notifier.stopping()
@@ -182,11 +182,12 @@ async def _cancelled(*tasks: "asyncio.Task[None]") -> None:
     await asyncio.wait(tasks)
 
 
-async def _announce(front: Child, notifier: Notifier) -> None:
+async def _announce(front: Child, notifier: Notifier, config: Config) -> None:
     await front.is_ready.wait()
     notifier.ready()
     notifier.status("serving")
-    log.info("robotd %s is ready", __version__)
+    places = (config.server.runtime_dir, config.maps.dir, config.recording.dir)
+    log.info("robotd %s is ready: sockets in %s, maps in %s, recordings in %s", __version__, *places)
 
 
 def _without_clients(daemon: Daemon, notifier: Notifier, why: str) -> None:

@@ -35,7 +35,8 @@ class Stalls:
     def stalled(self, stood_still_s: float, was_stopped: bool, stuck_in: str) -> None:
         """Tell the mission, and the log."""
         done = "the base was stopped" if was_stopped else "nothing was stopped, for the base was not driven"
-        log.error("the event loop stood still for %.2f s: %s; it was in\n%s", stood_still_s, done, stuck_in)
+        where = " < ".join(line.strip() for line in stuck_in.splitlines() if line.strip())
+        log.error("the event loop stood still for %.2f s: %s; it was in %s", stood_still_s, done, where)
         self._daemon.causes.stalled(Stall(now_ns(), stood_still_s, was_stopped, self._log))
 
 

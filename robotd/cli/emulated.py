@@ -1,6 +1,5 @@
 """What a daemon needs to know about a simulated robot, as a configuration file."""
 
-import argparse
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +8,6 @@ from robotd.cli.outputs import CONFIG_MARK, write
 from robotd.config import Config, effective_text, loads
 from robotd.config.writer import write_value
 from robotd.recording.reader import Recording
-from robotd.sim.recorded_robot import OdometrySource
 
 RUNTIME_DIR, MAPS_DIR, RECORDINGS_DIR = "run", "maps", "recordings"
 
@@ -66,13 +64,3 @@ def write_config(file: Path, text: str) -> None:
         RobotdError: it cannot be written.
     """
     write(file, text.encode())
-
-
-def odometry_argument(parser: argparse.ArgumentParser) -> None:
-    """Let the command line choose what the wheels say in a recorded building."""
-    parser.add_argument(
-        "--odometry",
-        choices=[source.value for source in OdometrySource],
-        default=OdometrySource.CORRECTED.value,
-        help="in a recorded building: the log's corrected poses, or what its robot believed (default: corrected)",
-    )

@@ -1,6 +1,6 @@
 """``robotctl``: parse the command line, run one verb, turn what it raises into one line and an exit code.
 
-Exit codes: 0 done, 1 failed, 2 wrong usage, 78 wrong configuration, 130 interrupted.
+Exit codes: 0 done, 1 failed, 2 wrong usage, 78 wrong configuration, 130 interrupted; those of a verb are in its help.
 """
 
 import argparse
@@ -9,15 +9,16 @@ import io
 import os
 import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-
-from rich_argparse import RawDescriptionRichHelpFormatter
+from typing import TYPE_CHECKING
 
 from robotd import __version__
-from robotd.cli.outputs import refuse
-from robotd.cli.verb import BAD_CONFIG, FAILED, INTERRUPTED, Verb
+from robotd.cli.exit_codes import BAD_CONFIG, FAILED, INTERRUPTED, OK
 from robotd.core.errors import ConfigError, RobotdError
+
+if TYPE_CHECKING:
+    from robotd.cli.verb import Verb
 
 WORDS = {
     "status": ("control", "show the whole robot in one look"),
@@ -58,14 +59,11 @@ for what it does not need.
 """
 
 
-class _Help(RawDescriptionRichHelpFormatter):
-    """Words as they are written: ``[m]`` is a unit, not markup."""
-
-    text_markup = False
-    help_markup = False
+_JSON = {"--json", "--events"}
+"""With these, errors are objects, too."""
 
 
-def verbs_of(word: str) -> tuple[Verb, ...]:
+def verbs_of(word: str) -> "tuple[Verb, ...]":
     """Return the verbs that begin with a word: one, or a family."""
     verbs: tuple[Verb, ...] = importlib.import_module(f"robotd.cli.verbs.{WORDS[word][0]}").VERBS
     return tuple(verb for verb in verbs if verb.name.split()[0] == word)
@@ -77,27 +75,41 @@ def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
         prog="robotctl",
         description="Talk to robotd: missions, maps, poses, recordings, and simulated robots.",
         epilog="robotctl VERB --help tells more, with an example.",
-        formatter_class=_Help,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--version", action="version", version=f"robotctl {__version__}")
+    parser.add_argument("-V", "--version", action="version", version=f"robotctl {__version__}")
     words = parser.add_subparsers(metavar="VERB", required=True)
-    wanted = next((text for text in argv if not text.startswith("-")), None)
+    typed = iter([text for text in argv if not text.startswith("-")])
+    wanted = next(typed, None)
+    _refuse_unknown(parser, wanted, WORDS)
     for word, (_, summary) in WORDS.items():
         helped = words.add_parser(word, help=summary, formatter_class=parser.formatter_class)
         if word == wanted:
-            _add_verbs(helped, verbs_of(word))
+            _add_verbs(helped, verbs_of(word), next(typed, None))
     return parser
 
 
-def _add_verbs(parser: argparse.ArgumentParser, verbs: tuple[Verb, ...]) -> None:
+def _add_verbs(parser: argparse.ArgumentParser, verbs: "tuple[Verb, ...]", wanted: str | None) -> None:
     """Give the parser of a first word its verb, or a second word to choose one of the family."""
     if " " not in verbs[0].name:
         verbs[0].add_to(parser)
         return
+    _refuse_unknown(parser, wanted, [verb.name.split()[1] for verb in verbs])
     family = parser.add_subparsers(metavar="VERB", required=True)
     for verb in verbs:
         name = verb.name.split()[1]
         verb.add_to(family.add_parser(name, help=verb.summary, formatter_class=parser.formatter_class))
+
+
+def _refuse_unknown(parser: argparse.ArgumentParser, wanted: str | None, known: Iterable[str]) -> None:
+    """Refuse a word that no verb begins with, and name the nearest that one does: argparse would list them all."""
+    if wanted is None or wanted in known:
+        return
+    import difflib  # noqa: PLC0415  # only here; it takes longer to load than the rest
+
+    near = difflib.get_close_matches(wanted, known, n=1)
+    hint = f"; did you mean {near[0]}?" if near else ""
+    parser.error(f"there is no {parser.prog} {wanted}{hint} (robotctl --help lists all verbs)")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -107,29 +119,61 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
         with _ended_like_interrupted():
-            arguments = build_parser(words).parse_args(words)
-            refuse(arguments)
-            code: int = arguments.run(arguments)
+            return _run(build_parser(words), words)
     except ConfigError as error:
-        return _complain(BAD_CONFIG, *map(str, error.problems))
+        return _complain(BAD_CONFIG, words, error, *map(str, error.problems))
     except RobotdError as error:
-        return _complain(FAILED, f"robotctl: {error}")
+        return _complain(FAILED, words, error, f"robotctl: {error}")
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:  # the reader of our output went away, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:  # a file that was named on the command line
-        return _complain(FAILED, ": ".join(filter(None, ("robotctl", error.filename, error.strerror or str(error)))))
+        line = ": ".join(filter(None, ("robotctl", error.filename, error.strerror or str(error))))
+        return _complain(FAILED, words, error, line)
+
+
+def _run(parser: argparse.ArgumentParser, words: Sequence[str]) -> int:
+    if not words:
+        parser.print_help()
+        return OK
+    arguments = parser.parse_args(words)
+    from robotd.cli.outputs import refuse  # noqa: PLC0415  # help needs none of it
+
+    refuse(arguments)
+    code: int = arguments.run(arguments)
     return code
 
 
-def _complain(code: int, *lines: str) -> int:
-    from robotd.cli.show.terminal import complain  # noqa: PLC0415  # what starts quickly can be interrupted cleanly
+def _complain(code: int, words: Sequence[str], error: Exception, *lines: str) -> int:
+    """Say what went wrong: a line each for people, for programs an object."""
+    from robotd.cli.show.terminal import complain, print_json  # noqa: PLC0415  # what starts quickly ends cleanly
 
     for line in lines:
         complain(line)
+    if _JSON & set(words):
+        try:
+            print_json({"code": _code_of(error), "message": str(error)})
+        except OSError:  # as little as the answer can an error be written
+            return code
     return code
+
+
+def _code_of(error: Exception) -> str:
+    """Return the word that programs know an error by: the server's, or that of its class.
+
+    >>> _code_of(ConfigError("unknown key"))
+    'config_error'
+    """
+    given = getattr(error, "code", None)
+    return (
+        given
+        if isinstance(given, str)
+        else "".join(
+            f"_{letter.lower()}" if letter.isupper() else letter for letter in type(error).__name__
+        ).removeprefix("_")
+    )
 
 
 @contextmanager

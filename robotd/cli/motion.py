@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from robotd.cli.connection import connect
+from robotd.cli.exit_codes import INTERRUPTED, OK
 from robotd.cli.show.progress import MissionBars
 from robotd.cli.show.terminal import complain, out, print_json
 from robotd.cli.show.wording import as_json
-from robotd.cli.verb import INTERRUPTED, OK, Verb
+from robotd.cli.verb import Verb
 from robotd.client import Client
 from robotd.client.mission_run import MissionEvent
 from robotd.contract.events import MissionProgress, SweepProgress

@@ -10,10 +10,10 @@ from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from robotd.cli.exit_codes import OK
 from robotd.cli.logs import Reading
 from robotd.cli.show.survey_tables import print_survey
 from robotd.cli.show.terminal import complain, err
-from robotd.cli.verb import OK
 from robotd.core.errors import RecordingError
 from robotd.evaluation.recorded import Reach
 from robotd.evaluation.relation_errors import RelationErrors

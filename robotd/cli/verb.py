@@ -4,18 +4,9 @@ import argparse
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
 
+from robotd.cli.exit_codes import FAILED, INTERRUPTED, OK, WRONG_USAGE
 from robotd.cli.quantities import positive
-
-OK: Final = 0
-FAILED: Final = 1
-WRONG_USAGE: Final = 2
-LOST: Final = 3
-AMBIGUOUS: Final = 4
-BAD_CONFIG: Final = 78
-INTERRUPTED: Final = 130
-
 
 _ALWAYS = ((OK, "done"), (FAILED, "failed"), (WRONG_USAGE, "wrong usage"))
 _WITH_DAEMON = ((INTERRUPTED, "interrupted: the robot was stopped"),)

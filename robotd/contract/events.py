@@ -39,6 +39,10 @@ class Status:
     """Whether the map in use has changes that nobody saved."""
     map_kept_version: int | None = None
     """The version as which they are kept nevertheless; None as long as they are in memory alone."""
+    since_ns: int | None = None
+    """When it came into this mode; None from a daemon that does not tell."""
+    started_ns: int | None = None
+    """When the daemon started."""
 
 
 @dataclass(frozen=True, slots=True)

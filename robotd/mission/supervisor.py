@@ -60,6 +60,7 @@ class Supervisor:
         self._recording = recording
         self._is_untold = False
         """Whether the last status could not be told: the log has it once, not each second."""
+        self._started_ns = now_ns()
         self.halts = 0
         """How often the robot was stopped: who waited for something compares, and sees whether a stop came between."""
         self._current = CurrentMode(self.publish_status)
@@ -102,6 +103,8 @@ class Supervisor:
             held=self.holding.cause,
             map_unsaved=place is not None and place.is_unsaved,
             map_kept_version=place.kept_as if place else None,
+            since_ns=self._current.since_ns,
+            started_ns=self._started_ns,
         )
 
     def publish_status(self) -> None:

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 ROOMS_OF_OTHERS = {"robotd.sim", "robotd.cli"}
-LIBRARIES_OF_OTHERS = {"rich", "rich_argparse", "matplotlib", "PIL", "scipy", "hypothesis", "pytest"}
+LIBRARIES_OF_OTHERS = {"rich", "matplotlib", "PIL", "scipy", "hypothesis", "pytest"}
 LARGEST_MIB = 60.0
 ROOMS_OF_CLIENTS = {"client", "contract", "core"}
 ROOMS_OF_FRONT = {"front", "server", "children", "contract", "core"}

@@ -59,7 +59,7 @@ async def test_it_turns_as_far_as_asked(live: Live, angle_deg: float) -> None:
 @pytest.mark.parametrize("mission", [DriveStraight(0.5), Turn(1.0)])
 async def test_who_is_disarmed_does_not_move(live: Live, mission: Mission) -> None:
     async with live(office(), armed=False) as it:
-        with pytest.raises(MissionError, match="the robot is disarmed; arm it first"):
+        with pytest.raises(MissionError, match=r"the robot is disarmed \(.* ago\); arm it first, with: robotctl arm"):
             it.daemon.control.start(mission, 1.0)
 
 

@@ -176,7 +176,7 @@ async def test_without_a_base_it_still_says_where_it_stands(tmp_path: Path) -> N
         assert estimate.best.distance_m(robot.truth) < 0.15
         assert 200 < estimate.readings < 300  # those that the head reaches without a turn of the base
         assert daemon.supervisor.whereabouts.tie is tie
-        with pytest.raises(MissionError, match="it can only localize where it stands"):
+        with pytest.raises(MissionError, match="the robot can only look where it stands"):
             daemon.control.start(MapStart.of("again", (), robot.start), 1e4)
         laid["drive"].plug()
         await asyncio.sleep(6.0)

@@ -12,11 +12,11 @@ from rich.console import Console
 from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials, stage
 from robotd.cli.demo.rig import FINISHED, Rig, rig, wired
 from robotd.cli.demo.true_pose import true_pose
+from robotd.cli.exit_codes import FAILED, OK
 from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import bold, command_line
-from robotd.cli.verb import FAILED, OK
 from robotd.config import Config
 from robotd.contract.events import MapChanged
 from robotd.contract.missions import DriveTo, Localize, MapStart

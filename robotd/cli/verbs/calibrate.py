@@ -13,6 +13,7 @@ from robotd.calibration.head import calibrate_head
 from robotd.calibration.odometry import FULL_ROUNDS, calibrate_heading, calibrate_odometry
 from robotd.calibration.range_bias import calibrate_range, leg_for
 from robotd.cli.connection import connect
+from robotd.cli.exit_codes import OK
 from robotd.cli.guide import constants_of, guided
 from robotd.cli.motion import stopped
 from robotd.cli.outputs import PNG, output_argument, write
@@ -21,7 +22,7 @@ from robotd.cli.quantities import between
 from robotd.cli.show.half_blocks import can_draw_blocks
 from robotd.cli.show.strips import strip
 from robotd.cli.show.terminal import err, out, print_json, print_table
-from robotd.cli.verb import OK, Verb
+from robotd.cli.verb import Verb
 from robotd.config.edit import with_values
 from robotd.contract.modes import Mode
 from robotd.core.errors import ConfigError, MissionError, RobotdError
@@ -40,6 +41,9 @@ def _calibrating(
     def run(arguments: argparse.Namespace) -> int:
         if arguments.png is not None:
             require_plots("--png")
+        file = arguments.config or config.default_path()
+        if arguments.yes or arguments.config is not None:
+            config.load(file)  # before it drives for minutes: what was found must have a place
         with connect(arguments) as client:
             if client.status().mode != Mode.IDLE:
                 raise MissionError("the robot must be armed and idle first: robotctl arm")

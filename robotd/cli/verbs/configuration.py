@@ -5,8 +5,9 @@ import dataclasses
 from pathlib import Path
 
 from robotd import config
+from robotd.cli.exit_codes import BAD_CONFIG, OK
 from robotd.cli.show.terminal import complain, out, print_json
-from robotd.cli.verb import BAD_CONFIG, OK, Verb
+from robotd.cli.verb import Verb
 from robotd.core.errors import ConfigError
 
 

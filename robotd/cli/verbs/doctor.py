@@ -14,8 +14,9 @@ from serial.tools import list_ports
 
 import robotd
 from robotd import __version__, config
+from robotd.cli.exit_codes import FAILED, OK
 from robotd.cli.show.terminal import command_line, print_json, print_pairs
-from robotd.cli.verb import FAILED, OK, Verb
+from robotd.cli.verb import Verb
 from robotd.core.errors import ConfigError
 from robotd.grid import kernels
 

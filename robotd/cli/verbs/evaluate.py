@@ -12,6 +12,7 @@ from typing import Any
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from robotd import __version__, config
+from robotd.cli.exit_codes import INTERRUPTED, OK
 from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
 from robotd.cli.outputs import EVAL_LINES, PICTURES, STANDARD_OUTPUT, output_argument, writing
 from robotd.cli.pictures.plots_extra import require_plots
@@ -19,7 +20,7 @@ from robotd.cli.quantities import positive, whole, within
 from robotd.cli.show.evaluation_tables import print_parameters, print_report, print_summary
 from robotd.cli.show.terminal import err
 from robotd.cli.surveys import evaluate_surveys
-from robotd.cli.verb import INTERRUPTED, OK, Verb
+from robotd.cli.verb import Verb
 from robotd.core.errors import RecordingError
 from robotd.evaluation.division import Division
 from robotd.evaluation.job import Job, JobSettings, run

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robotd.cli.exact_inputs import Question, question
+from robotd.cli.exit_codes import OK
 from robotd.cli.outputs import PNG, output_argument
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import number, positive, whole
 from robotd.cli.show.exact_answers import say_smallest_error, say_where, say_why
-from robotd.cli.verb import OK, Verb
+from robotd.cli.verb import Verb
 from robotd.core.errors import RobotdError
 from robotd.exact.arrangement import Arrangement, at_least
 from robotd.exact.beams import Beam

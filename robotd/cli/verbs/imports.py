@@ -3,11 +3,12 @@
 import argparse
 from pathlib import Path
 
+from robotd.cli.exit_codes import OK
 from robotd.cli.logs import LOG_HELP, Reading, reading_arguments
 from robotd.cli.outputs import RECORDED_BUILDING, output_argument, write
 from robotd.cli.quantities import positive, whole
 from robotd.cli.show.terminal import command_line, out, print_json
-from robotd.cli.verb import OK, Verb
+from robotd.cli.verb import Verb
 from robotd.sim.buildings.building import RecordedBuilding, encode_recorded_building, select_stops
 
 

@@ -6,10 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robotd.cli.exit_codes import OK
 from robotd.cli.outputs import Kind, OutputPath, check, output_argument, write
 from robotd.cli.quantities import number, positive, whole
 from robotd.cli.show.terminal import complain, out, print_json
-from robotd.cli.verb import OK, Verb
+from robotd.cli.verb import Verb
 from robotd.cli.verbs.map_store import store_arguments, store_of
 from robotd.core.errors import MapError, RobotdError
 from robotd.maps.entry import MapEntry

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from robotd import config
+from robotd.cli.exit_codes import FAILED, OK
 from robotd.cli.outputs import PNG, output_argument
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import complain, out, print_json, print_table
-from robotd.cli.verb import FAILED, OK, Verb
+from robotd.cli.verb import Verb
 from robotd.core.errors import ConfigError
 from robotd.grid.comparison import MapComparison, compare_maps
 from robotd.maps.entry import MapEntry
@@ -22,6 +22,8 @@ _KINDS = ("free", "unknown", "occupied")
 
 def store_of(arguments: argparse.Namespace) -> MapStore:
     """Return the store that ``--maps`` or the configuration names."""
+    from robotd import config  # noqa: PLC0415  # it knows every dialect, and most verbs of maps ask a daemon
+
     if arguments.maps is not None:
         return MapStore(arguments.maps)
     file = arguments.config or config.default_path()

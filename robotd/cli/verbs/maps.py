@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.cli.connection import connect
-from robotd.cli.emulated import odometry_argument
+from robotd.cli.exit_codes import OK
 from robotd.cli.motion import carry_out, legs_argument, mission_verb
+from robotd.cli.odometry import odometry_argument
 from robotd.cli.outputs import PNG, output_argument
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import heading_of_deg, number, whole
 from robotd.cli.show.half_blocks import can_draw_blocks, coloured, plain, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
-from robotd.cli.verb import OK, Verb
+from robotd.cli.verb import Verb
 from robotd.cli.verbs import map_files, map_store
 from robotd.contract.answers import MapEntryInfo
 from robotd.contract.arguments import MapName
@@ -28,13 +29,14 @@ from robotd.core.clock import NS_PER_S
 from robotd.core.grid_bytes import grid_digest
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.grid.tables import NO_INFORMATION
-from robotd.sim.load import load_robot
-from robotd.sim.recorded_robot import OdometrySource
 
 
 def _start(arguments: argparse.Namespace) -> int:
     start, stops_m = arguments.start, tuple(map(tuple, arguments.stop))
     if arguments.world is not None:
+        from robotd.sim.load import load_robot  # noqa: PLC0415  # no other verb here needs a simulation
+        from robotd.sim.recorded_robot import OdometrySource  # noqa: PLC0415
+
         robot = load_robot(arguments.world, odometry=OdometrySource(arguments.odometry))
         start, stops_m = start or robot.start, stops_m or robot.stops_m
     return carry_out(arguments, MapStart.of(arguments.name, stops_m, start or IDENTITY, Legs(arguments.legs)))

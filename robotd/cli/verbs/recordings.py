@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robotd.cli.connection import connect
+from robotd.cli.exit_codes import FAILED, OK
 from robotd.cli.show.terminal import complain, out, print_json, print_pairs
-from robotd.cli.verb import FAILED, OK, Verb
+from robotd.cli.verb import Verb
 from robotd.core.clock import NS_PER_S
 from robotd.recording.entries import BytesEntry
 from robotd.recording.reader import Recording, read

@@ -2,8 +2,9 @@
 
 import argparse
 
+from robotd.cli.exit_codes import OK
 from robotd.cli.show.terminal import print_json
-from robotd.cli.verb import OK, Verb
+from robotd.cli.verb import Verb
 from robotd.contract.schema import wire_schema
 
 

@@ -8,10 +8,12 @@ from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
-from robotd.cli.emulated import config_text, odometry_argument, recorded_config_text, recorded_dialects, write_config
+from robotd.cli.emulated import config_text, recorded_config_text, recorded_dialects, write_config
+from robotd.cli.exit_codes import FAILED, OK
+from robotd.cli.odometry import odometry_argument
 from robotd.cli.outputs import LINKS, MADE_CONFIG, TRUTH_LINES, output_argument
 from robotd.cli.show.terminal import command_line, err, out, print_json, print_pairs
-from robotd.cli.verb import FAILED, OK, Verb
+from robotd.cli.verb import Verb
 from robotd.core.log import configure
 from robotd.recording.reader import read
 from robotd.sim.buildings.world import world_names

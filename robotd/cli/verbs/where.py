@@ -2,22 +2,27 @@
 
 import argparse
 from dataclasses import asdict
+from datetime import datetime
 
 from robotd.cli.connection import connect
+from robotd.cli.exit_codes import AMBIGUOUS, LOST, OK
 from robotd.cli.motion import Outcome, carry_out, legs_argument, mission_verb
 from robotd.cli.quantities import heading_of_deg, number
+from robotd.cli.show.quiet import Quiet
 from robotd.cli.show.terminal import out, print_json
 from robotd.cli.show.wording import as_json, estimate_in_words, in_words, odometry_in_words, region_in_words
-from robotd.cli.verb import AMBIGUOUS, LOST, OK, Verb
+from robotd.cli.verb import Verb
 from robotd.client.feed import Gap
 from robotd.client.mission_run import MissionEvent, final_estimate
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.missions import DriveTo, Legs, Localize, PriorHeading
 from robotd.contract.topics import Published, Topic
+from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RequestTimeout
 from robotd.core.pose import Odometry
 
+_NEWS = tuple(topic for topic in Topic if topic is not Topic.ODOMETRY)
 _PATIENCE_S = 3.0
 """How long to wait for what is published on joining, unless told otherwise."""
 
@@ -92,14 +97,24 @@ def _pose(arguments: argparse.Namespace) -> int:
 
 
 def _watch(arguments: argparse.Namespace) -> int:
-    with connect(arguments) as client, client.subscribe(*arguments.topic) as events:
-        client.hello()  # where there is no daemon, say so; one that goes away later may come back
+    with connect(arguments) as client, client.subscribe(*(arguments.topic or _NEWS)) as events:
+        offset_ns = client.hello().wall_offset_ns
+        quiet = None if arguments.topic else Quiet()
         for event in events:
+            if quiet is not None and not quiet.lets(event):
+                continue
             if arguments.json:
                 print_json({"event": "gap", **asdict(event)} if isinstance(event, Gap) else as_json(event))
             else:
-                out().print(_watched(event, raw=arguments.raw))
+                out().print(f"{_time_of(event, offset_ns)} {_watched(event, raw=arguments.raw)}")
     return OK
+
+
+def _time_of(event: Published | Gap, offset_ns: int) -> str:
+    """Return when it happened, as the clock on the wall says."""
+    if isinstance(event, Gap):
+        return " " * len("00:00:00.000")
+    return datetime.fromtimestamp((event.time_ns + offset_ns) / NS_PER_S).astimezone().strftime("%H:%M:%S.%f")[:-3]
 
 
 def _watched(event: Published | Gap, *, raw: bool) -> str:
@@ -113,7 +128,13 @@ def _gap_in_words(gap: Gap) -> str:
 
 
 def _topics(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("topic", nargs="*", metavar="TOPIC", type=_topic, help=f"of {', '.join(Topic)} (default: all)")
+    parser.add_argument(
+        "topic",
+        nargs="*",
+        metavar="TOPIC",
+        type=_topic,
+        help=f"of {', '.join(Topic)} (default: what is news)",
+    )
     parser.add_argument("--raw", action="store_true", help="with odometry, show what the encoders counted, too")
 
 

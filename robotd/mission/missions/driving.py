@@ -25,7 +25,7 @@ async def _drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: f
     here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
     tie = context.whereabouts.believed
     if tie is None:
-        raise MissionError("cannot drive on this map: the robot is not localized on it")
+        raise MissionError("cannot drive on this map: the robot is not localized on it; first: robotctl localize")
     start = tie.in_map(here.in_odom)
     waypoints_m = ((x_m, y_m),) if legs is Legs.STRAIGHT else await _planned(context, place, start, (x_m, y_m))
     # One tie for all legs: nothing looks round on the way, and what makes it doubted ends the mission.

@@ -82,7 +82,8 @@ def _headings(context: MissionContext, mission: Localize, here: Odometry) -> tup
     heading_rad = context.whereabouts.heading_of(here)
     if heading_rad is None:
         raise MissionError(
-            "the heading is unknown: odometry is not tied to this map; give heading_rad, or heading = unknown"
+            "the heading is unknown: odometry is not tied to this map; try all headings (--heading-unknown, in the API"
+            " heading = unknown), or say yours (--heading-deg, heading_rad)"
         )
     return settings.headings_near(heading_rad)
 

@@ -112,7 +112,9 @@ MISSION_ROWS = {row.request: row for row in _ROWS}
 def _place(context: MissionContext) -> MapInUse:
     place = context.whereabouts.map_in_use
     if place is None:
-        raise MissionError("no map is in use: make one, or load one")
+        raise MissionError(
+            "no map is in use: make one, with robotctl map start NAME, or load one, with robotctl map load NAME"
+        )
     return place
 
 

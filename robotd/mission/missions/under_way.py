@@ -91,10 +91,16 @@ class MissionUnderWay:
         row = MISSION_ROWS[type(mission)]
         # The table refuses it as well, but does not know the next step.
         if self._current.mode is Mode.DISARMED:
-            raise MissionError(f"cannot {mission.kind}: the robot is disarmed; arm it first")
+            raise MissionError(
+                f"cannot {mission.cmd}: the robot is disarmed ({self._current.reason}, {self._current.age_in_words}"
+                " ago); arm it first, with: robotctl arm"
+            )
         self._current.require(Occasion.START, f"start {mission.doing}")
         if row.needs_base and self._context.robot.drive not in self._arming.armed:
-            raise MissionError(f"cannot {mission.kind}: the drive is not armed; it can only localize where it stands")
+            raise MissionError(
+                f"cannot {mission.cmd}: the drive is not armed, and the robot can only look where it stands;"
+                " plug it in, then: robotctl arm"
+            )
         self._number += 1
         number = self._number
         report = Reporter(number, mission.kind, row.stops(mission), self._context.publish, self._advised)

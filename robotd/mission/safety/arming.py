@@ -63,9 +63,9 @@ class Arming:
         # The base is the first of them.
         devices = self._robot.devices if self._robot.has_base else self._robot.devices[1:]
         if any(device.name in absent for device in devices):
-            raise MissionError(f"cannot arm: {', '.join(absent)} absent")
+            raise MissionError(f"cannot arm: {', '.join(absent)} absent; what is wrong with it: robotctl status")
         if faults := self._faults():
-            raise MissionError(f"cannot arm: {'; '.join(faults)}: clear first")
+            raise MissionError(f"cannot arm: {'; '.join(faults)}: clear first, with: robotctl clear")
         return devices
 
     async def arm_these(self, devices: tuple[Device, ...]) -> None:
@@ -101,5 +101,5 @@ class Arming:
             if device.status.link is LinkState.READY:
                 await device.clear_faults()
         if faults := self._faults():
-            raise MissionError(f"faults remain: {'; '.join(faults)}")
+            raise MissionError(f"faults remain: {'; '.join(faults)}; mend that, then: robotctl clear")
         self._current.apply(Occasion.CLEAR, "faults cleared")

@@ -11,7 +11,7 @@ from functools import cache, partial
 from pathlib import Path
 from types import FrameType
 
-from robotd.cli.verb import FAILED, OK
+from robotd.cli.exit_codes import FAILED, OK
 from robotd.cli.verbs.recordings import VERBS
 from robotd.core.errors import RobotdError
 from tests.studies.fuzz.crafting import CHANGES, contain, crafted, double, keep, set_times, splice

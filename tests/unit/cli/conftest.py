@@ -10,7 +10,7 @@ import pytest
 
 from robotd.client.feed import Gap
 from robotd.client.mission_run import MissionEvent
-from robotd.contract.answers import MapEntryInfo
+from robotd.contract.answers import HelloResult, MapEntryInfo
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.contract.events import MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
@@ -96,9 +96,10 @@ class FakeClient:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.asked.append("close")
 
-    def hello(self) -> None:
+    def hello(self) -> HelloResult:
         if isinstance(self.raises, Exception):
             raise self.raises
+        return HelloResult((1,), "0.9", "s", 0.5, 2, 0)
 
     def status(self) -> Status:
         if isinstance(self.raises, Exception):

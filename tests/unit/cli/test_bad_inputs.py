@@ -131,6 +131,16 @@ def command(name: str, bad: Path, directory: Path) -> list[str]:
             "turn": ["0"],
             "look": ["0", "0"],
         }.get(verb, [])
+    others += {
+        "map copy": ["hall", "other"],
+        "map rename": ["hall", "other"],
+        "map delete": ["hall"],
+        "map compare": ["hall", "other"],
+    }.get(verb, [])
+    if verb == "calibrate range":
+        others += ["--wall", "1.5"]
+    if verb.startswith("calibrate"):
+        others += ["--yes"]
     given = [argument, str(bad)] if argument.startswith("--") else [str(bad)]
     before = others if name == "exact readings" else []
     return [*verb.split(), *before, *given, *(others if not before else [])]

@@ -81,10 +81,10 @@ def test_somebody_is_asked_before_it_moves_and_before_it_writes(
 
 
 def test_a_robot_that_is_not_armed_is_not_calibrated(
-    robot: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    robot: Any, file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(robot, "status", lambda: replace(STATUS, mode="disarmed"))
-    assert main(["calibrate", "heading", "--yes"]) == 1
+    assert main(["calibrate", "heading", "--yes", "--config", str(file)]) == 1
     assert "robotctl arm" in capsys.readouterr().err
 
 
@@ -93,12 +93,12 @@ def test_json_is_what_was_found(robot: Any, file: Path, capsys: pytest.CaptureFi
     assert [one["key"] for one in json.loads(capsys.readouterr().out)] == ["counts_per_m", "counts_per_rad"]
 
 
-def test_an_interrupt_stops_the_robot(robot: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupt_stops_the_robot(robot: Any, file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object) -> Calibration:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("robotd.cli.verbs.calibrate.guided", interrupted)
-    assert main(["calibrate", "head", "--yes"]) == 130
+    assert main(["calibrate", "head", "--yes", "--config", str(file)]) == 130
     assert ("stop", "interrupted at the command line") in robot.asked
 
 

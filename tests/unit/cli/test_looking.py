@@ -1,6 +1,8 @@
 """Verbs that only look: pose, watch, maps, recordings."""
 
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +12,9 @@ import pytest
 from robotd.cli.main import main
 from robotd.cli.show.half_blocks import coloured, plain, shrink
 from robotd.client.feed import Gap
+from robotd.contract.estimate import PoseState
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
+from tests.unit.cli.conftest import ESTIMATE
 
 
 def test_a_pose_is_its_state_and_all_its_regions(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
@@ -31,7 +35,7 @@ def test_what_is_watched_is_printed_as_it_comes(client: Any, capsys: pytest.Capt
     client.published = [*client.mission_events, client.status(), client.map_show(None, None), Gap("pose", 3)]
     assert main(["watch", "pose", "mission"]) == 0
     assert ("subscribe", "pose", "mission") in client.asked
-    assert capsys.readouterr().out.splitlines() == [
+    assert [line[13:] for line in capsys.readouterr().out.splitlines()] == [
         "localize: started",
         "150 of 300 readings: 120 hits, 20 misses, 10 rejected",
         "ambiguous: 2 regions (140 of 150 readings explained, so far)",
@@ -43,7 +47,7 @@ def test_what_is_watched_is_printed_as_it_comes(client: Any, capsys: pytest.Capt
         "pose: 3 messages missed",
     ]
     client.published = [client.map_show(None, None), Gap("pose", None)]
-    assert main(["watch", "--json"]) == 0
+    assert main(["watch", "map", "pose", "--json"]) == 0
     changed, gap = map(json.loads, capsys.readouterr().out.splitlines())
     assert (changed["event"], changed["cells"], changed["spec"]["shape"]) == ("map_changed", 36, [6, 6])
     assert gap == {"event": "gap", "topic": "pose", "missed": None}
@@ -56,6 +60,28 @@ def test_counts_are_shown_raw(client: Any, capsys: pytest.CaptureFixture[str]) -
     assert first.endswith("0.00 m/s; counted 27300 of translation, -5 of rotation")
     assert second.endswith("counted nothing that it tells")
     assert main(["watch", "odometry"]) == 0
+
+
+def test_who_watches_hears_what_is_news_and_when(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    moved = replace(ESTIMATE, state=PoseState.PREDICTED)
+    status = client.status()
+    client.published = [
+        *client.mission_events,
+        moved,
+        status,
+        replace(status, time_ns=9),
+        Odometry(1, IDENTITY, STANDSTILL),
+    ]
+    assert main(["watch"]) == 0
+    assert ("subscribe", "odometry") not in client.asked
+    lines = capsys.readouterr().out.splitlines()
+    assert [line[13:] for line in lines] == [
+        "localize: started",
+        "localized: x 1.000 m, y 2.000 m, heading 0.0 deg (280 of 300 readings explained)",
+        "localize: done, localized",
+        "idle: armed by request",
+    ]
+    assert all(re.match(r"\d\d:\d\d:\d\d\.\d\d\d ", line) for line in lines)
 
 
 def test_maps_are_saved_loaded_and_listed(client: Any, capsys: pytest.CaptureFixture[str]) -> None:

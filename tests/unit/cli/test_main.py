@@ -1,10 +1,13 @@
 """The command line as such: every verb explains itself, and every failure is one line and an exit code."""
 
+import contextlib
 import json
 import re
 import shlex
+import socket
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -14,8 +17,10 @@ import pytest
 
 from robotd import __version__
 from robotd.cli.main import WORDS, build_parser, main, verbs_of
+from robotd.cli.odometry import SOURCES
 from robotd.cli.verb import Verb
 from robotd.core.errors import RequestTimeout, ServerError
+from robotd.sim.recorded_robot import OdometrySource
 
 VERBS = [verb for word in WORDS for verb in verbs_of(word)]
 
@@ -57,7 +62,7 @@ except SystemExit:
     print(*(name for name in sys.modules if name.startswith({unwanted!r})), file=sys.stderr)
 """
         done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-        assert (done.stderr.split(), "Usage: robotctl" in done.stdout) == ([], True)
+        assert (done.stderr.split(), "usage: robotctl" in done.stdout) == ([], True)
 
 
 def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
@@ -69,7 +74,6 @@ def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) 
 @pytest.mark.parametrize(
     "words",
     [
-        [],
         ["jump"],
         ["map"],
         ["map", "show", "--version", "new"],
@@ -127,13 +131,56 @@ def test_who_is_not_in_the_group_is_told_so(
     monkeypatch.setattr("os.access", lambda path, mode: False)
     assert main(["status", "--runtime-dir", str(tmp_path)]) == 1
     assert capsys.readouterr().err == (
-        f"robotctl: {tmp_path}: permission denied: only members of its group may talk to robotd\n"
+        f"robotctl: {tmp_path}: permission denied: only members of its group may talk to robotd;"
+        " join it, with: sudo usermod -aG robotd $USER, then log in again\n"
     )
 
 
-def test_silence_is_told_with_where_a_daemon_was_sought(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["arm", "--runtime-dir", str(tmp_path), "--timeout", "0.01"]) == 1
-    assert capsys.readouterr().err == f"robotctl: arm: no answer from robotd in {tmp_path}\n"
+@pytest.mark.parametrize("words", [["arm"], ["map", "list"], ["watch"], ["drive", "1"], ["calibrate", "heading"]])
+@pytest.mark.parametrize("is_stale", [False, True])
+def test_where_there_is_no_daemon_that_is_said_at_once_with_the_next_command(
+    words: list[str], is_stale: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if is_stale:  # a daemon that was killed leaves its sockets behind
+        with contextlib.closing(socket.socket(socket.AF_UNIX)) as left:
+            left.bind(str(tmp_path / "commands.sock"))
+    began_s = time.process_time()
+    assert main([*words, "--runtime-dir", str(tmp_path)]) == 1
+    assert time.process_time() - began_s < 1.0
+    said = capsys.readouterr().err
+    assert said.startswith(f"robotctl: no daemon in {tmp_path} ({'connection refused' if is_stale else 'there is no'}")
+    assert "robotd --config FILE" in said
+    assert "ROBOTD_RUNTIME_DIR" in said
+
+
+def test_without_a_verb_it_explains_itself(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    assert "map" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"), [(["lokalize"], "localize"), (["map", "lst"], "list"), (["stopp"], "stop")]
+)
+def test_a_slip_is_told_with_what_was_meant(words: list[str], meant: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(words)
+    assert f"did you mean {meant}?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [(ServerError("refused", "not armed"), "refused"), (RequestTimeout("no answer"), "request_timeout")],
+)
+def test_errors_for_programs_are_objects(
+    client: Any, error: Exception, code: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    client.raises = error
+    assert main(["status", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out) == {"code": code, "message": str(error)}
+
+
+def test_the_words_for_odometry_are_those_of_the_simulation() -> None:
+    assert tuple(OdometrySource) == SOURCES
 
 
 def test_what_others_wrote_is_no_markup(

@@ -332,7 +332,7 @@ async def test_without_a_base_it_can_be_armed_to_look_but_not_to_move() -> None:
         assert (r.mode, r.reason) == (Mode.IDLE, "armed without a base: it can only look")
         assert [device.status.armed for device in r.devices] == [False, True, True]
         for mission in (DriveTo(0.1, 0.0), MapStart("m", ())):
-            with pytest.raises(MissionError, match="the drive is not armed; it can only localize where it stands"):
+            with pytest.raises(MissionError, match="the robot can only look where it stands"):
                 r.supervisor.mission.start(mission, 10.0)
         r.drive.change(link=LinkState.CONNECTING, detail="line open")
         await turns()
