@@ -108,6 +108,7 @@ def _plan(arguments: argparse.Namespace) -> _Plan:
     alphas = {"raise_alpha": arguments.raise_alpha, "lower_alpha": arguments.lower_alpha}
     grids = tuple(GridSettings(resolution_m=side_m, rows=1, cols=1, **alphas) for side_m in arguments.resolution)
     reach = Reach(arguments.range_max, min(arguments.clear, arguments.range_max))
+    # Threads or processes, not both: they would take each other the same processors.
     threads = cores() if arguments.workers == 1 else 1
     job = JobSettings(reach, read.localization, read.judgement, read.error_model, threads)
     protocols = tuple(_protocol(arguments, word) for word in arguments.protocol or ["interleaved"])

@@ -107,6 +107,7 @@ def view_from(stop: Stop, in_stop: Pose2) -> View:
     y_m = stop.laser.y_m + ranges_m * np.sin(angles_rad) - in_stop.y_m
     distances_m, directions_rad = np.hypot(x_m, y_m), np.arctan2(y_m, x_m)
     missed = np.array(stop.missed, dtype=np.intp)
+    # Where nothing came back there is no end to carry over: what is left is the direction.
     distances_m[missed], directions_rad[missed] = np.inf, angles_rad[missed]
     seen = ~np.isnan(distances_m)
     bearings_rad = np.mod(directions_rad[seen] - in_stop.heading_rad + math.pi, math.tau) - math.pi
@@ -129,6 +130,7 @@ def select_stops(
     """
     if keep_out_every == 1:
         raise ValueError("keep_out_every 1 keeps every stop out of the map: there would be no map")
+    # Where the robot begins, so it must be on the map.
     chosen = [0]
     travelled_m = 0.0
     for index in range(1, len(log.scans)):
