@@ -42,6 +42,9 @@ static void clip(beam *b, double samples, int32_t rows, int32_t cols)
 {
     b->first = 0;
     b->last = samples < 9e15 ? (int64_t)samples : (int64_t)9e15;
+    /* Most beams are inside from end to end, and bounds take divisions. */
+    if (b->first < b->last && is_inside(b, b->first, rows, cols) && is_inside(b, b->last - 1, rows, cols))
+        return;
     bound(b, b->row, b->row_step, rows);
     bound(b, b->col, b->col_step, cols);
     while (b->first < b->last && !is_inside(b, b->first, rows, cols))
@@ -77,13 +80,20 @@ static inline double in_cells(double at_m, double origin_m, double resolution_m)
     return (at_m - origin_m) / resolution_m;
 }
 
+/* The cell of a point, -1 outside the grid. */
+static int64_t end_of(const insert_job *job, double x_m, double y_m)
+{
+    const double row = in_cells(y_m, job->origin_y_m, job->resolution_m);
+    const double col = in_cells(x_m, job->origin_x_m, job->resolution_m);
+    const int is_inside = row >= 0.0 && row < (double)job->rows && col >= 0.0 && col < (double)job->cols;
+    return is_inside ? (int64_t)row * job->cols + (int64_t)col : -1;
+}
+
 static void draw(const insert_job *job, int32_t i)
 {
     const double *r = job->readings + 5 * (size_t)i, sine = job->ahead[i], cosine = job->ahead[job->count + i];
     const double x_m = job->robot_x_m + job->robot_cos * r[2] - job->robot_sin * r[3];
     const double y_m = job->robot_y_m + job->robot_sin * r[2] + job->robot_cos * r[3];
-    const double end_row = in_cells(y_m + r[1] * sine, job->origin_y_m, job->resolution_m);
-    const double end_col = in_cells(x_m + r[1] * cosine, job->origin_x_m, job->resolution_m);
     const direction ahead = direction_of(sine, cosine);
     beam *b = (beam *)job->beams + i;
     b->row = in_cells(y_m, job->origin_y_m, job->resolution_m);
@@ -91,9 +101,7 @@ static void draw(const insert_job *job, int32_t i)
     b->row_step = ahead.step[0];
     b->col_step = ahead.step[1];
     clip(b, ceil(fmax(r[1] / job->resolution_m, 0.0) * ahead.dominant), job->rows, job->cols);
-    const int ends_inside =
-        end_row >= 0.0 && end_row < (double)job->rows && end_col >= 0.0 && end_col < (double)job->cols;
-    job->hits[i] = ends_inside && !(r[4] > 0.0) ? (int64_t)end_row * job->cols + (int64_t)end_col : -1;
+    job->hits[i] = r[4] > 0.0 ? -1 : end_of(job, x_m + r[1] * cosine, y_m + r[1] * sine);
 }
 
 /* Lower the cells that no beam has met, of those that a beam runs through. */
