@@ -35,7 +35,7 @@ def _start(arguments: argparse.Namespace) -> int:
     start, stops_m = arguments.start, tuple(map(tuple, arguments.stop))
     if arguments.world is not None:
         from robotd.sim.load import load_robot  # noqa: PLC0415  # no other verb here needs a simulation
-        from robotd.sim.recorded_robot import OdometrySource  # noqa: PLC0415
+        from robotd.sim.recorded_robot import OdometrySource  # noqa: PLC0415  # as above
 
         robot = load_robot(arguments.world, odometry=OdometrySource(arguments.odometry))
         start, stops_m = start or robot.start, stops_m or robot.stops_m
