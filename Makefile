@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real demo-busy test bench bench-peers paper conservative exact faults replay-many liars fuzz safety stops lag worlds firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help demo demo-real demo-busy test bench bench-peers paper conservative exact faults replay-many liars fuzz safety stops heart lag worlds firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -73,6 +73,9 @@ stops: .venv/.dev  ## Whether the robot comes to rest whatever ends the daemon, 
 
 worlds: .venv/.dev  ## Whether whole daemons map hard worlds and find themselves in them, 20 robots in each: a table (ten minutes; make worlds SEEDS=3 ONLY=hall)
 	@$(BIN)/python -m tests.studies.worlds.run $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only $(ONLY))
+
+heart: .venv/.dev  ## Whether a stop is on the wires in time, whatever clients do and whatever becomes of the front: a table (an hour; TRIALS=20)
+	@$(BIN)/python -m tests.studies.heart.run $(if $(TRIALS),--trials $(TRIALS) --endings $(TRIALS)) $(if $(ONLY),--only "$(ONLY)")
 
 lag: .venv/.dev  ## How late the event loop is while the daemon works hard, quiet and beside busy programs: writes docs/benchmarks/loop-lag.md
 	@$(BIN)/python -m tests.studies.lag.run

@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 
 from robotd.app.daemon import run
 from robotd.config import load
+from robotd.core.log import configure
 from robotd.localization.localizer import Localizer
 from tests.studies.lag.samples import Samples
 from tests.studies.lag.workload import large_estimate
@@ -61,4 +62,5 @@ async def _main(samples_file: Path, config_file: Path) -> None:
 if __name__ == "__main__":
     if sys.argv[1] == REGIONS:
         _answer_with_regions()
+    configure("error")  # the table is what people read
     asyncio.run(_main(Path(sys.argv[2]), Path(sys.argv[3])))
