@@ -21,18 +21,21 @@ from robotd.contract.envelope import (
 )
 from robotd.contract.events import MapChanged
 from robotd.contract.refusal import as_refusal
+from robotd.contract.request import Request
 from robotd.contract.requests import Disarm, Renew, Stop
 from robotd.contract.stopping import STOPPING
 from robotd.core.errors import RobotdError, ServerError
 from robotd.server.handlers import Handlers
 from robotd.server.letters import Letter
-from robotd.server.rates import ALTOGETHER_HZ, PER_CLIENT_HZ, Rates
+from robotd.server.rates import ALTOGETHER_HZ, PER_CLIENT_HZ, Often, Rates
 from robotd.server.replies import Asker, Replies
 from robotd.server.request_log import RequestLog
 from robotd.server.under_way import UnderWay
 
 _OVERTAKEN = ServerError(ErrorCode.REFUSED, "overtaken by a stop")
 _TOO_OFTEN = f"a client may ask {PER_CLIENT_HZ:g} times a second, all of them together {ALTOGETHER_HZ:g} times"
+_AT_A_TURN = 8
+"""Requests that are only refused, before others of the loop have their turn."""
 _UNREADABLE = Stop("stopped by a client, in a request that is not well made")
 
 log = logging.getLogger(__name__)
@@ -67,25 +70,30 @@ class Commands:
         """Serve until cancelled; requests under way are cancelled with it."""
         async with asyncio.TaskGroup() as group:
             while True:
-                await self._take(await self._letters.receive(), group)
+                for _ in range(_AT_A_TURN):
+                    if self._take(await self._letters.receive(), group):
+                        break
                 await asyncio.sleep(0)  # a flood of requests must not keep the loop from everything else
 
-    async def _take(self, letter: Letter, group: asyncio.TaskGroup) -> None:
+    def _take(self, letter: Letter, group: asyncio.TaskGroup) -> bool:
+        """Take a request, and return whether more is to be done than to answer it."""
         one_frame = len(letter.frames) == 1
         numbered = decode_request(letter.frames[0], self._max_bytes) if one_frame else refuse_frames(letter.frames)
         if isinstance(numbered, BadRequest):
             if numbered.means_stop:
                 self._obey(_UNREADABLE, letter)
             self._letters.answer(letter.route, encode_error(numbered.id, numbered.error))
-            return
+            return False
         if is_stop := isinstance(numbered.request, STOPPING):
             self._obey(numbered.request, letter)
         reply = self._answer_at_once(numbered, letter, is_stop=is_stop)
         if reply is not None:
             self._letters.answer(letter.route, reply)
+            return False
         # A repeat of what is under way is served by the one reply to come; a stop is obeyed and waited for each time.
-        elif is_stop or not self._replies.is_under_way((letter.identity, numbered.id)):
+        if is_stop or not self._replies.is_under_way((letter.identity, numbered.id)):
             self._begin(numbered, letter, group)
+        return True
 
     def _obey(self, stop: Stop | Disarm, letter: Letter) -> None:
         """Stop the robot, whatever is to be answered."""
@@ -107,13 +115,20 @@ class Commands:
         given = None if is_stop else self._replies.given(asker)
         if given is not None:
             return given
-        no_room = self._under_way.no_room(letter.identity, numbered.request)
-        if is_stop:  # it was obeyed; without room only nobody waits for the mission's last word
-            return None if no_room is None else encode_result(numbered.id, Done())
-        renews = isinstance(numbered.request, Renew)
-        if no_room is None and not self._rates.allow(letter.identity, only_its_own=renews):
-            no_room = _TOO_OFTEN
-        return None if no_room is None else encode_error(numbered.id, ServerError(ErrorCode.BUSY, no_room))
+        no_room = self._no_room(letter.identity, numbered.request, is_stop=is_stop)
+        if no_room is None:
+            return None
+        if is_stop:  # it was obeyed; only nobody waits for the mission's last word
+            return encode_result(numbered.id, Done())
+        return encode_error(numbered.id, ServerError(ErrorCode.BUSY, no_room))
+
+    def _no_room(self, identity: bytes, request: Request[Any], *, is_stop: bool) -> str | None:
+        if is_stop:
+            return self._under_way.no_room(identity, request, seldom=False)
+        often = self._rates.asked(identity, only_its_own=isinstance(request, Renew))
+        if often is Often.TOO_OFTEN:
+            return _TOO_OFTEN
+        return self._under_way.no_room(identity, request, seldom=often is Often.SELDOM)
 
     def _begin(self, numbered: NumberedRequest, letter: Letter, group: asyncio.TaskGroup) -> None:
         self._replies.begin((letter.identity, numbered.id))

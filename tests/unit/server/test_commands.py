@@ -216,12 +216,12 @@ async def test_too_many_at_a_time_are_refused_as_busy_but_a_stop_is_not(make_con
     control = make_control()
     control.arming.clear()
     async with served(control) as socket:
-        for number in range(6):
-            socket.ask(number, Arm(), b"AABBCC"[number : number + 1])
-        socket.ask(9, Stop("enough"))
+        for number in range(10):
+            socket.ask(number, Arm(), b"AABBCCDDEE"[number : number + 1])
+        socket.ask(19, Stop("enough"))
         await asyncio.sleep(1)
-        assert control.calls == ["arm"] * 4 + ["stop: enough"]
-        assert socket.outcome == {4: "busy", 5: "busy", 9: "ok"} | dict.fromkeys(range(4), "refused")
+        assert control.calls == ["arm"] * 8 + ["stop: enough"]
+        assert socket.outcome == {8: "busy", 9: "busy", 19: "ok"} | dict.fromkeys(range(8), "refused")
 
 
 async def test_slow_requests_of_one_client_leave_room_for_the_others_and_for_their_renewals(make_control: Any) -> None:
