@@ -14,6 +14,7 @@ from serial.tools import list_ports
 
 import robotd
 from robotd import __version__, config
+from robotd.cli.checkup import Check, checks
 from robotd.cli.exit_codes import FAILED, OK
 from robotd.cli.show.terminal import command_line, print_json, print_pairs
 from robotd.cli.verb import Verb
@@ -35,7 +36,7 @@ class ConfigFound:
     def __str__(self) -> str:
         """Return one line, or one for each problem."""
         if not self.found:
-            return f"{self.file}: not there; robotd needs one, or --config"
+            return f"{self.file}: not there; make one, with: robotctl config init {self.file}"
         return "\n".join(self.problems) or f"{self.file}: good"
 
 
@@ -74,18 +75,23 @@ class Findings:
     """Whether pictures can be drawn."""
     serial_ports: tuple[str, ...]
     config: ConfigFound
+    checks: tuple[Check, ...]
+    """What a daemon with this configuration needs of this machine; none where the configuration is not good."""
 
     def lines(self) -> list[tuple[str, object]]:
         """Return names and values for people."""
         plots = "yes" if self.plots else "no: pip install 'robotd[plots]'"
         ports = "\n".join(self.serial_ports) or "none to be seen"
         own = {"plots": plots, "serial ports": ports}
+        checked: dict[str, object] = {check.what: check for check in self.checks}
         shown = {field.name.replace("_", " "): getattr(self, field.name) for field in dataclasses.fields(self)}
-        return list((shown | own).items())
+        del shown["checks"]
+        return list((shown | own | checked).items())
 
 
-def examine() -> Findings:
-    """Look at this installation and this machine."""
+def examine(file: Path | None = None) -> Findings:
+    """Look at this installation and this machine, as a daemon with this configuration needs it."""
+    found = _config(file or config.default_path())
     return Findings(
         robotd=__version__,
         python=f"{platform.python_version()} ({platform.machine()})",
@@ -97,7 +103,8 @@ def examine() -> Findings:
         # Looked for, not imported: to load it takes longer than all the rest of this.
         plots=importlib.util.find_spec("matplotlib") is not None,
         serial_ports=tuple(sorted(f"{port.device} {port.description}" for port in list_ports.comports())),
-        config=_config(),
+        config=found,
+        checks=() if found.problems or not found.found else tuple(checks(config.load(Path(found.file)))),
     )
 
 
@@ -112,8 +119,7 @@ def _compiled(module: str, source: Path) -> CompiledFound:
     return CompiledFound(module, found=True, newer_source=str(changed[0]) if changed else None)
 
 
-def _config() -> ConfigFound:
-    file = config.default_path()
+def _config(file: Path) -> ConfigFound:
     if not file.exists():
         return ConfigFound(str(file), found=False, problems=())
     try:
@@ -124,21 +130,29 @@ def _config() -> ConfigFound:
 
 
 def _doctor(arguments: argparse.Namespace) -> int:
-    findings = examine()
+    findings = examine(arguments.file)
     if arguments.json:
         document: dict[str, Any] = dataclasses.asdict(findings)
         print_json(document)
     else:
         print_pairs(findings.lines())
     is_stale = findings.compiled_kernels.newer_source or findings.compiled_boards.newer_source
-    return FAILED if findings.config.problems or is_stale else OK
+    is_ill = any(not check.is_well for check in findings.checks)
+    return FAILED if findings.config.problems or is_stale or is_ill else OK
+
+
+def _file(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "file", nargs="?", type=Path, help="a robotd.toml (default: $ROBOTD_CONFIG, or /etc/robotd/robotd.toml)"
+    )
 
 
 VERBS = (
     Verb(
         "doctor",
         "say what this installation consists of, which kernels it uses and why, and what it can see",
-        "robotctl doctor",
+        "robotctl doctor /etc/robotd/robotd.toml",
         _doctor,
+        _file,
     ),
 )

@@ -1,0 +1,106 @@
+"""What ``doctor`` looks at, and what it says to do; and the configuration that ``config init`` makes."""
+
+import json
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from robotd.cli.checkup import checks
+from robotd.cli.main import main
+from robotd.config import Config, load
+
+
+@pytest.fixture
+def terminal() -> Iterator[str]:
+    """A port that is there."""
+    ours, theirs = os.openpty()
+    yield os.ttyname(theirs)
+    os.close(ours)
+    os.close(theirs)
+
+
+def config_of(tmp_path: Path, **ports: str) -> Config:
+    config = Config()
+    return replace(
+        config,
+        server=replace(config.server, runtime_dir=str(tmp_path / "run")),
+        maps=replace(config.maps, dir=str(tmp_path / "maps")),
+        recording=replace(config.recording, dir=str(tmp_path / "recordings")),
+        **{device: replace(config.devices[device], port=port) for device, port in ports.items()},  # type: ignore[arg-type]  # each its own settings
+    )
+
+
+def test_each_finding_ends_in_its_remedy(tmp_path: Path, terminal: str) -> None:
+    file = tmp_path / "file"
+    file.touch()
+    found = {check.what: check for check in checks(config_of(tmp_path, drive=terminal, rangefinder=str(file)))}
+    assert str(found["pantilt"]).startswith("/dev/robotd/pantilt: no such file or directory: plug it in")
+    assert "no serial port: name one in rangefinder.port" in str(found["rangefinder"])
+    assert str(found["daemon"]).endswith("robotd --config FILE, or systemctl start robotd")
+    assert found["drive"].what == "drive"
+    assert found["maps"].is_well
+    assert found["clock"].is_well
+
+
+def test_what_keeps_a_daemon_from_its_ports_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robotd.cli.checkup._name", lambda process: "ModemManager")
+    assert any("systemctl disable --now ModemManager" in str(check) for check in checks(config_of(tmp_path)))
+    monkeypatch.setattr("robotd.cli.checkup.shutil.disk_usage", lambda path: _Full())
+    assert "make room" in str(next(check for check in checks(config_of(tmp_path)) if check.what == "maps"))
+
+
+class _Full:
+    free = 1000
+
+
+def test_doctor_fails_where_something_is_to_be_done(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "robotd.toml"
+    devices = ["--drive", "/dev/none", "--pantilt", "tcp://head:1", "--rangefinder", "tcp://laser:2,lw20"]
+    places = ["--set", "server.runtime_dir=run", "--set", "drive.counts_per_m=25000.0"]
+    assert main(["config", "init", str(file), *devices, *places]) == 0
+    config = load(file)
+    assert (config.drive.counts_per_m, config.rangefinder.dialect) == (25_000.0, "lw20")
+    assert config.server.runtime_dir == str(tmp_path / "run")
+    capsys.readouterr()
+    assert main(["doctor", str(file), "--json"]) == 1
+    found = {one["what"]: one for one in json.loads(capsys.readouterr().out)["checks"]}
+    assert found["drive"]["remedy"]
+    assert not found["pantilt"]["remedy"]
+
+
+def test_what_is_not_said_is_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    answers = iter(["/dev/a\n", "rflex\n", "/dev/b\n", "\n", "/dev/c\n", "tf-luna\n"])
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True)
+    monkeypatch.setattr("sys.stdin.readline", lambda: next(answers))
+    file = tmp_path / "robotd.toml"
+    assert main(["config", "init", str(file)]) == 0
+    config = load(file)
+    assert [(one.port, one.dialect) for one in config.devices.values()] == [
+        ("/dev/a", "rflex"),
+        ("/dev/b", "board"),
+        ("/dev/c", "tf-luna"),
+    ]
+
+
+def test_where_nobody_can_be_asked_the_option_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["config", "init", str(tmp_path / "robotd.toml")]) == 1
+    assert "--drive PORT[,DIALECT]" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["drive", "drive.port", "=1", ".a=1"])
+def test_a_setting_that_is_none_is_wrong_usage(text: str, tmp_path: Path) -> None:
+    with pytest.raises(SystemExit):
+        main(["config", "init", str(tmp_path / "x.toml"), "--set", text])
+
+
+def test_without_a_file_the_defaults_are_shown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROBOTD_CONFIG", str(tmp_path / "none.toml"))
+    assert main(["config", "show"]) == 0
+    assert "counts_per_m = 27300.0" in capsys.readouterr().out
