@@ -3,12 +3,14 @@
 import asyncio
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from firmware_proto.common import Fault
 from robotd.app.stalls import keep_going
+from robotd.config import Config
 from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import DriveStraight, DriveTo, Legs, MapStart, Mission, Turn
 from robotd.contract.modes import Mode
@@ -16,6 +18,7 @@ from robotd.contract.requests import Arm, RecordStart, RecordStop, Stop
 from robotd.core.angles import wrap_rad
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, Stall
 from robotd.sim.buildings.world import load_world
@@ -27,13 +30,14 @@ from tests.support.replayed import replayed
 pytestmark = pytest.mark.slow
 
 STALL_S = 0.4
+QUICK = replace(Config(), sweep=SweepSettings(readings=24))
 
 
 @asynccontextmanager
 async def going(live: Live, directory: Path) -> AsyncIterator[Living]:
     """Yield a robot that lets held missions go on, and check that its recording replays."""
     file = directory / "recordings" / "held.mcap"
-    async with live(SimulatedRobot(load_world("office"), seed=4), armed=False) as it:
+    async with live(SimulatedRobot(load_world("office"), seed=4), QUICK, armed=False) as it:
         await it.daemon.control.perform(RecordStart(str(file)))
         await it.daemon.control.perform(Arm())
         task = asyncio.create_task(keep_going(it.daemon, DrivingSettings().silence_s))

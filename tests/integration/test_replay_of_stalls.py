@@ -23,7 +23,7 @@ pytestmark = pytest.mark.slow
 
 async def stall_in(state: str, directory: Path) -> None:
     """Record a session that stalls in a state, is stalled again, and is cleared or armed afterwards."""
-    async with bench(directory, Dialects()) as it:
+    async with bench(directory, Dialects(), readings=24) as it:
         await STATES[state](it)
         for pause_s in (0.013, 0.4):
             await asyncio.sleep(pause_s)

@@ -35,6 +35,8 @@ DEADMAN_S = 0.4
 """Its set-points last so long, and none comes while no odometry does."""
 LOST_S = 1.1
 PATIENT_S = 10.0
+READINGS = 12
+"""A sweep that lasts longer than a silence."""
 
 
 class NoOdometry(Fault):
@@ -65,7 +67,7 @@ def _is_set_point(frame: bytes) -> bool:
 @asynccontextmanager
 async def mapping(directory: Path, silence_s: float = 1.0) -> AsyncIterator[Bench]:
     """Yield a robot that makes a map with two stops, and check that its recording replays."""
-    async with bench(directory, Dialects(), silence_s=silence_s) as it:
+    async with bench(directory, Dialects(), readings=READINGS, silence_s=silence_s) as it:
         await it.daemon.control.perform(Arm())
         it.start(MapStart.of("laboratory", it.robot.stops_m[:1], it.robot.start, Legs.STRAIGHT))
         yield it
