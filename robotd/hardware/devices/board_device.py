@@ -5,6 +5,7 @@ from typing import ClassVar
 from firmware_proto.common import Arm, BoardKind, BoardState, BoardStatus, Clear, Fault
 from firmware_proto.schema import Message
 from robotd.contract.device_status import LinkState
+from robotd.core.attention import attention
 from robotd.core.errors import DeviceError, TransportError
 from robotd.hardware.devices.credible import IMPLAUSIBLE, Times
 from robotd.hardware.devices.device import PAST_LOOP_EVERY
@@ -159,7 +160,10 @@ class BoardDevice(WithHealth):
         session = self._talk()
         # Judged on the bare fit: host_ns remembers what it is asked for, and would carry a lie on to later times.
         time_ns = session.heard_ns + session.clock.ahead_ns(board_us, session.heard_ns)
-        (self._times.check_periodic if periodic else self._times.check)(time_ns, session.heard_ns)
+        if periodic:
+            self._times.check_periodic(time_ns, session.heard_ns, attention().missed_s)
+        else:
+            self._times.check(time_ns, session.heard_ns)
         return session.clock.host_ns(board_us)
 
     def _counted(self) -> tuple[tuple[str, int], ...]:

@@ -87,6 +87,7 @@ class Times:
     def __init__(self, device: str) -> None:
         self._device = device
         self._late_since_ns: int | None = None
+        self._missed_s = 0.0
 
     def check(self, time_ns: int, heard_ns: int) -> None:
         """Raise DeviceError if a time, both of this host's clock, lies ahead of when it was heard, or far behind."""
@@ -94,9 +95,14 @@ class Times:
         if not -OLD_MAX_S <= ahead_s <= AHEAD_MAX_NS / NS_PER_S:
             raise implausible(self._device, f"its clock is {abs(ahead_s):g} s {'ahead' if ahead_s > 0 else 'behind'}")
 
-    def check_periodic(self, time_ns: int, heard_ns: int) -> None:
-        """The same for what is said again and again; DeviceError also if its times have stayed behind for a second."""
+    def check_periodic(self, time_ns: int, heard_ns: int, missed_s: float = 0.0) -> None:
+        """The same for what is said again and again; DeviceError also if its times have stayed behind for a second.
+
+        Not while we stand still ourselves again and again, for ``missed_s`` in all: then it is us who are behind.
+        """
         self.check(time_ns, heard_ns)
+        if missed_s != self._missed_s:
+            self._missed_s, self._late_since_ns = missed_s, None
         if heard_ns - time_ns <= LATE_S * NS_PER_S:
             self._late_since_ns = None
             return

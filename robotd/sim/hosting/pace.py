@@ -25,10 +25,10 @@ HURRY_NS = 150_000_000
 """In so long it makes up for two thirds of what is too much."""
 READING_NS = 40_000_000
 """It does not hurry before nothing was late for so long: what waits on the lines is read meanwhile."""
-TOO_LONG_NS = 800_000_000
+TOO_LONG_NS = 400_000_000
 """After so long what is still too much is leapt over, for a daemon has patience with a clock for a second."""
 LEAP_NS = 200_000_000
-"""So far at once: half of what a set-point lives by default."""
+"""So far at once at least, or half of what is too much: half of what a set-point lives by default."""
 PATIENCE_S = 10.0
 """How long the lines of a simulated robot may be silent (``silence_s``): no cable of it can come off."""
 SLOWED = "this machine is busy: simulated time is slowed"
@@ -91,10 +91,13 @@ class SlowedTime:
         # What was late before the last look is counted already.
         lost_ns = min(late_ns, passed_ns) if late_ns > LATE_NS else 0
         self._make_up(passed_ns - lost_ns)
+        was_read = host_ns - lost_ns - self._late_ns >= READING_NS
         if lost_ns:
             self._due_ns = host_ns + BEAT_NS  # or the next look would count the same lateness again
             self._lose(lost_ns)
-        self._bound()
+        # What a loss left to be read is read before it leaps; where each look finds another, nothing ever is.
+        if was_read != bool(lost_ns):
+            self._bound(leap_ns=self._behind_ns if lost_ns else LEAP_NS)
         return host_ns - self._behind_ns
 
     def wait_s(self, until_ns: int) -> float:
@@ -120,12 +123,13 @@ class SlowedTime:
             self._has_said = True
             self._say(SLOWED)
 
-    def _bound(self) -> None:
-        """Leap a little if it has been too far behind for too long."""
+    def _bound(self, leap_ns: int) -> None:
+        """Leap so far, or half of what is too much, if it has been too far behind for too long."""
         if self._behind_ns <= MOST_BEHIND_NS:
             self._leaps_ns = None
         elif self._leaps_ns is None:
             self._leaps_ns = self._seen_ns + TOO_LONG_NS
         elif self._seen_ns >= self._leaps_ns:
             self._leaps_ns = self._seen_ns + BEAT_NS
-            self._behind_ns = max(MOST_BEHIND_NS, self._behind_ns - LEAP_NS)
+            leap_ns = max(leap_ns, (self._behind_ns - MOST_BEHIND_NS) // 2)
+            self._behind_ns = max(MOST_BEHIND_NS, self._behind_ns - leap_ns)

@@ -91,6 +91,15 @@ def test_a_clock_that_stands_or_falls_behind_is_told_within_two_seconds() -> Non
         times.check_periodic(100 * S, 100 * S + 1_600_000_000)
 
 
+def test_while_we_stand_still_again_and_again_no_clock_falls_behind_and_soon_after_it_does() -> None:
+    times = Times("drive")
+    for heard_ms in range(0, 5000, 40):
+        times.check_periodic(100 * S, 101 * S + heard_ms * 1_000_000, missed_s=heard_ms // 400 * 0.2)
+    times.check_periodic(100 * S, 106 * S, missed_s=2.4)
+    with pytest.raises(DeviceError, match="falls behind"):
+        times.check_periodic(100 * S, 107 * S + S // 10, missed_s=2.4)
+
+
 def test_a_jump_of_the_counts_is_left_out_and_what_is_true_goes_on() -> None:
     odometer = JudgedOdometer("drive", DriveCalibration(1000.0, 1000.0))
     odometer.update(1, 0, 0, 0)

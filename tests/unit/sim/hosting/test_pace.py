@@ -113,17 +113,20 @@ def test_much_time_lost_is_made_up_for_as_soon_as_what_waited_was_read(
     assert read_ns
     assert set(read_ns) == {round(CATCHING_UP * BEAT_NS)}
     behind_s = {(at - woken_ns) // BEAT_NS: (at - seen) / NS_PER_S for at, seen in seen_ns}
-    assert behind_s[TOO_LONG_NS // BEAT_NS] < LATE_S, "a daemon would take it for a liar"
+    assert behind_s[2 * TOO_LONG_NS // BEAT_NS] < LATE_S, "a daemon would take it for a liar"
     most_ns = max(later - earlier for (_, earlier), (_, later) in pairwise(seen_ns))
-    assert most_ns <= BEAT_NS * (CATCHING_UP + lost_s * NS_PER_S / HURRY_NS), "it hurries, and never leaps"
+    assert most_ns <= BEAT_NS * (CATCHING_UP + lost_s * NS_PER_S / HURRY_NS), "it hurries, and does not leap"
 
 
+@pytest.mark.parametrize("first_s", [0.1, 3.5])
+@pytest.mark.parametrize("look_ms", [80, 150, 300])
 def test_time_that_is_lost_all_the_time_falls_no_farther_behind_than_a_daemon_believes(
-    host: Host, said: list[str]
+    host: Host, said: list[str], look_ms: int, first_s: float
 ) -> None:
     time, late_since_ns = SlowedTime(said.append), None
+    host.time_ns += round(first_s * NS_PER_S)
     for _ in range(100):
-        host.time_ns += 3 * LATE_NS
+        host.time_ns += look_ms * 1_000_000
         is_late = host.time_ns - time.now_ns() > LATE_S * NS_PER_S
         late_since_ns = (late_since_ns or host.time_ns) if is_late else None
         assert late_since_ns is None or host.time_ns - late_since_ns < LATE_FOR_S * NS_PER_S
