@@ -1,6 +1,7 @@
 """Replay in process: the whole daemon, on a recording instead of on serial lines, on the virtual clock."""
 
 import asyncio
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,9 @@ from robotd import __version__
 from robotd.app.as_recorded import recorded_config
 from robotd.app.compose import Daemon, compose, head_settings
 from robotd.config import Config
+from robotd.contract.events import Event
 from robotd.core.attention import attention
+from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RecordingError, RobotdError
 from robotd.core.text import printable
@@ -27,6 +30,7 @@ from robotd.recording.entries import (
     CommandEntry,
     Entry,
     LineEntry,
+    RecordingHeader,
     ResultEntry,
     TurnEntry,
 )
@@ -38,6 +42,8 @@ from robotd.recording.reader import Recording, read
 
 _NO_LIMIT = 2**62
 """Of the replay's own journal: the comparison needs all of it, and a recording has an end."""
+_HEARD_AT_ONCE = 4096
+"""Events that one turn of the loop may bring."""
 _VERSION_MAX = 40
 """Letters: it is what a file says of itself."""
 DEVICES = ("drive", "pantilt", "rangefinder")
@@ -85,6 +91,21 @@ def replay_recording(path: Path) -> ReplayReport:
     )
 
 
+def replay_events(path: Path, hear: Callable[[Event], None]) -> RecordingHeader:
+    """Have ``hear`` called with everything that a recorded daemon told its clients, in order; a map changes in steps.
+
+    Raises:
+        RecordingError: the file is no recording, nothing of it can be read, or it holds what no daemon wrote.
+        ConfigError: the recording's configuration is not one of this version.
+    """
+    recording = read(path)
+    check_recorded(recording)
+    config = recorded_config(recording.header.config_text)
+    journal = PrerollJournal(recording.header, _NO_LIMIT)
+    run_recorded(_play(recording, config, journal, hear), start_ns=recording.header.started_ns)
+    return recording.header
+
+
 def check_recorded(recording: Recording) -> None:
     """Refuse a recording with an entry that cannot be repeated, whatever its checksums say.
 
@@ -124,7 +145,9 @@ def _check_device(device: str) -> None:
         raise RecordingError(f"expected one of the devices {', '.join(DEVICES)}, got {device[:40]!r}")
 
 
-async def _play(recording: Recording, config: Config, journal: PrerollJournal) -> tuple[Entry, ...]:
+async def _play(
+    recording: Recording, config: Config, journal: PrerollJournal, hear: Callable[[Event], None] | None = None
+) -> tuple[Entry, ...]:
     """Let the daemon live through the recording and return what its journal noted until it ended."""
     requests: set[asyncio.Task[None]] = set()
 
@@ -145,12 +168,20 @@ async def _play(recording: Recording, config: Config, journal: PrerollJournal) -
     daemon = compose(config, connects, head, playback.compute, journal, leases_end_by_causes=recording.notes_causes)
     async with asyncio.TaskGroup() as group:
         parts = [group.create_task(part, name=name) for name, part in daemon.parts().items()]
+        if hear is not None:
+            parts.append(group.create_task(_hear(daemon.control.events, hear), name="hear"))
         await playback.run()
         replayed = tuple(journal.remembered)  # before it is stopped, which the recorded one may not have been
         for task in (*parts, *requests):
             task.cancel()
         await daemon.supervisor.stop("the recording ended")
     return replayed
+
+
+async def _hear(events: Broadcast[Event], hear: Callable[[Event], None]) -> None:
+    with events.subscribe(_HEARD_AT_ONCE) as subscription:
+        async for event in subscription:
+            hear(event)
 
 
 async def _repeat(daemon: Daemon, entry: CommandEntry) -> None:

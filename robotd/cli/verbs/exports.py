@@ -1,0 +1,163 @@
+"""``export tum|carmen|foxglove``: a recording for other programs. What was told is computed again, as by a replay."""
+
+import argparse
+import io
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from mcap.writer import CompressionType, Writer
+
+from robotd.cli.outputs import Kind, OutputPath, output_argument, write
+from robotd.cli.show.terminal import out, print_json
+from robotd.cli.verb import OK, Verb
+from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.events import Event, SweepDone
+from robotd.core.clock import NS_PER_S
+from robotd.core.errors import RecordingError
+from robotd.interop.carmen import PlacedSweep, encode_carmen
+from robotd.interop.foxglove_messages import SCHEMAS, FoxgloveFrames
+from robotd.interop.tum import TimedPose, encode_tum
+
+_TUM = Kind("a trajectory in the TUM form", lambda head: head[:1].isdigit() and len(head.split(b"\n")[0].split()) == 8)
+_CARMEN = Kind("a CARMEN log", lambda head: head.startswith((b"ODOM ", b"ROBOTLASER1 ", b"FLASER ", b"PARAM ", b"#")))
+_MCAP = Kind("an MCAP file for Foxglove", lambda head: head.startswith(b"\x89MCAP") and b"foxglove" in head)
+_PROFILE = "foxglove"
+"""Marks the files that are ours to write again, and are no recordings."""
+
+
+@dataclass(slots=True)
+class _Heard:
+    """What of a recording is exported."""
+
+    events: list[Event] = field(default_factory=list)
+    wall_offset_ns: int = 0
+
+    @classmethod
+    def of(cls, file: Path, *kinds: type) -> "_Heard":
+        from robotd.app.replaying import replay_events  # noqa: PLC0415  # no other verb needs a daemon inside
+
+        heard = cls()
+        header = replay_events(file, lambda event: heard.events.append(event) if isinstance(event, kinds) else None)
+        heard.wall_offset_ns = header.wall_offset_ns
+        return heard
+
+    def unix_s(self, time_ns: int) -> float:
+        return (time_ns + self.wall_offset_ns) / NS_PER_S
+
+
+def _tum(arguments: argparse.Namespace) -> int:
+    states = {PoseState.LOCALIZED} | ({PoseState.PREDICTED} if arguments.predicted else set())
+    heard = _Heard.of(arguments.file, PoseEstimate)
+    poses = [
+        TimedPose(heard.unix_s(event.time_ns), event.best)
+        for event in heard.events
+        if isinstance(event, PoseEstimate) and event.best is not None and event.state in states
+    ]
+    return _written(arguments, "".join(encode_tum(poses)).encode(), len(poses), "poses")
+
+
+def _carmen(arguments: argparse.Namespace) -> int:
+    heard = _Heard.of(arguments.file, PoseEstimate, SweepDone)
+    sweeps = list((_on_map if arguments.on_map else _by_odometry)(heard))
+    return _written(arguments, "".join(encode_carmen(sweeps)).encode(), len(sweeps), "sweeps")
+
+
+def _by_odometry(heard: _Heard) -> Iterator[PlacedSweep]:
+    for event in heard.events:
+        if isinstance(event, SweepDone):
+            yield PlacedSweep(heard.unix_s(event.time_ns), event.sweep, event.sweep.in_odom)
+
+
+def _on_map(heard: _Heard) -> Iterator[PlacedSweep]:
+    """Yield the sweeps that were localized, where they were: their estimate is the first final one after them."""
+    waiting: SweepDone | None = None
+    for event in heard.events:
+        if isinstance(event, SweepDone):
+            waiting = event
+        elif isinstance(event, PoseEstimate) and event.final and waiting is not None:
+            if event.state is PoseState.LOCALIZED and event.best is not None:
+                yield PlacedSweep(heard.unix_s(waiting.time_ns), waiting.sweep, event.best)
+            waiting = None
+
+
+def _foxglove(arguments: argparse.Namespace) -> int:
+    heard = _Heard.of(arguments.file, object)
+    written = io.BytesIO()
+    writer = Writer(written, compression=CompressionType.NONE)
+    writer.start(profile=_PROFILE, library="robotd")
+    channels: dict[str, int] = {}
+    schemas = {
+        name: writer.register_schema(name, "jsonschema", json.dumps(schema).encode())
+        for name, schema in SCHEMAS.items()
+    }
+    frames, count = FoxgloveFrames(heard.wall_offset_ns), 0
+    for event in heard.events:
+        for message in frames.messages(event):
+            if message.topic not in channels:
+                channels[message.topic] = writer.register_channel(message.topic, "json", schemas[message.schema])
+            unix_ns = frames.unix_ns(event.time_ns)
+            writer.add_message(channels[message.topic], unix_ns, json.dumps(message.content).encode(), unix_ns)
+            count += 1
+    writer.finish()  # type: ignore[no-untyped-call]  # mcap leaves it without types
+    return _written(arguments, written.getvalue(), count, "messages")
+
+
+def _written(arguments: argparse.Namespace, content: bytes, count: int, what: str) -> int:
+    if not count:
+        raise RecordingError(f"{arguments.file}: there are no {what} in it to export")
+    file: OutputPath = arguments.out
+    write(file, content)
+    if arguments.json:
+        print_json({"file": str(file), what: count})
+    else:
+        out().print(f"{file}: {count} {what}", markup=False)
+    return OK
+
+
+def _arguments(kind: Kind, summary: str) -> Callable[[argparse.ArgumentParser], None]:
+    def add(parser: argparse.ArgumentParser) -> None:
+        parser.add_argument("file", type=Path, metavar="RECORDING", help="a recording (.mcap)")
+        output_argument(parser, "out", kind, summary)
+
+    return add
+
+
+def _tum_arguments(parser: argparse.ArgumentParser) -> None:
+    _arguments(_TUM, "the trajectory, in the frame of the map")(parser)
+    parser.add_argument(
+        "--predicted", action="store_true", help="also what odometry predicted between two localizations"
+    )
+
+
+def _carmen_arguments(parser: argparse.ArgumentParser) -> None:
+    _arguments(_CARMEN, "the log")(parser)
+    parser.add_argument(
+        "--on-map", action="store_true", help="the sweeps that were localized, at their places on the map"
+    )
+
+
+VERBS = (
+    Verb(
+        "export tum",
+        "write where a recorded robot was localized as a trajectory that evo reads",
+        "robotctl export tum monday.mcap monday.tum --predicted",
+        _tum,
+        _tum_arguments,
+    ),
+    Verb(
+        "export carmen",
+        "write the sweeps of a recording as a CARMEN log, at the poses of odometry",
+        "robotctl export carmen monday.mcap monday.clf",
+        _carmen,
+        _carmen_arguments,
+    ),
+    Verb(
+        "export foxglove",
+        "write what a recorded robot told as an MCAP file that Foxglove opens: map, frames, sweeps, poses",
+        "robotctl export foxglove monday.mcap monday-foxglove.mcap",
+        _foxglove,
+        _arguments(_MCAP, "the file to open in Foxglove"),
+    ),
+)
