@@ -9,9 +9,10 @@ from pathlib import Path
 
 from mcap.writer import CompressionType, Writer
 
+from robotd.cli.exit_codes import OK
 from robotd.cli.outputs import Kind, OutputPath, output_argument, write
 from robotd.cli.show.terminal import out, print_json
-from robotd.cli.verb import OK, Verb
+from robotd.cli.verb import Verb
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import Event, SweepDone
 from robotd.core.clock import NS_PER_S
