@@ -142,11 +142,12 @@ class Child:
     async def _see_off(self, running: Running) -> None:
         """Let it end by itself, or end it: none outlives this."""
         running.close()
-        with suppress(TimeoutError):
-            async with asyncio.timeout(self._patience.goodbye_s):
-                await running.ended()
-                return
-        running.kill()
+        try:
+            with suppress(TimeoutError):
+                async with asyncio.timeout(self._patience.goodbye_s):
+                    await running.ended()
+        finally:  # also if this process is in a hurry
+            running.kill()
         await running.ended()
 
 

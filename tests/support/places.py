@@ -11,6 +11,8 @@ from robotd.children.in_process import InProcess as ChildInProcess
 from robotd.config import Config
 from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.grid_spec import GridSpec
+from robotd.front.heart_side import LANES
+from robotd.front.program import serve_clients
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
 from robotd.head.compute import Compute
@@ -37,6 +39,11 @@ class NearHead(FarHead):
     @classmethod
     def spawned(cls, settings: HeadSettings, log_level: str) -> "NearHead":
         return cls(settings, lambda: ChildInProcess(serve))
+
+
+def near_front() -> ChildInProcess:
+    """Return a front as the program has it, but as a task of this process."""
+    return ChildInProcess(serve_clients, LANES)
 
 
 def unpaced(compute: object) -> Compute:

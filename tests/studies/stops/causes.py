@@ -62,7 +62,7 @@ def _head_lost(rig: Rig, _: Daemon) -> None:
 HEAD = "pantilt"
 ENDINGS: dict[str, Cause] = {
     **{number.name: _signal(number) for number in SIGNALS},
-    **{f"error: {name}": _error_in(name) for name in ("drive", "pantilt", "rangefinder", "supervisor", "server")},
+    **{f"error: {name}": _error_in(name) for name in ("drive", "pantilt", "rangefinder", "supervisor", "front")},
 }
 """After these the daemon ends."""
 HEAD_LOST = "head lost"

@@ -18,6 +18,7 @@ from robotd.config import Config, loads
 from robotd.contract.missions import Mission
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
+from robotd.front import supervised
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.head.compute import Compute
@@ -28,7 +29,7 @@ from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.robot import DEVICES, SimulatedRobot
 from robotd.sim.runtime import connectors
-from tests.support.places import NearHead
+from tests.support.places import NearHead, near_front
 
 LEASE_S = 5.0
 READINGS = 24
@@ -107,6 +108,7 @@ class Rig:
             mock.patch.object(program, "compose", self._compose),
             mock.patch.object(program, "guarded", _unguarded),
             mock.patch.object(program, "FarHead", NearHead),
+            mock.patch.object(supervised, "_start", near_front),
         ):
             running = asyncio.create_task(program.run(self.config), name="program")
             try:
