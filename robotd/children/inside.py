@@ -48,7 +48,8 @@ def adopted(argv: Sequence[str]) -> Birth:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     if int(memory_bytes):
-        resource.setrlimit(resource.RLIMIT_AS, (int(memory_bytes), int(memory_bytes)))
+        with suppress(OSError, ValueError):  # where that is forbidden it is for the service manager
+            resource.setrlimit(resource.RLIMIT_AS, (int(memory_bytes), int(memory_bytes)))
     with suppress(OSError):  # where memory is short, the kernel shall take a child before the one that stops the robot
         Path("/proc/self/oom_score_adj").write_text("500", encoding="ascii")
     return Birth(tuple(int(number) for number in descriptors.split(",")), tuple(arguments))
