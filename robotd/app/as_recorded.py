@@ -11,10 +11,11 @@ from typing import Any
 from robotd.config import Config, loads
 from robotd.grid.settings import BetweenBeams
 from robotd.localization.obstacles.thick_walls import ThickWalls
+from robotd.localization.stop_poses import StopPoses
 
 SINCE: dict[str, dict[str, Any]] = {
     "grid": {"between_beams": BetweenBeams.UNSEEN},
-    "localization": {"thick_walls": ThickWalls.AS_DRAWN},
+    "localization": {"thick_walls": ThickWalls.AS_DRAWN, "stops": StopPoses.ODOMETRY},
     "second_look": {"on_walls_min": 0.0},
 }
 """By section and key; a section that is missing was not recorded, and says nothing."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from robotd.contract.device_status import DeviceStatus
 from robotd.contract.estimate import PoseEstimate
 from robotd.core.grid_spec import GridSpec
-from robotd.core.pose import Odometry
+from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import ReadingStatus, Sweep
 
 
@@ -139,4 +139,77 @@ class MapChanged:
     """
 
 
-Event = Odometry | PoseEstimate | Status | SweepProgress | SweepDone | RangeMeasured | MissionProgress | MapChanged
+@dataclass(frozen=True, slots=True)
+class StopPlaced:
+    """What came of placing a stop on the map so far."""
+
+    time_ns: int
+    map_id: str
+    stop: int
+    """From 0."""
+    outcome: str
+    """``placed``, ``wide`` (farther off than odometry errs), ``weak`` (explained in part), ``new_ground`` (the map says
+    next to nothing: odometry's word stands) or ``contradicts`` (not laid into the map)."""
+    pose: Pose2
+    """Where the robot is believed to be, map frame."""
+    deviation_m: float
+    """Standard deviation of the place, along the worse axis of the map, relative to the stops before."""
+    deviation_rad: float
+    """Of the heading."""
+    explained: float
+    """Share of the readings that the map explains there, 0 to 1."""
+    contradicted: float
+    """Share against which it speaks; of the rest it says nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopHeld:
+    """A stop was found where it should not be by much: that is held until a second stop agrees."""
+
+    time_ns: int
+    map_id: str
+    stop: int
+    old_stop: int
+    """The stop of long ago near to which it was found."""
+    moved_m: float
+    moved_rad: float
+
+
+@dataclass(frozen=True, slots=True)
+class LoopClosed:
+    """A stop was found on stops of long ago, and that is believed."""
+
+    time_ns: int
+    map_id: str
+    stop: int
+    old_stop: int
+    moved_m: float
+    moved_rad: float
+
+
+@dataclass(frozen=True, slots=True)
+class Reconciled:
+    """All stops were brought together and the map was made again; odometry is tied to it again in the same step."""
+
+    time_ns: int
+    map_id: str
+    stops_moved: int
+    largest_move_m: float
+    edges_refused: int
+    """Loops, or steps of odometry, that contradict all others and have no say."""
+
+
+Event = (
+    Odometry
+    | PoseEstimate
+    | Status
+    | SweepProgress
+    | SweepDone
+    | RangeMeasured
+    | MissionProgress
+    | MapChanged
+    | StopPlaced
+    | LoopHeld
+    | LoopClosed
+    | Reconciled
+)

@@ -12,7 +12,19 @@ from typing import Any
 import msgpack
 
 from robotd.contract.estimate import PoseEstimate
-from robotd.contract.events import Event, MapChanged, MissionProgress, RangeMeasured, Status, SweepDone, SweepProgress
+from robotd.contract.events import (
+    Event,
+    LoopClosed,
+    LoopHeld,
+    MapChanged,
+    MissionProgress,
+    RangeMeasured,
+    Reconciled,
+    Status,
+    StopPlaced,
+    SweepDone,
+    SweepProgress,
+)
 from robotd.contract.plain import VERSION, from_plain, to_plain
 from robotd.core.errors import RemoteProtocolError
 from robotd.core.pose import Odometry
@@ -58,6 +70,10 @@ EVENTS: dict[type[Published], tuple[Topic, str]] = {
     SweepDone: (Topic.SWEEP, "sweep_done"),
     RangeMeasured: (Topic.SWEEP, "range_measured"),
     MapChanged: (Topic.MAP, "map_changed"),
+    StopPlaced: (Topic.MAP, "stop_placed"),
+    LoopHeld: (Topic.MAP, "loop_held"),
+    LoopClosed: (Topic.MAP, "loop_closed"),
+    Reconciled: (Topic.MAP, "reconciled"),
     MissionProgress: (Topic.MISSION, "mission_progress"),
     Status: (Topic.STATUS, "status"),
     LogEntry: (Topic.LOG, "log"),

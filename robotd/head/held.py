@@ -17,6 +17,7 @@ from robotd.head.jobs import HeldMap
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
+from robotd.slam.survey import Survey
 
 _NOTHING = CellWindow(0, 0, 0, 0)
 
@@ -37,6 +38,8 @@ class Held:
     """What localization made of this generation, or of one before it: a changed map is not made ready from nothing."""
     changed: CellWindow = _NOTHING
     """Where the grid changed since that one."""
+    survey: Survey | None = None
+    """What is known of its stops together, if they were placed one after the other."""
 
     @classmethod
     def of(cls, grid: OccupancyGrid, stops: MapStops | None) -> "Held":

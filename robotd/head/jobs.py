@@ -11,7 +11,9 @@ import msgspec
 
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate
+from robotd.contract.events import LoopClosed, LoopHeld, Reconciled, StopPlaced
 from robotd.core.grid_spec import GridSpec
+from robotd.core.motion_error import Travel
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, Sweep
 from robotd.grid.settings import GridSettings
@@ -139,6 +141,43 @@ class Insert(Job[Inserted], frozen=True):
         return Made(self.map.number, 1 + self.map.generation)
 
 
+class StopLaid(Inserted, frozen=True):
+    """What came of placing a stop, and what that changed."""
+
+    placed: StopPlaced
+    held: tuple[LoopHeld, ...]
+    closed: tuple[LoopClosed, ...]
+    reconciled: Reconciled | None
+    map_from_robot: Pose2
+    """Where the stop is in the end."""
+
+    @property
+    def decided(self) -> tuple[StopPlaced | LoopHeld | LoopClosed | Reconciled, ...]:
+        """What was decided, in order."""
+        return (self.placed, *self.held, *self.closed, *(() if self.reconciled is None else (self.reconciled,)))
+
+
+class PlaceStop(Job[StopLaid], frozen=True):
+    """Make the next generation of a map: a sweep placed on what was mapped so far, and laid in where it was taken."""
+
+    name, answer, is_noted = "place stop", StopLaid, True
+    map: MapRef
+    map_id: str
+    """What events call the map."""
+    sweep: Sweep
+    travel: Travel
+    """Since the stop before."""
+    map_from_robot: Pose2
+    """Where the first stop is; of no account to later ones."""
+    time_ns: int
+    """When, as events tell it."""
+
+    @property
+    def makes(self) -> Made:
+        """The next generation, after the job that made the first and one insertion for each since."""
+        return Made(self.map.number, 1 + self.map.generation)
+
+
 class Prepare(Job[Done], frozen=True):
     """Make a map ready, and begin a stop on it: a robot stands somewhere on it, and nothing was measured yet."""
 
@@ -234,7 +273,7 @@ class Forget(Job[Done], frozen=True):
 JOBS: dict[str, type[Job[Any]]] = {
     kind.name: kind
     for kind in (
-        *(BeginMap, TakeMap, ReadMap, ShowMap, MakeFiles, Insert),
+        *(BeginMap, TakeMap, ReadMap, ShowMap, MakeFiles, Insert, PlaceStop),
         *(Prepare, Narrow, TakeReadings),
         *(Plan, Forget),
     )

@@ -22,14 +22,18 @@ from robotd.head.jobs import (
     MapRef,
     Narrow,
     Narrowed,
+    PlaceStop,
     Plan,
     Planned,
     Prepare,
     ReadMap,
     ShowMap,
+    StopLaid,
     TakeMap,
     TakeReadings,
 )
+from robotd.head.placing import with_stop
+from robotd.head.telling import stop_laid
 from robotd.maps.grid_files import content_of, map_of
 from robotd.maps.packed_content import PackedContent
 from robotd.maps.stops_file import decode_stops
@@ -83,6 +87,13 @@ def _insert(desk: Desk, job: Insert) -> Inserted:
     return Inserted(cells.astype("<i8", copy=False).tobytes(), values.tobytes(), held.digest, stops)
 
 
+def _place_stop(desk: Desk, job: PlaceStop) -> StopLaid:
+    before = desk.map(job.map)
+    made = with_stop(before, job.sweep, job.travel, job.map_from_robot, desk.settings.localization)
+    desk.hold(MapRef(job.map.number, job.map.generation + 1), made.held)
+    return stop_laid(made, job.time_ns, job.map_id)
+
+
 def _prepare(desk: Desk, job: Prepare) -> Done:
     desk.begin(job)
     return Done()
@@ -120,6 +131,7 @@ _TABLE: dict[type[Job[Any]], Callable[[Desk, Any], Any]] = {
     ShowMap: _show_map,
     MakeFiles: _make_files,
     Insert: _insert,
+    PlaceStop: _place_stop,
     Prepare: _prepare,
     TakeReadings: _take_readings,
     Narrow: _narrow,

@@ -4,7 +4,6 @@ What a map in the making says is weighed, never obeyed: in a corridor nothing on
 what is found is fused with what odometry says, each by its covariance. Five things may come of it (:class:`Outcome`).
 """
 
-import enum
 import functools
 import math
 from dataclasses import dataclass, field, replace
@@ -25,28 +24,9 @@ from robotd.localization.fit.refinement import PoseBox
 from robotd.localization.fit.refinement_settings import RefinementSettings
 from robotd.localization.fit.tracking import NotHere, Tracked, TrackingSettings, track
 from robotd.localization.localizer import Localizer
+from robotd.localization.outcome import Outcome
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
-
-
-class Outcome(enum.StrEnum):
-    """What came of placing a sweep."""
-
-    PLACED = "placed"
-    """The map explains it near where odometry says."""
-    WIDE = "wide"
-    """The map explains it, farther off than odometry errs."""
-    WEAK = "weak"
-    """The map explains part of it."""
-    NEW_GROUND = "new_ground"
-    """The map says next to nothing of it: odometry's word stands."""
-    CONTRADICTS = "contradicts"
-    """The map speaks against it, wherever the robot may have been: it is not laid into the map."""
-
-    @property
-    def is_found(self) -> bool:
-        """Whether the map had a word in it."""
-        return self in {Outcome.PLACED, Outcome.WIDE, Outcome.WEAK}
 
 
 @dataclass(frozen=True, slots=True, eq=False)

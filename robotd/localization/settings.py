@@ -8,6 +8,7 @@ from robotd.core.bounds import Within, refuse_outside
 from robotd.localization.even_headings import even_headings
 from robotd.localization.obstacles.thick_walls import ThickWalls
 from robotd.localization.obstacles.unknown_cells import UnknownCells
+from robotd.localization.stop_poses import StopPoses
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +41,8 @@ class LocalizationSettings:
     thick_walls: ThickWalls = ThickWalls.EITHER
     """Where the faces of walls are that are thicker than 10 cm: ``as_drawn``, or ``either`` there or somewhere inside,
     as on maps that were drawn with a broad pen."""
+    stops: StopPoses = StopPoses.PLACED
+    """Where the stops of a map in the making are: ``placed`` on the map so far, or where ``odometry`` has them."""
     conservative: bool = False
     """Whether no place is excluded but by proof: the true one is then always among the answers, as long as ranges err
     by no more than ``range_error_m``, the heading by no more than half a step from one that is tried, and cells that

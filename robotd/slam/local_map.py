@@ -1,7 +1,7 @@
 """Maps of some stops, made when they are needed: a map of fifteen takes a millisecond, and is never out of date."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,12 @@ class LocalMaps:
     reach_m: float = 20.0
     """So far round the place in question; what lies farther away is left out."""
     localization: LocalizationSettings = field(default_factory=LocalizationSettings)
+
+    @classmethod
+    def of(cls, of_map: GridSettings, localization: LocalizationSettings) -> "LocalMaps":
+        """Return how local maps are made for a map of some settings: of cells of that size."""
+        usual = cls()
+        return cls(replace(usual.grid, resolution_m=of_map.resolution_m), usual.reach_m, localization)
 
     def ground(self, graph: StopGraph, which: Sequence[int] | NDArray[np.intp], around: Pose2) -> Ground:
         """Return the map that some stops make about a place."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from robotd.core.motion_error import Travel
 from robotd.grid.readings import Readings
-from robotd.localization.placing import Outcome
+from robotd.localization.outcome import Outcome
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,7 +12,8 @@ import numpy as np
 from robotd.core.motion_error import MotionBias, MotionError, Travel
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.grid.readings import Readings
-from robotd.localization.placing import Believed, Outcome, Placed, PlacingSettings, place
+from robotd.localization.outcome import Outcome
+from robotd.localization.placing import Believed, Placed, PlacingSettings, place
 from robotd.slam.graph import Edge, EdgeKind
 from robotd.slam.local_map import LocalMaps
 from robotd.slam.loops import Loop, LoopSettings, edge_to, seek

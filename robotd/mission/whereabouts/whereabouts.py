@@ -13,10 +13,12 @@ belongs here too.
 
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.angles import wrap_rad
+from robotd.core.motion_error import Travel
 from robotd.core.pose import Odometry, Pose2
 from robotd.mission.whereabouts.jumps import Jumps
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
+from robotd.mission.whereabouts.travelled import Travelled
 
 _MOVED_M = 0.02
 _TURNED_RAD = 0.02
@@ -32,6 +34,7 @@ class Whereabouts:
         self._said: Pose2 | None = None
         """The pose that was said last; a prediction is news only if it lies far enough from there."""
         self._jumps = Jumps()
+        self._travelled = Travelled()
 
     @property
     def map_in_use(self) -> MapInUse | None:
@@ -94,6 +97,17 @@ class Whereabouts:
         if not any(region.extent.holds(believed, near_m=near_m, near_rad=near_rad) for region in estimate.regions):
             self._tie = self._tie.doubted()
 
+    def stopped(self, in_odom: Pose2) -> Travel:
+        """Return the travel since the last stop of a map in the making to this one, which began at ``in_odom``."""
+        return self._travelled.stopped(in_odom)
+
+    def placed(self, map_from_robot: Pose2, in_odom: Pose2, *, is_found: bool) -> None:
+        """Tie odometry to where a stop was placed; a tie that is doubted stays so until the map has a word in it."""
+        is_doubted = self._tie is not None and self._tie.is_doubted and not is_found
+        tie = Tie.between(map_from_robot, in_odom)
+        self._tie = tie.doubted() if is_doubted else tie
+        self._jumps.forget()
+
     def doubt(self) -> bool:
         """Believe odometry no longer: nobody saw what the wheels did, or they told nonsense; return whether it was."""
         believed = self.believed
@@ -105,6 +119,7 @@ class Whereabouts:
     def moved(self, odometry: Odometry) -> PoseEstimate | None:
         """Return the estimate that odometry leads to, if the robot has moved since the last one said, else None."""
         self._jumps.moved(odometry.in_odom)
+        self._travelled.moved(odometry.in_odom)
         pose = self.pose_of(odometry)
         if self._map is None or pose is None or not self._has_moved(pose):
             return None

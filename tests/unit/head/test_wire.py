@@ -10,6 +10,7 @@ from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.errors import MapError, RemoteProtocolError
 from robotd.core.grid_bytes import packed_cells, unpacked_cells
+from robotd.core.motion_error import Travel
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.settings import GridSettings
@@ -25,6 +26,7 @@ from robotd.head.jobs import (
     MakeFiles,
     MapRef,
     Narrow,
+    PlaceStop,
     Plan,
     Planned,
     Prepare,
@@ -58,6 +60,8 @@ def a_life() -> list[Job[Any]]:
     return [
         *(begin, insert, make, ShowMap(MapRef(1, 1)), Plan(MapRef(1, 1), HERE, (0.5, 0.5))),
         *(ReadMap(2, content), TakeMap(3, SPEC, shown.packed, GRID, content.files["stops.bin"])),
+        *(BeginMap(5, SPEC, GRID), PlaceStop(MapRef(5), "m", SWEEP, Travel(), HERE, 7)),
+        PlaceStop(MapRef(5, 1), "m", SWEEP, Travel(Pose2(0.02, 0.0, 0.01), 0.02, 0.01), HERE, 8),
         Prepare(4, MapRef(2), "a map", (0.1, 0.2, 0.3), Area(0.0, 0.0, 0.5)),
         *(TakeReadings(4, READINGS[:20]), Narrow(4, READINGS[20:], 5, True), Forget(4)),
     ]

@@ -8,10 +8,10 @@ from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
 from robotd.grid.settings import GridSettings
+from robotd.localization.outcome import Outcome
 from robotd.localization.placing import (
     Believed,
     Ground,
-    Outcome,
     PlacingSettings,
     found_within,
     place,

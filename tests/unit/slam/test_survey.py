@@ -8,7 +8,7 @@ import pytest
 from robotd.core.motion_error import Travel
 from robotd.core.pose import Pose2
 from robotd.grid.readings import Readings
-from robotd.localization.placing import Outcome
+from robotd.localization.outcome import Outcome
 from robotd.slam.loops import LoopSettings
 from robotd.slam.survey import Decision, LoopClosed, LoopHeld, Reconciled, StopPlaced, Survey, SurveySettings
 from tests.support.surveyed_room import odometry_of, room, sweep_at, way_round

@@ -1,0 +1,82 @@
+"""A stop placed on a map in the making: laid in where it was taken, or the whole map made again of moved stops."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robotd.core.map_stop import MapStop
+from robotd.core.motion_error import Travel
+from robotd.core.pose import Pose2
+from robotd.core.reading import Sweep
+from robotd.grid.latest import latest_with
+from robotd.grid.map_stops import MapStops
+from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.readings import Readings
+from robotd.grid.window import CellWindow
+from robotd.head.held import Held
+from robotd.localization.settings import LocalizationSettings
+from robotd.slam.local_map import LocalMaps
+from robotd.slam.survey import Decision, Reconciled, Survey, SurveySettings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapWithStop:
+    """The next generation of a map, and how it came to be."""
+
+    held: Held
+    cells: NDArray[np.intp]
+    """Those that changed, as flat indices, ascending."""
+    decisions: tuple[Decision, ...]
+    """The first says what came of placing the stop; none of the first stop of all."""
+    map_from_robot: Pose2
+    """Where the stop is in the end."""
+
+
+def with_stop(
+    held: Held, sweep: Sweep, travel: Travel, begins_at: Pose2, localization: LocalizationSettings
+) -> MapWithStop:
+    """Return a map with one more stop; ``held`` stays as it is.
+
+    Args:
+        held: the map; a survey of it begins with its first stop.
+        sweep: what was seen there.
+        travel: since the stop before.
+        begins_at: where the first stop is.
+        localization: how sweeps are sought.
+    """
+    readings = Readings.of(sweep.measured)
+    decisions: tuple[Decision, ...] = ()
+    if held.survey is None:
+        settings = SurveySettings(maps=LocalMaps.of(held.grid.settings, localization))
+        survey = Survey.begun(readings, begins_at, settings)
+    else:
+        survey, decisions = held.survey.stepped(readings, travel)
+    pose = survey.graph.pose(len(survey.graph.stops) - 1)
+    if any(isinstance(decision, Reconciled) for decision in decisions):
+        made, cells = _made_again(held, sweep, survey)
+    elif survey.graph.stops[-1].is_laid:
+        made, cells = held.with_sweep(sweep, pose)
+    else:
+        made, cells = held, np.empty(0, np.intp)
+    return MapWithStop(replace(made, survey=survey), cells, decisions, pose)
+
+
+def _made_again(held: Held, sweep: Sweep, survey: Survey) -> tuple[Held, NDArray[np.intp]]:
+    """Return the map made of all its stops where they are now, and the cells that differ."""
+    assert held.stops is not None  # a map that is surveyed began with none, and keeps them
+    graph = survey.graph
+    stops = held.stops.stops
+    if graph.stops[-1].is_laid:
+        stops = (*stops, MapStop.of(sweep, graph.pose(len(graph.stops) - 1)))
+    moved = tuple(
+        replace(stop, map_from_robot=graph.pose(at)) for stop, at in zip(stops, graph.laid.tolist(), strict=True)
+    )
+    grid, latest = OccupancyGrid(held.grid.spec, settings=held.grid.settings), np.zeros_like(held.latest)
+    for stop in moved:
+        grid.lay_in(stop)
+        latest = latest_with(latest, grid.usable(stop.sweep), stop.map_from_robot, grid.spec)
+    cells = np.flatnonzero(grid.cells != held.grid.cells)
+    changed = held.changed.joined(CellWindow.bounding(cells, grid.spec.shape))
+    of_stops = MapStops(held.stops.settings, moved, held.stops.arithmetic)
+    return Held(grid, grid.digest(), of_stops, latest, held.ready, changed), cells
