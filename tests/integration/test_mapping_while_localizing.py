@@ -11,7 +11,7 @@ from robotd.core.pose import Pose2
 from robotd.localization.stop_poses import StopPoses
 from robotd.sim.buildings.world import load_world
 from robotd.sim.physics.noise import NoiseSettings
-from robotd.sim.robot import SimulatedRobot, SimSettings
+from robotd.sim.robot import SimSettings, SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.living import Living
 

@@ -35,4 +35,6 @@ def timings() -> Iterator[Timing]:
             f"{len(false)} false: the map moves by {1000 * moved_m:.0f} mm at most; refused are "
             f"{len(found.refused) - right} of these and {right} of {loops} right ones"
         )
-        yield replace(timed(f"solve, {100 * share:.0f} % of the loops false", partial(solve, start, among), 3), note=note)
+        yield replace(
+            timed(f"solve, {100 * share:.0f} % of the loops false", partial(solve, start, among), 3), note=note
+        )

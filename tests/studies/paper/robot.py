@@ -23,6 +23,7 @@ from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
 from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Shot
+from robotd.localization.stop_poses import StopPoses
 from robotd.sim.buildings.world import World
 from robotd.sim.physics.body import Body, BodySettings
 from robotd.sim.physics.head import Head, HeadSettings
@@ -65,7 +66,10 @@ def tour_of(world: World, stops_m: tuple[Point, ...], seed: int) -> Tour:
 
 
 async def _mission(world: World, stops_m: tuple[Point, ...], seed: int, directory: Path) -> Tour:
-    config = Config(driving=brisk(), rangefinder=replace(Config().rangefinder, range_max_m=CUT_OFF_M))
+    # LILY took odometry's word for where its stops were.
+    by_odometry = replace(Config().localization, stops=StopPoses.ODOMETRY)
+    rangefinder = replace(Config().rangefinder, range_max_m=CUT_OFF_M)
+    config = Config(driving=brisk(), rangefinder=rangefinder, localization=by_odometry)
     config = replace(config, sweep=replace(config.sweep, tilt_rad=TILT_RAD))
     robot = SimulatedRobot(world, seed)
     async with living(directory, robot, config) as it:
