@@ -77,6 +77,9 @@ worlds: .venv/.dev  ## Whether whole daemons map hard worlds and find themselves
 heart: .venv/.dev  ## Whether a stop is on the wires in time, whatever clients do and whatever becomes of the front: a table (an hour; TRIALS=20)
 	@$(BIN)/python -m tests.studies.heart.run $(if $(TRIALS),--trials $(TRIALS) --endings $(TRIALS)) $(if $(ONLY),--only "$(ONLY)")
 
+first-hour: .venv/.dev  ## A new user's first hour, by commands alone: wheel, config init, calibrate, maps in and out; needs ROBOTD_DATA (minutes)
+	@$(BIN)/python -m tests.studies.first_hour.run
+
 lag: .venv/.dev  ## How late the event loop is while the daemon works hard, quiet and beside busy programs: writes docs/benchmarks/loop-lag.md
 	@$(BIN)/python -m tests.studies.lag.run
 

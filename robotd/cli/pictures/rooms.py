@@ -84,6 +84,7 @@ def draw_map(
     occupancy: NDArray[np.uint8],
     *,
     stops_m: Sequence[tuple[float, float]] = (),
+    robot: Pose2 | None = None,
 ) -> None:
     """Draw the robot's map ``uint8[rows, cols]``: white is free, grey is unknown, black is occupied."""
     note = f"the robot's map; cells of {spec.resolution_m * 1000:g} mm; white free, grey unknown, black occupied"
@@ -91,7 +92,13 @@ def draw_map(
     evidence(axes, spec, occupancy)
     for x_m, y_m in stops_m:
         axes.plot(x_m, y_m, "o", markersize=4.5, color=PATH, markeredgecolor="white", markeredgewidth=0.8)
+    if robot is not None:
+        _robot(axes, Mark(robot, _ROBOT_RADIUS_M))
     save(axes, file)
+
+
+_ROBOT_RADIUS_M = 0.2
+"""How large a robot is drawn whose size is not told."""
 
 
 def draw_localization(

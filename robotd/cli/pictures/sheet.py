@@ -76,7 +76,8 @@ def paper(title: str, box: Rectangle, note: str) -> Axes:
     FigureCanvasAgg(figure)
     axes = figure.add_axes((0.02, 0.6 / size[1], 0.96, height * scale / size[1]))
     axes.set_aspect("equal")
-    axes.set(xlim=(x_min - pad, x_max + pad), ylim=(y_min - pad, y_max + pad), xticks=[], yticks=[])
+    axes.set(xlim=(x_min - pad, x_max + pad), ylim=(y_min - pad, y_max + pad))
+    _ticks(axes)
     axes.set_facecolor("#f3f5f6")
     for spine in axes.spines.values():
         spine.set_visible(False)
@@ -85,6 +86,17 @@ def paper(title: str, box: Rectangle, note: str) -> Axes:
     figure.text(left, 0.22 / size[1], note, fontsize=9, color=_QUIET)
     _scale_bar(axes, width, size)
     return axes
+
+
+def _ticks(axes: Axes) -> None:
+    """Say metres along both sides, within the picture: they cover little, and leave it as large as it was."""
+    axes.tick_params(direction="in", length=3, labelsize=7, labelcolor=_QUIET, color=_QUIET)
+    axes.tick_params(axis="x", pad=-12)
+    axes.tick_params(axis="y", pad=-4)
+    axes.xaxis.set_major_formatter("{x:g} m")
+    axes.yaxis.set_major_formatter("{x:g} m")
+    for label in axes.get_yticklabels():
+        label.set_horizontalalignment("left")
 
 
 def _scale_bar(axes: Axes, width_m: float, size: tuple[float, float]) -> None:

@@ -36,7 +36,7 @@ class ConfigFound:
     def __str__(self) -> str:
         """Return one line, or one for each problem."""
         if not self.found:
-            return f"{self.file}: not there; make one, with: robotctl config init {self.file}"
+            return f"{self.file}: not there; make one, with: {command_line('robotctl', 'config', 'init', self.file)}"
         return "\n".join(self.problems) or f"{self.file}: good"
 
 

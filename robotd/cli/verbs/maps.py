@@ -5,6 +5,7 @@ import shutil
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
@@ -17,18 +18,26 @@ from robotd.cli.odometry import odometry_argument
 from robotd.cli.outputs import PNG, output_argument
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import heading_of_deg, number, whole
-from robotd.cli.show.half_blocks import can_draw_blocks, coloured, plain, shrink
+from robotd.cli.show.half_blocks import Ink, can_draw_blocks, draw, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import Verb
 from robotd.cli.verbs import map_files, map_store
 from robotd.contract.answers import MapEntryInfo
 from robotd.contract.arguments import MapName
+from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import MapChanged
 from robotd.contract.missions import Legs, MapStart
+from robotd.contract.topics import Topic
 from robotd.core.clock import NS_PER_S
 from robotd.core.grid_bytes import grid_digest
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.grid.tables import NO_INFORMATION
+
+if TYPE_CHECKING:
+    from robotd.client import Client
+
+
+_PATIENCE_S = 0.5
 
 
 def _start(arguments: argparse.Namespace) -> int:
@@ -140,31 +149,42 @@ def _date(unix_ns: int) -> str:
 
 
 def _show(arguments: argparse.Namespace) -> int:
+    if arguments.live:
+        from robotd.cli.live import live  # noqa: PLC0415  # it needs a terminal, and what handles keys
+
+        return live(arguments, with_map=True)
     if arguments.png is not None:
         require_plots("--png")
     with connect(arguments) as client:
         shown = client.map_show(arguments.name, arguments.version)
+        pose = _newest_pose(client, shown.map_id)
+    robot = None if pose is None else pose.best
     if arguments.png is not None:
-        _draw(arguments.png, f"Map {arguments.name}" if arguments.name else "The map in use", shown)
+        _draw(arguments.png, f"Map {arguments.name}" if arguments.name else "The map in use", shown, robot)
     if arguments.json:
         print_json(_facts(shown))
         return OK
     columns = min(shutil.get_terminal_size().columns, arguments.width or 100)
-    cells = shrink(shown.values, columns)
-    blocks = can_draw_blocks(out().encoding)
-    if out().is_terminal and out().color_system and blocks:
-        out().print(coloured(cells))
-    else:
-        out().print(plain(cells, blocks=blocks))
+    console = out()
+    ink = Ink(colour=bool(console.is_terminal and console.color_system), blocks=can_draw_blocks(console.encoding))
+    places_m = [] if pose is None or robot is not None else [(one.pose.x_m, one.pose.y_m) for one in pose.regions]
+    console.print(draw(shrink(shown.spec, shown.values, columns), ink, robot=robot, places_m=places_m))
     if shown.stops is not None:
         out().print(f"made of {shown.stops} stops")
     return OK
 
 
-def _draw(file: Path, title: str, shown: MapChanged) -> None:
+def _newest_pose(client: "Client", map_id: str) -> PoseEstimate | None:
+    """Return where the robot is believed to be, if that is told, and told of this map."""
+    with client.subscribe(Topic.POSE) as events:
+        event = events.next(_PATIENCE_S)
+    return event if isinstance(event, PoseEstimate) and event.map_id == map_id else None
+
+
+def _draw(file: Path, title: str, shown: MapChanged, robot: Pose2 | None) -> None:
     from robotd.cli.pictures.rooms import draw_map  # noqa: PLC0415  # only here is the extra needed
 
-    draw_map(file, title, shown.spec, shown.values)
+    draw_map(file, title, shown.spec, shown.values, robot=robot)
 
 
 def _facts(shown: MapChanged) -> dict[str, object]:
@@ -195,6 +215,7 @@ def _show_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", help="a stored map (default: the one in use)")
     parser.add_argument("--version", type=whole(0), metavar="N", help="an older version of it (default: the newest)")
     parser.add_argument("--width", type=whole(1), metavar="N", help="widest picture, in characters (default: 100)")
+    parser.add_argument("--live", action="store_true", help="show the map in use as it grows, and the robot on it")
     output_argument(parser, "--png", PNG, "draw it into a file, too")
 
 
@@ -220,7 +241,7 @@ VERBS = (
     Verb("map list", "list the stored maps", "robotctl map list", _list, asks_daemon=True),
     Verb(
         "map show",
-        "draw a map on the terminal: white free, grey unknown, black occupied",
+        "draw a map on the terminal, with its axes in metres and the robot",
         "robotctl map show kitchen --png kitchen.png",
         _show,
         _show_arguments,

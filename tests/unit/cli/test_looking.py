@@ -9,10 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from robotd.cli.live import _obeyed
 from robotd.cli.main import main
-from robotd.cli.show.half_blocks import coloured, plain, shrink
+from robotd.cli.show.dashboard import Dashboard
+from robotd.cli.show.half_blocks import Ink, draw, shrink
 from robotd.client.feed import Gap
 from robotd.contract.estimate import PoseState
+from robotd.contract.topics import LogEntry
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
 from tests.unit.cli.conftest import ESTIMATE
 
@@ -111,7 +115,7 @@ def test_a_map_is_drawn_on_the_terminal_and_into_a_file(
     png = tmp_path / "m.png"
     assert main(["map", "show", "lab", "--png", str(png)]) == 0
     assert client.asked[0] == ("map_show", "lab", None)
-    assert capsys.readouterr().out == "█▀▀█\n█▄▄█\nmade of 7 stops\n"
+    assert capsys.readouterr().out.splitlines() == DRAWN
     assert png.read_bytes().startswith(b"\x89PNG")
     assert main(["map", "show", "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
@@ -130,6 +134,11 @@ def test_without_matplotlib_a_png_is_refused_with_what_to_install(
     assert "pip install 'robotd[plots]'" in said
 
 
+DRAWN = ["    0.40|█▀▀█", "        |█▄▄█", "        |0.10 m", "made of 7 stops"]
+SPEC = GridSpec(0.1, -1.0, 2.0, (31, 40))
+PLAIN, ASCII = Ink(colour=False, blocks=True), Ink(colour=False, blocks=False)
+
+
 @pytest.mark.parametrize("columns", [1, 3, 10, 40])
 def test_a_map_shrinks_to_the_width_and_keeps_its_walls(columns: int) -> None:
     rng = np.random.default_rng(columns)
@@ -137,18 +146,82 @@ def test_a_map_shrinks_to_the_width_and_keeps_its_walls(columns: int) -> None:
     cells[3:29, 2:37] = 10
     for row, col in rng.integers((3, 2), (29, 37), (5, 2)):
         cells[row, col] = 250
-    small = shrink(cells, columns)
-    assert small.shape[1] <= columns
-    assert small.shape[0] % 2 == 0
-    step = -(-35 // columns)
+    small = shrink(SPEC, cells, columns)
+    assert small.cells.shape[1] <= max(1, columns - 9)
+    assert small.cells.shape[0] % 2 == 0
     for row, col in np.argwhere(cells == 250):
-        assert small[::-1][(row - 3) // step, (col - 2) // step] == 250
+        x_m, y_m = SPEC.centre_of(float(row), float(col))
+        line, column = small.place(x_m, y_m)
+        assert 250 in small.cells[2 * line : 2 * line + 2, column]
 
 
-def test_a_map_of_nothing_is_drawn_as_nothing() -> None:
-    nothing = shrink(np.full((10, 10), 128, np.uint8), 20)
-    assert plain(nothing).strip() == ""
-    assert coloured(nothing).plain == "▀▀\n"
+def test_free_unknown_and_wall_differ_without_colour_and_the_robot_is_there() -> None:
+    cells = np.full((31, 40), 128, np.uint8)
+    cells[3:29, 2:37] = 10
+    cells[3:5] = 250
+    x_m, y_m = SPEC.centre_of(15.0, 20.0)
+    cells[10:20, 2:6] = 128
+    for ink, inks in ((PLAIN, " ░█↑"), (ASCII, " :#^")):
+        drawn = draw(shrink(SPEC, cells, 60), ink, robot=Pose2(x_m, y_m, 1.57)).plain
+        assert all(letter in drawn for letter in inks)
+    coloured = draw(shrink(SPEC, cells, 60), Ink(colour=True, blocks=True), places_m=[(x_m, y_m)])
+    assert "o" in coloured.plain
+    assert len({span.style for span in coloured.spans}) >= 3
+
+
+def test_axes_tell_where_a_cell_is() -> None:
+    cells = np.full((31, 40), 128, np.uint8)
+    cells[0:30, 0:40] = 10
+    shrunk = shrink(SPEC, cells, 80)
+    lines = draw(shrunk, PLAIN).plain.splitlines()
+    assert float(lines[0].partition("|")[0]) == pytest.approx(2.0 + 3.0 - 0.1)
+    assert lines[-1].split("|")[1].strip() == "-1.00"
+    assert float(lines[-1].split("|")[2]) == pytest.approx(-1.0 + 12 * 0.1)
+
+
+def test_a_map_of_nothing_is_drawn_as_unknown() -> None:
+    assert "░" in draw(shrink(SPEC, np.full((31, 40), 128, np.uint8), 20), PLAIN).plain
+
+
+def test_what_is_shown_live_is_all_that_was_heard(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    client.published = [
+        client.map_show(None, None),
+        *client.mission_events,
+        client.status(),
+        LogEntry(1, "INFO", "robotd", "a line\nand another"),
+    ]
+    assert main(["map", "show", "--live"]) == 0
+    shown = capsys.readouterr().out
+    for words in (
+        "keys: space or s stops",
+        "idle: armed by request",
+        "drive ready armed",
+        "localized: x 1.000",
+        "info a line",
+    ):
+        assert words in shown
+    assert "0.40|" in shown
+    assert main(["top"]) == 0
+    assert "idle: armed by request" in capsys.readouterr().out
+
+
+def test_a_map_that_changes_is_drawn_as_it_is_then(client: Any) -> None:
+    board = Dashboard()
+    whole = client.map_show(None, None)
+    board.hear(whole)
+    board.hear(replace(whole, whole=False, cells=np.array([7]), values=np.array([3], np.uint8)))
+    assert board.values is not None
+    assert board.values.reshape(-1)[7] == 3
+    assert whole.values.reshape(-1)[7] == 255
+
+
+@pytest.mark.parametrize(
+    ("key", "asked"),
+    [(" ", ("stop", "stopped at the command line")), ("s", ("stop", "stopped at the command line")), ("a", "arm")],
+)
+def test_keys_stop_and_arm(client: Any, key: str, asked: object) -> None:
+    assert _obeyed(client, key)
+    assert client.asked[-1] == asked
 
 
 def test_recording_is_started_and_stopped(client: Any, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from rich.text import Text
 
-from robotd.cli.show.half_blocks import plain
+from robotd.cli.show.half_blocks import Ink, Shrunk, draw
 from robotd.cli.show.progress import MissionBars
 from robotd.cli.show.terminal import command_line, complain, plain_console, print_pairs, print_table
 from robotd.contract.events import MissionPhase, MissionProgress, Status
@@ -74,9 +74,10 @@ def test_no_command_is_printed_unquoted() -> None:
 
 
 def test_a_map_has_a_form_in_ascii() -> None:
-    cells = np.array([[0, 255, 0, 255], [0, 0, 255, 255]], np.uint8)
-    assert plain(cells) == " ▀▄█"
-    assert plain(cells, blocks=False) == " '.#"
+    shrunk = Shrunk(np.array([[0, 255, 0, 255, 128], [0, 0, 255, 255, 128]], np.uint8), 0.0, 0.2, 0.1)
+    for blocks, inked in ((True, " ▀▄█░"), (False, " '.#:")):
+        line, _ = draw(shrunk, Ink(colour=False, blocks=blocks)).plain.splitlines()
+        assert line == f"    0.10|{inked}"
 
 
 @pytest.mark.parametrize("environment", [{"PYTHONIOENCODING": "ascii"}, {"PYTHONIOENCODING": "latin-1"}])
