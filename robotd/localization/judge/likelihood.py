@@ -43,6 +43,12 @@ class Sight:
     meaningless: NDArray[np.float64]
     """``float64[m]``, how likely each is to mean nothing."""
 
+    @property
+    def is_hit(self) -> NDArray[np.bool_]:
+        """Which of them ended somewhere, ``bool[m]``."""
+        hit: NDArray[np.bool_] = self.beams[:, 7] == 0.0
+        return hit
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Likelihood:
@@ -111,7 +117,7 @@ class Likelihood:
         at = np.column_stack((self.spec.positions_at(poses[:, :2]), np.cos(poses[:, 2]), np.sin(poses[:, 2])))
         densities = kernels.in_use().weigh.weigh_beams(self.chances, at, sight.beams)
         # The kernel's densities are per cell; a miss has a chance, which is without unit.
-        densities[:, sight.beams[:, 7] == 0.0] /= self.spec.resolution_m
+        densities[:, sight.is_hit] /= self.spec.resolution_m
         densities *= sight.seen_so_far[:, None]
         densities[:, :, IN_UNKNOWN] *= sight.unseen
         return densities

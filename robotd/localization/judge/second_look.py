@@ -172,7 +172,8 @@ def _contrast(hill: Hill, poses: NDArray[np.float64]) -> float:
     elsewhere = poses[~near(poses, poses[0], _ELSEWHERE_M, _ELSEWHERE_RAD)]
     logs = hill.likelihood.logs(hill.sight, np.concatenate((poses[:1], elsewhere))) * hill.weights
     said = logs[0] - logs[1:]
-    in_common = hill.likelihood.model.map_sharpness_sigma * float(hill.weights.sum())
+    # A miss ends on no wall: there is nothing that the map could show more sharply in one place.
+    in_common = hill.likelihood.model.map_sharpness_sigma * float(hill.weights[hill.sight.is_hit].sum())
     errors = np.sqrt((said * said).sum(axis=1) + in_common**2)
     contrasts = np.divide(said.sum(axis=1), errors, out=np.zeros(len(said)), where=errors > 0.0)
     return float(contrasts.min(initial=math.inf))

@@ -1,6 +1,7 @@
 """A whole daemon on a simulated robot maps a world, drives to places in it, and says where it is; in virtual time."""
 
 import enum
+import math
 import tempfile
 from collections import Counter
 from dataclasses import dataclass
@@ -85,7 +86,8 @@ def _verdict(estimate: PoseEstimate, truth: Pose2) -> Found:
         return Found.RIGHT if estimate.best.distance_m(truth) <= _RIGHT_M else Found.WRONG_AND_SURE
     if estimate.state is not PoseState.AMBIGUOUS:
         return Found.LOST
-    is_named = any(region.extent.holds(truth, near_m=_RIGHT_M, near_rad=0.1) for region in estimate.regions)
+    # The base turns within a sweep, after the heading that the estimate speaks of: places are compared.
+    is_named = any(region.extent.holds(truth, near_m=_RIGHT_M, near_rad=math.pi) for region in estimate.regions)
     return Found.WITH_TRUTH if is_named else Found.WITHOUT_TRUTH
 
 

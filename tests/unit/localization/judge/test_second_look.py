@@ -3,7 +3,7 @@
 import math
 from dataclasses import asdict, dataclass, replace
 from functools import cache
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
@@ -227,9 +227,17 @@ class Said:
         return logs
 
 
-def contrast_of(*rows: list[float], sharpness: float = 0.0) -> float:
+@dataclass
+class OfHits:
+    """The sight of some hits, and then of nothing but misses."""
+
+    is_hit: NDArray[np.bool_]
+
+
+def contrast_of(*rows: list[float], sharpness: float = 0.0, misses: int = 0) -> float:
     poses = np.array([[APART_M * number, 0.0, 0.0] for number in range(len(rows))])
-    return _contrast(Hill(Said(*rows, sharpness=sharpness), cast("Any", None), np.ones(len(rows[0]))), poses)  # type: ignore[arg-type]  # a stand-in
+    sight = OfHits(np.arange(len(rows[0])) < len(rows[0]) - misses)
+    return _contrast(Hill(Said(*rows, sharpness=sharpness), sight, np.ones(len(rows[0]))), poses)  # type: ignore[arg-type]  # stand-ins
 
 
 def test_no_single_reading_decides_however_loud_it_is() -> None:
@@ -256,9 +264,17 @@ def test_small_differences_in_all_readings_are_no_more_than_luck_of_the_map() ->
     assert contrast_of([0.5] * 100, nothing, sharpness=0.1) > 3.0
 
 
+def test_misses_have_no_such_luck_as_there_is_no_wall_to_be_shown_sharply() -> None:
+    """In a hall most beams meet nothing: they were held against the few that tell two bays apart."""
+    nothing, told = [0.0] * 100, [3.0] * 5 + [0.0] * 95
+    of_hits = contrast_of(told, nothing, sharpness=0.11)
+    assert contrast_of(told, nothing, sharpness=0.11, misses=70) > 1.4 * of_hits
+    assert contrast_of(told, nothing, misses=70) == contrast_of(told, nothing)
+
+
 def test_what_lies_close_by_is_left_to_belief_alone() -> None:
     """It is seen on the same walls, so no luck of the map tells the two apart."""
-    hill = Hill(Said([0.0] * 4), cast("Any", None), np.ones(4))  # type: ignore[arg-type]  # a stand-in
+    hill = Hill(Said([0.0] * 4), OfHits(np.ones(4, np.bool_)), np.ones(4))  # type: ignore[arg-type]  # stand-ins
     assert _contrast(hill, np.array([[1.0, 2.0, 0.0], [1.4, 2.0, 0.1]])) == math.inf
 
 
