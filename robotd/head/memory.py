@@ -16,6 +16,8 @@ from robotd.head.wire import pack_job, unpack_answer
 
 _QUICK = 1
 """Level of zlib: 300 readings are 40 KB of numbers with names, a tenth of that packed."""
+_PACKED_ALREADY = 2**18
+"""Bytes of a job; what is more is a map, whose cells are packed: once more would only keep the loop, for 0.2 s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,21 +25,24 @@ class Step:
     """A job to be done again. Kept as bytes: a thousand sweeps would be some hundred thousand objects."""
 
     kind: type[Job[Any]]
-    _packed: bytes
+    _kept: bytes
     digest: str | None
     """Of the map that it leads to; None if it leads to none."""
+    _is_packed: bool
 
     @classmethod
     def of(cls, job: Job[Any], answer: object) -> "Step":
         """Return what leads to the same as a job that was answered."""
         again = job.again(answer)
         digest = answer.digest if isinstance(answer, HeldMap | Inserted) else None
-        return cls(type(again), zlib.compress(pack_job(again), _QUICK), digest)
+        data = pack_job(again)
+        is_packed = len(data) < _PACKED_ALREADY
+        return cls(type(again), zlib.compress(data, _QUICK) if is_packed else data, digest, is_packed)
 
     @property
     def data(self) -> bytes:
         """The job as bytes."""
-        return zlib.decompress(self._packed)
+        return zlib.decompress(self._kept) if self._is_packed else self._kept
 
     def check(self, answer: bytes) -> None:
         """Refuse an answer that is not what it was; ChildError says so."""
