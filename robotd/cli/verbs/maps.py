@@ -21,7 +21,7 @@ from robotd.cli.quantities import heading_of_deg, number, whole
 from robotd.cli.show.half_blocks import Ink, can_draw_blocks, draw, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import Verb
-from robotd.cli.verbs import map_files, map_store
+from robotd.cli.verbs import map_files, map_stops, map_store
 from robotd.contract.answers import MapEntryInfo
 from robotd.contract.arguments import MapName
 from robotd.contract.estimate import PoseEstimate
@@ -249,4 +249,5 @@ VERBS = (
     ),
     *map_files.VERBS,
     *map_store.VERBS,
+    *map_stops.VERBS,
 )
