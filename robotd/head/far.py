@@ -127,7 +127,8 @@ class FarHead:
         asked = self._wait(job)
         self._tell()
         if self._is_lost:
-            self._refuse(asked, self._why_lost)
+            # Not from here: who ends a mission must not be the mission, which would wait for itself.
+            asyncio.get_running_loop().call_soon(self._refuse, asked, self._why_lost)
         try:
             answer: A = await asked.answer
         finally:
@@ -248,7 +249,7 @@ class FarHead:
 
     def _refuse(self, asked: _Asked, why: str) -> None:
         """Let one who waits know that there is no answer to come."""
-        if isinstance(asked.job, Forget):
+        if isinstance(asked.job, Forget) or asked not in self._asked:
             return
         if not asked.job.is_noted:
             if not asked.answer.done():

@@ -286,7 +286,7 @@ async def test_a_head_that_cannot_be_started_is_waited_for_for_a_while_and_tried
     with pytest.raises(ChildError, match="away"):  # and at once, for as long as it is away
         await head.ask(ShowMap(MapRef(1)))
     asking = asyncio.create_task(head.ask(BeginMap(1, SPEC, GRID)))
-    await asyncio.sleep(0.0)
+    await asyncio.sleep(0.01)
     assert len(told.lost) == 2
     asking.cancel()
     await asyncio.sleep(60.0)
