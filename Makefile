@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real demo-busy test bench bench-peers paper conservative exact faults replay-many liars fuzz safety stops heart lag worlds firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help demo demo-real demo-busy test bench bench-peers paper conservative exact faults replay-many liars fuzz safety stops heads heart lag worlds firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -67,6 +67,9 @@ fuzz: .venv/.dev  ## Strange bytes for every parser, a minute each: make fuzz FU
 
 safety: .venv/.dev  ## How late stops are on the wires in real time, all processors busy (half an hour; make safety SHARE=0.1)
 	@$(BIN)/python -m tests.studies.safety.run $(if $(SHARE),--share $(SHARE))
+
+heads: .venv/.dev  ## Kill or stop the process that computes, whatever the robot is at: TRIALS=200, a table (half an hour)
+	@$(BIN)/python -m tests.studies.heads.run $(if $(TRIALS),--trials $(TRIALS))
 
 stops: .venv/.dev  ## Whether the robot comes to rest whatever ends the daemon, whatever its devices speak: a table (minutes)
 	@$(BIN)/python -m tests.studies.stops.run $(if $(ONLY),--only $(ONLY)) $(if $(TRIALS),--trials $(TRIALS))

@@ -8,6 +8,15 @@ import pytest
 ROOMS_OF_OTHERS = {"robotd.sim", "robotd.cli"}
 LIBRARIES_OF_OTHERS = {"rich", "matplotlib", "PIL", "scipy", "hypothesis", "pytest"}
 LARGEST_MIB = 60.0
+COMPUTES = (
+    "robotd.grid.kernels",
+    "robotd.grid.occupancy",
+    "robotd.localization.ready_map",
+    "robotd.planning.path",
+    "robotd.head.desk",
+    "robotd.head.program",
+)
+"""All else that computes stands on these."""
 ROOMS_OF_CLIENTS = {"client", "contract", "core"}
 ROOMS_OF_FRONT = {"front", "server", "children", "contract", "core"}
 LIBRARIES_OF_THE_ENGINE = {"cffi", "_cffi_backend", "serial", "mcap", "rich", "firmware_proto"}
@@ -34,6 +43,11 @@ def test_the_heart_imports_nothing_that_serves_strangers(modules: set[str]) -> N
     assert {name for name in modules if name.startswith(("robotd.server.", "robotd.client"))} == {
         "robotd.server.settings"
     }
+
+
+def test_the_heart_imports_nothing_that_computes(modules: set[str]) -> None:
+    assert "robotd.head.far" in modules
+    assert {name for name in modules if name.startswith(COMPUTES)} == set()
 
 
 def test_the_daemon_imports_no_library_that_only_people_need(modules: set[str]) -> None:

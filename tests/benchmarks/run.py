@@ -16,7 +16,7 @@ import numpy as np
 
 from robotd.grid import kernels
 from tests.benchmarks import workload
-from tests.benchmarks.sections import counting, erring, graph, inserting, refining, scaling, searching, storing
+from tests.benchmarks.sections import asking, counting, erring, graph, inserting, refining, scaling, searching, storing
 from tests.benchmarks.timing import Timing, copying, yardstick
 
 ROOT = Path(__file__).parents[2]
@@ -31,6 +31,7 @@ SECTIONS: dict[str, Callable[[], Iterable[Timing]]] = {
     "scaling": scaling.timings,
     "storing": storing.timings,
     "graph": graph.timings,
+    "asking": asking.timings,
 }
 """In the order of the report, by the name that ``--only`` takes."""
 

@@ -2,7 +2,7 @@
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,7 +12,7 @@ import pytest
 from robotd.app.compose import compose, head_settings
 from robotd.app.daemon import new_journal
 from robotd.app.replaying import replay_recording
-from robotd.children.channel import Channel
+from robotd.children.channel import Channel, Part
 from robotd.children.in_process import InProcess, Main
 from robotd.children.process import Running
 from robotd.config import Config
@@ -72,17 +72,17 @@ class _Between:
     """A lane on which something may happen before a job is received; the first message is no job."""
 
     lane: Channel
-    before_job: Callable[[], object]
+    before_job: Callable[[], Awaitable[None]]
     received: int = 0
 
     async def receive(self) -> bytes:
         message = await self.lane.receive()
         self.received += 1
         if self.received > 1:
-            await self.before_job()  # type: ignore[misc]  # it is a coroutine function
+            await self.before_job()
         return message
 
-    def send(self, *parts: bytes) -> bool:
+    def send(self, *parts: Part) -> bool:
         return self.lane.send(*parts)
 
     async def room(self) -> None:

@@ -139,7 +139,11 @@ async def rig(directory: Path, dialects: Dialects | None = None) -> AsyncIterato
         for watch in watches:
             laid[watch.device].set_fault(watch)
         text = config_text(ports, dialects.settings())
-        for name, more in (("robotd.toml", ""), ("quick.toml", "\n[sweep]\nreadings = 4\n")):
+        for name, more in (
+            ("robotd.toml", ""),
+            ("quick.toml", "\n[sweep]\nreadings = 4\n"),
+            ("few.toml", "\n[sweep]\nreadings = 40\n"),
+        ):
             (directory / name).write_text(text + more)
         yield Rig(robot, watches, directory)
 
