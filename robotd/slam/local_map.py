@@ -32,7 +32,9 @@ class LocalMaps:
     def of(cls, of_map: GridSettings, localization: LocalizationSettings) -> "LocalMaps":
         """Return how local maps are made for a map of some settings: of cells of that size."""
         usual = cls()
-        return cls(replace(usual.grid, resolution_m=of_map.resolution_m), usual.reach_m, localization)
+        # Of fine cells a map as wide would be as large as any may be, at every stop.
+        reach_m = min(usual.reach_m, _REACH_CELLS * of_map.resolution_m)
+        return cls(replace(usual.grid, resolution_m=of_map.resolution_m), reach_m, localization)
 
     def ground(self, graph: StopGraph, which: Sequence[int] | NDArray[np.intp], around: Pose2) -> Ground:
         """Return the map that some stops make about a place."""
@@ -47,5 +49,6 @@ class LocalMaps:
         return Ground(grid, self.localization)
 
 
+_REACH_CELLS = 1000
 _MARGIN_M = 0.5
 """Beyond the farthest head, so that none is at the edge."""
