@@ -7,8 +7,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from robotd.children.framing import Unframer, header
 from robotd.cli.exact_inputs import read_beams, read_map
 from robotd.config import Config, effective_text, loads
+from robotd.contract.answers import Done
 from robotd.contract.arguments import PoseArgument
 from robotd.contract.envelope import (
     BadRequest,
@@ -21,8 +23,18 @@ from robotd.contract.envelope import (
 from robotd.contract.missions import DriveTo, Localize, MapStart
 from robotd.contract.request import Request
 from robotd.contract.requests import Hello, MapLoad, RecordStart, Stop
-from robotd.core.errors import ConfigError, MapError, RecordingError, RemoteProtocolError, RobotdError, ServerError
+from robotd.core.errors import (
+    ChildError,
+    ConfigError,
+    MapError,
+    RecordingError,
+    RemoteProtocolError,
+    RobotdError,
+    ServerError,
+)
 from robotd.core.grid_spec import GridSpec
+from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
+from robotd.front.messages import answer, event, said
 from robotd.hardware.link.tap import Direction
 from robotd.logs.scan import RecordedLog
 from robotd.maps.manifest import FileSum, Manifest, decode_manifest
@@ -30,6 +42,7 @@ from robotd.maps.stops_file import decode_stops, encode_stops
 from robotd.recording.entries import BytesEntry, CommandEntry, LineEntry, RecordingHeader
 from robotd.recording.reader import read
 from robotd.recording.recorder import Recorder
+from robotd.server.zmtp import GREETING, Ping, Reader, Violation, message, pong, ready
 from robotd.sim.buildings.building import RecordedBuilding, encode_recorded_building, select_stops
 from robotd.sim.buildings.log_file import read_log
 from robotd.sim.buildings.world import parse_world
@@ -146,7 +159,37 @@ def _stops_of(content: bytes) -> object:
     return stops
 
 
+def _of_clients(data: bytes) -> object:
+    return list(Reader(longest_bytes=4096, most_frames=4).feed(data))
+
+
+def _clients() -> list[bytes]:
+    hello = GREETING + ready(b"DEALER")
+    return [GREETING, hello, hello + message(b"\x01pose\0"), hello + message(b"", b"request") + pong(Ping(b"abc"))]
+
+
+def _of_front(data: bytes) -> object:
+    return list(Unframer(4096).feed(data))
+
+
 DOCUMENTS = (
+    Target("zmtp", _of_clients, _clients, ("robotd/server/zmtp.py",), typed=(Violation,), size_max=512),
+    Target(
+        "channel",
+        _of_front,
+        lambda: [header(3) + b"abc" + header(0)],
+        ("robotd/children/framing.py",),
+        typed=(RemoteProtocolError,),
+        size_max=512,
+    ),
+    Target(
+        "front-messages",
+        said,
+        lambda: [b"".join(event(Odometry(1, IDENTITY, STANDSTILL))), b"".join(answer(1, Done()))],
+        ("robotd/front/messages.py",),
+        typed=(ChildError,),
+        size_max=512,
+    ),
     Target("requests", _answered, _requests, ("robotd/contract/envelope.py",), size_max=512),
     Target(
         "replies", decode_reply, _replies, ("robotd/contract/envelope.py",), typed=(RemoteProtocolError,), size_max=512
