@@ -6,7 +6,15 @@ from collections.abc import Callable
 from typing import Any
 
 from robotd.contract.estimate import PoseEstimate, PoseState, Region
-from robotd.contract.events import MapChanged, MissionProgress, RangeMeasured, Status, SweepDone, SweepProgress
+from robotd.contract.events import (
+    MapChanged,
+    MissionProgress,
+    RangeMeasured,
+    Status,
+    StopPlaced,
+    SweepDone,
+    SweepProgress,
+)
 from robotd.contract.topics import EVENTS, LogEntry, Published
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import ReadingStatus
@@ -25,8 +33,15 @@ def as_json(event: Published) -> dict[str, Any]:
 
 def in_words(event: Published) -> str:
     """Return an event in one line."""
-    words: Callable[[Any], str] = _WORDS[type(event)]
+    words: Callable[[Any], str] = _WORDS.get(type(event), _fields_in_words)
     return words(event)
+
+
+def _fields_in_words(event: Published) -> str:
+    """Return an event that has no words of its own as its name and its fields, on one line."""
+    fields = dataclasses.asdict(event)
+    said = ", ".join(f"{name} {value}" for name, value in fields.items() if name != "time_ns" and value is not None)
+    return f"{EVENTS[type(event)][1].replace('_', ' ')}: {said}"
 
 
 def held_in_words(status: Status) -> str:
@@ -132,6 +147,10 @@ _WORDS: dict[type[Published], Callable[[Any], str]] = {
     MissionProgress: mission_in_words,
     Odometry: odometry_in_words,
     RangeMeasured: range_in_words,
+    StopPlaced: lambda event: (
+        f"stop {event.stop + 1} {event.outcome.replace('_', ' ')}: {pose_in_words(event.pose)},"
+        f" {event.explained:.0%} explained, {event.contradicted:.0%} contradicted"
+    ),
     Status: lambda event: f"{event.mode}: {event.reason}",
     SweepDone: lambda event: (
         f"sweep {event.sweep.number} done: {len(event.sweep.measured)} of {len(event.sweep.readings)} measured"

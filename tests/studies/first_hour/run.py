@@ -175,6 +175,8 @@ def calibrate(hour: Hour) -> None:
             places = ("server.runtime_dir=run", "maps.dir=maps", "recording.dir=recordings")
             # A simulated board that gets no processor is slow, and not gone.
             slow = [f"{name}.silence_s=10.0" for name in ("drive", "pantilt", "rangefinder")]
+            # And a client that gets none keeps its lease all the same: nobody stands beside this robot.
+            slow.append("server.lease_s=5.0")
             settings = [*places, *slow, *(f"drive.{key}={value}" for key, value in WRONG.items())]
             hour.run("config", "init", "robotd.toml", *devices, *(w for one in settings for w in ("--set", one)))
             hour.run("config", "check", "robotd.toml")

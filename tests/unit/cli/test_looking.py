@@ -13,12 +13,14 @@ from robotd.cli.live import _obeyed
 from robotd.cli.main import main
 from robotd.cli.show.dashboard import Dashboard
 from robotd.cli.show.half_blocks import Ink, draw, shrink
+from robotd.cli.show.wording import in_words
 from robotd.client.feed import Gap
 from robotd.contract.estimate import PoseState
-from robotd.contract.topics import LogEntry
+from robotd.contract.topics import LogEntry, from_wire
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
 from tests.unit.cli.conftest import ESTIMATE
+from tests.unit.contract.messages import message, names
 
 
 def test_a_pose_is_its_state_and_all_its_regions(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
@@ -55,6 +57,13 @@ def test_what_is_watched_is_printed_as_it_comes(client: Any, capsys: pytest.Capt
     changed, gap = map(json.loads, capsys.readouterr().out.splitlines())
     assert (changed["event"], changed["cells"], changed["spec"]["shape"]) == ("map_changed", 36, [6, 6])
     assert gap == {"event": "gap", "topic": "pose", "missed": None}
+
+
+@pytest.mark.parametrize("name", names("events"))
+def test_every_event_has_its_words(name: str) -> None:
+    event = from_wire(message(f"events/{name}"))
+    assert event is not None
+    assert len(in_words(event).splitlines()) == 1
 
 
 def test_counts_are_shown_raw(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
