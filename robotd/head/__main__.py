@@ -4,7 +4,9 @@ import asyncio
 import logging
 import os
 import sys
+from contextlib import suppress
 
+from robotd.children.channel import HungUp
 from robotd.children.inside import Birth, adopted
 from robotd.core.log import configure
 from robotd.head.program import serve
@@ -21,7 +23,8 @@ def main() -> None:
     configure(*birth.arguments)
     code = 1
     try:
-        asyncio.run(_main(birth))
+        with suppress(HungUp):  # over whichever channel is looked at first
+            asyncio.run(_main(birth))
         code = 0
     except Exception:
         logging.getLogger("robotd.head").exception("the head ends")

@@ -83,7 +83,7 @@ async def _measured(directory: Path, attack: str, trials: int) -> tuple[Suffered
     async with rig(directory) as it:
         with_a_large_map(it)
         async with it.daemon(("-m", "tests.studies.lag.measured", "plain", str(samples_file))) as process:
-            suffered = await suffer(it, process.pid, attack, trials)
+            suffered = await suffer(it, process.pid, [attack], trials)
             process.terminate()
             await process.wait()
     figures = Samples.read(samples_file).between(0, 2**62)

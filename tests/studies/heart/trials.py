@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from contextlib import aclosing
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +16,7 @@ from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import MapStart
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.maps.store import MapStore
 from tests.studies.lag.workload import large_grid
 from tests.support.real_rig import Rig, armed, ms_since
@@ -41,13 +42,15 @@ class Suffered:
     """Of the front."""
 
 
-async def suffer(rig: Rig, daemon_pid: int, attack: str, trials: int, share: float = 1.0) -> Suffered:
-    """Stop missions while an attacker is at work."""
+async def suffer(rig: Rig, daemon_pid: int, attacks: Sequence[str], trials: int, share: float = 1.0) -> Suffered:
+    """Stop missions while attackers are at work."""
     came_of_it = Suffered()
     before = front_of(daemon_pid)
     async with AsyncClient(rig.runtime_dir, deadline_s=60.0) as client:
         await client.hello()
-        async with attacker(attack, rig.runtime_dir, share):
+        async with contextlib.AsyncExitStack() as stack:
+            beginning = [stack.enter_async_context(attacker(attack, rig.runtime_dir, share)) for attack in attacks]
+            await asyncio.gather(*beginning)
             for _ in range(trials):
                 came_of_it.stops_ms.append(await _stopped_ms(rig, client, came_of_it))
                 came_of_it.heart_mib = max(came_of_it.heart_mib, _mib(daemon_pid))
@@ -105,9 +108,9 @@ async def attacker(name: str, runtime_dir: Path, share: float) -> AsyncIterator[
         await process.wait()
 
 
-def with_a_large_map(rig: Rig) -> None:
+def with_a_large_map(rig: Rig, grid: OccupancyGrid | None = None) -> None:
     """Lay a map into the store that takes long to read, pack and send."""
-    MapStore(rig.directory / "maps").save("large", large_grid(), {}, 0)
+    MapStore(rig.directory / "maps").save("large", grid or large_grid(), {}, 0)
 
 
 def front_of(daemon_pid: int) -> int:
