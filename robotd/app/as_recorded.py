@@ -10,12 +10,19 @@ from typing import Any
 
 from robotd.config import Config, loads
 from robotd.grid.settings import BetweenBeams
+from robotd.localization.obstacles.error_radius import ErrorRadius
 from robotd.localization.obstacles.thick_walls import ThickWalls
 from robotd.localization.stop_poses import StopPoses
 
 SINCE: dict[str, dict[str, Any]] = {
     "grid": {"between_beams": BetweenBeams.UNSEEN},
-    "localization": {"thick_walls": ThickWalls.AS_DRAWN, "stops": StopPoses.ODOMETRY},
+    "error_model": {"mapped_walls_go_on": 0.0},
+    "localization": {
+        "thick_walls": ThickWalls.AS_DRAWN,
+        "error_radius": ErrorRadius.CONSTANT,
+        "budget_s": 3600.0,
+        "stops": StopPoses.ODOMETRY,
+    },
     "second_look": {"on_walls_min": 0.0},
 }
 """By section and key; a section that is missing was not recorded, and says nothing."""
@@ -31,6 +38,7 @@ def recorded_config(text: str) -> Config:
     written = tomllib.loads(text)
     return replace(
         config,
+        error_model=replace(config.error_model, **_missing("error_model", written)),
         grid=replace(config.grid, **_missing("grid", written)),
         localization=replace(config.localization, **_missing("localization", written)),
         second_look=replace(config.second_look, **_missing("second_look", written)),

@@ -140,6 +140,9 @@ class PoseEstimate:
     jumped_m: float | None = None
     """How far the first region lies from where odometry puts the robot, if that is farther than odometry errs: then the
     state is ``ambiguous`` until another look agrees. Else None."""
+    complete: bool = True
+    """Whether every pose was looked at that may be the answer; not where the budget of the search ran out, or where
+    there were too many to tell. Then the state is ``ambiguous``."""
     ends: Ends | None = None
     """How much of the sweep the map knows at the best place that was weighed, whatever the state; None without one."""
 

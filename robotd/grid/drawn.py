@@ -74,11 +74,11 @@ class Drawn:
         # From the start as it is, not from its cell: rounding twice would put heads a cell off.
         return _nearest(self.starts + self.range_cells[:, None] * self.ahead)
 
-    def body_lengths(self, error_radius_cells: float, reach_cells: float) -> NDArray[np.int64]:
+    def body_lengths(self, error_radius_cells: float | NDArray[np.float64], reach_cells: float) -> NDArray[np.int64]:
         """Return how many cells each body has from its start on, ``int64[n]``.
 
         Args:
-            error_radius_cells: by how much bodies are shorter than readings.
+            error_radius_cells: by how much bodies are shorter than readings, all or each ``float64[n]``.
             reach_cells: where they end at the latest; more than the grid is wide and high changes nothing.
         """
         free_cells = np.clip(self.range_cells - error_radius_cells, 0.0, reach_cells)

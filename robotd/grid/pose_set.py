@@ -31,7 +31,9 @@ class PoseSet:
         return cls(np.zeros((0, 3), np.intp), np.zeros(0, np.uint16), 0, least_rank)
 
     @classmethod
-    def of_rows(cls, rows: NDArray[np.int32], best_rank: int, least_rank: int, *, slack: int) -> "PoseSet":
+    def of_rows(
+        cls, rows: NDArray[np.int32], best_rank: int, least_rank: int, *, slack: int, is_complete: bool = True
+    ) -> "PoseSet":
         """Take what a kernel found.
 
         Args:
@@ -39,9 +41,10 @@ class PoseSet:
             best_rank: the greatest rank; 0 if it is less than what was asked for.
             least_rank: of all that are here.
             slack: poses were asked for that explain up to this many readings fewer than the best.
+            is_complete: whether it looked at all there is.
         """
         # A kernel that finds too many raises the least rank: then some that were asked for are missing.
-        is_all = least_rank <= max(1, best_rank - slack) or best_rank == 0
+        is_all = is_complete and (least_rank <= max(1, best_rank - slack) or best_rank == 0)
         return cls(rows[:, :3].astype(np.intp), rows[:, 3].astype(np.uint16), best_rank, least_rank, is_all)
 
     def __len__(self) -> int:

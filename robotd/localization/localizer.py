@@ -99,6 +99,7 @@ class Localizer:
             final=final,
             map_id=self.map_id,
             regions_left_out=left_out,
+            complete=found.is_all,
             belief_aside=look.aside,
             belief_nowhere=look.nowhere,
             # Infinite where the place has no rival: None says that in a message.

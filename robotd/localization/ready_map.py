@@ -3,9 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from robotd.contract.area import Area
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
@@ -16,12 +13,11 @@ from robotd.localization.conservative.conservative_poses import ErrorBounds, Sur
 from robotd.localization.conservative.conservative_rank import ConservativeMap
 from robotd.localization.conservative.unexcluded import UnexcludedStop
 from robotd.localization.count.limits import FEW_HEADINGS
-from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.meaning import Meaning
-from robotd.localization.obstacles.beam_obstacles import Obstacles
-from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.obstacles.wall_cores import WallCores
+from robotd.localization.radii import radii_of
 from robotd.localization.search.bounded_search import SearchMap
 from robotd.localization.search.cell_disk import CellDisk
 from robotd.localization.settings import LocalizationSettings
@@ -37,7 +33,7 @@ class ReadyMap:
     """How thick its walls are drawn."""
     settings: LocalizationSettings
     """How it was read."""
-    prepared: PreparedMap
+    prepared: Levels
     """For counting."""
     searched: SearchMap
     """For the search."""
@@ -67,7 +63,7 @@ class ReadyMap:
             return UnexcludedStop(self.sure, headings_rad, disk, outlier_share=share, threads=threads)
         # A rank grid counts the whole map; within a disk, a search looks only at the cells that are wanted.
         if disk is None and len(headings_rad) <= FEW_HEADINGS:
-            return CountedStop(RankGrid(self.prepared, headings_rad, threads=threads), settings)
+            return CountedStop(self.prepared, headings_rad, settings, threads=threads)
         return SearchedStop(self.searched, headings_rad, disk, settings, threads=threads)
 
     @classmethod
@@ -82,21 +78,18 @@ class ReadyMap:
     def _of(
         cls, grid: OccupancyGrid, cores: WallCores, settings: LocalizationSettings, errors: ErrorModel
     ) -> "ReadyMap":
-        ternary, before_cores = TernaryMap.from_grid(grid), cores.before_cores()
-        error_radius_cells = settings.error_radius_cells(grid.spec.resolution_m)
-        obstacles = Obstacles.of_map(
+        ternary = TernaryMap.from_grid(grid)
+        levels = Levels.of_map(
             ternary,
             settings.unknown,
-            error_radius_cells,
+            radii_of(settings, grid.spec),
             blocked_by=settings.blocked_by,
-            before_cores=before_cores,
+            before_cores=cores.before_cores(),
         )
-        prepared = PreparedMap.of(obstacles, ternary.spec, error_radius_cells)
-        searched = SearchMap.of(obstacles, ternary.spec, error_radius_cells)
         meanings = tuple(
-            Meaning.of(grid.spec, cells, obstacles.blocking, errors) for cells in cores.readings_of(grid.cells)
+            Meaning.of(grid.spec, cells, levels.obstacles.blocking, errors) for cells in cores.readings_of(grid.cells)
         )
-        return cls(ternary, cores, settings, prepared, searched, meanings, _sure(ternary, settings))
+        return cls(ternary, cores, settings, levels, SearchMap.of(levels), meanings, _sure(ternary, settings))
 
     def updated(self, grid: OccupancyGrid, changed: CellWindow) -> "ReadyMap":
         """Return the map of a grid that differs from the one this is of in a window alone.
@@ -110,23 +103,14 @@ class ReadyMap:
         cores = self.cores.updated(ternary.occupied, changed)
         if cores.depth_cells != self.cores.depth_cells:
             return self._of(grid, cores, self.settings, self.meanings[0].likelihood.model)
-        changed, before_cores = changed.grown(cores.reach_cells, ternary.spec.shape), cores.before_cores()
-        prepared = self._prepared(ternary, before_cores, changed)
-        # A disk reaches whole cells along a row or a column, so rounding its radius down loses none of them.
-        radius_cells = int(self.prepared.error_radius_cells)
-        searched = self.searched.updated(prepared.obstacles, changed.grown(radius_cells, ternary.spec.shape))
+        changed = changed.grown(cores.reach_cells, ternary.spec.shape)
+        levels = self.prepared.updated(ternary, self.settings.unknown, changed, cores.before_cores())
+        searched = self.searched.updated(levels, levels.reach(changed))
         meanings = tuple(
-            meaning.updated(cells, prepared.obstacles.blocking, changed)
+            meaning.updated(cells, levels.obstacles.blocking, changed)
             for meaning, cells in zip(self.meanings, cores.readings_of(grid.cells), strict=True)
         )
-        return ReadyMap(ternary, cores, self.settings, prepared, searched, meanings, _sure(ternary, self.settings))
-
-    def _prepared(
-        self, ternary: TernaryMap, before_cores: NDArray[np.bool_] | None, changed: CellWindow
-    ) -> PreparedMap:
-        radius_cells, unknown = self.prepared.error_radius_cells, self.settings.unknown
-        obstacles = self.prepared.obstacles.updated(ternary, unknown, radius_cells, changed, before_cores)
-        return self.prepared.updated(obstacles, changed.grown(int(radius_cells), ternary.spec.shape))
+        return ReadyMap(ternary, cores, self.settings, levels, searched, meanings, _sure(ternary, self.settings))
 
 
 def _sure(ternary: TernaryMap, settings: LocalizationSettings) -> ConservativeMap | None:

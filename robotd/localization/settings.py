@@ -6,6 +6,7 @@ from typing import Annotated
 
 from robotd.core.bounds import Within, refuse_outside
 from robotd.localization.even_headings import even_headings
+from robotd.localization.obstacles.error_radius import ErrorRadius
 from robotd.localization.obstacles.thick_walls import ThickWalls
 from robotd.localization.obstacles.unknown_cells import UnknownCells
 from robotd.localization.stop_poses import StopPoses
@@ -21,6 +22,11 @@ class LocalizationSettings:
 
     range_error_m: Annotated[float, Within(0.0, 1.0, "m")] = 0.075
     """The paper's eps: how far an obstacle on the map may lie from the head of a reading."""
+    error_radius: ErrorRadius = ErrorRadius.CONSTANT
+    """Whether eps is the same for all readings, as in the paper (``constant``), or grows with what an angle makes of a
+    range, half a heading step and ``bearing_error_rad``, and is no less than cells round away (``by_range``)."""
+    bearing_error_rad: Annotated[float, Within(0.0, 0.5, "rad")] = 0.004
+    """How far off the bearing of a reading may be: the map-maker's headings, and the head's own."""
     heading_error_rad: Annotated[float, Within(0.0, math.pi, "rad")] = 0.0175
     """How far the heading that odometry gives may be off: headings up to so far away are tried too."""
     heading_step_rad: Annotated[float, Within(1e-4, math.pi, "rad")] = 0.00873
@@ -43,6 +49,10 @@ class LocalizationSettings:
     as on maps that were drawn with a broad pen."""
     stops: StopPoses = StopPoses.PLACED
     """Where the stops of a map in the making are: ``placed`` on the map so far, or where ``odometry`` has them."""
+    budget_s: Annotated[float, Within(0.01, 3600.0, "s")] = 1.0
+    """About how long a search may take on the reference machine. It is counted in what is looked at, never in time: a
+    slower or busier machine takes longer and finds the same. If it runs out, the answer is ``ambiguous`` and not
+    complete."""
     conservative: bool = False
     """Whether no place is excluded but by proof: the true one is then always among the answers, as long as ranges err
     by no more than ``range_error_m``, the heading by no more than half a step from one that is tried, and cells that

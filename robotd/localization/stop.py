@@ -15,6 +15,7 @@ from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
 from robotd.localization.count.limits import POSES_TOLD_MAX
 from robotd.localization.count.rank_grid import RankGrid
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk
 from robotd.localization.settings import LocalizationSettings
@@ -41,16 +42,19 @@ class Stop(Protocol):
 class CountedStop:
     """Counts readings as they come."""
 
-    def __init__(self, ranks: RankGrid, settings: LocalizationSettings) -> None:
-        """Begin with counters in which nothing was counted."""
-        self.headings_rad = ranks.headings_rad
+    def __init__(
+        self, levels: Levels, headings_rad: tuple[float, ...], settings: LocalizationSettings, *, threads: int
+    ) -> None:
+        """Begin with counters in which nothing was counted; arguments as of :meth:`.ReadyMap.stop`."""
+        self.headings_rad = headings_rad
         self.readings = Readings.none()
-        self._ranks = ranks
+        self._levels = levels
+        self._ranks = RankGrid(levels.maps[0], headings_rad, threads=threads)
         self._settings = settings
 
     def add(self, readings: Readings) -> None:
         """Count readings."""
-        self._ranks.add(readings)
+        self._ranks.add_by_level(readings, self._levels)
         self.readings = self.readings.joined(readings)
 
     def best_poses(self) -> PoseSet:
@@ -93,6 +97,7 @@ class SearchedStop:
             least_rank=max(1, least_rank),
             prior=self._within,
             limit=POSES_TOLD_MAX,
+            budget_s=self._settings.budget_s,
             threads=self._threads,
         )
 

@@ -50,6 +50,7 @@ def _result(time_ns: int, kind: str, content: dict[str, Any]) -> ResultEntry:
 
 def _estimate(estimate: PoseEstimate) -> dict[str, Any]:
     content = _without_time(msgspec.to_builtins(estimate))
+    del content["complete"]
     del content["ends"]  # follows from the readings and the map, and older recordings do not have it
     if estimate.jumped_m is None:
         del content["jumped_m"]  # as in recordings made before it could be said: their digests are of what there was

@@ -17,6 +17,7 @@ from robotd.localization.fit.refinement import PoseBox, refine
 from robotd.localization.fit.refinement_settings import RefinementSettings
 from robotd.localization.fit.tracking import Tracked, TrackingSettings, track
 from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.obstacles.unknown_cells import UnknownCells
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk
@@ -44,7 +45,7 @@ class Building:
         ternary = TernaryMap.from_grid(map_of(division.map_scans, REACH, settings))
         obstacles = Obstacles.of_map(ternary, UnknownCells.BLOCKS_ONLY, ERROR_RADIUS_CELLS, blocked_by=2)
         self.spec = ternary.spec
-        self.search = SearchMap.of(obstacles, ternary.spec, ERROR_RADIUS_CELLS)
+        self.search = SearchMap.of(Levels.of(obstacles, ternary.spec, ERROR_RADIUS_CELLS))
         self.field = WallField.of(ternary.spec, ternary.occupied, obstacles.blocking)
         self.queries = [
             (Readings.of(readings_of(query.scan, REACH)), query.scan.laser_pose) for query in division.queries

@@ -135,6 +135,7 @@ def rank_of(the_map: MapChanged, sweep: Sweep, heading_rad: float) -> RankGrid:
     """Return the rank grid of a sweep on a map: what the daemon saw when it decided."""
     settings = Config().localization
     grid = OccupancyGrid(the_map.spec, the_map.values)
-    ranks = RankGrid(ReadyMap.of(grid, settings).prepared, (heading_rad,))
-    ranks.add(Readings.of(sweep.measured))
+    levels = ReadyMap.of(grid, settings).prepared
+    ranks = RankGrid(levels.maps[0], (heading_rad,))
+    ranks.add_by_level(Readings.of(sweep.measured), levels)
     return ranks

@@ -78,12 +78,12 @@ class ConservativeRankGrid(RankGrid):
         super().__init__(the_map.prepared, headings_rad, threads=threads)
         self._sure = the_map
 
-    def _count_with_room(self, readings: Readings, *, subtract: bool) -> None:
+    def _count_with_room(self, readings: Readings, on: PreparedMap, *, subtract: bool) -> None:
         fanned = _FannedReadings.of(readings, self._headings, self._sure)
         for beams in fanned.fan_beams():
             threads = self._threads_for(len(beams.beams))
             kernels.in_use().fans.count_fans(
-                self._counters, self._map, fanned.grown, beams, subtract=subtract, threads=threads
+                self._counters, on.packed, fanned.grown, beams, subtract=subtract, threads=threads
             )
 
 

@@ -9,26 +9,34 @@ from numpy.typing import NDArray
 from robotd.grid.drawn import Drawn
 from robotd.grid.kernels.draw.draw_kernel import turned
 from robotd.grid.readings import Readings
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.obstacles.prepared_map import PreparedMap
 
 
-def explained_at(
-    the_map: PreparedMap, readings: Readings, cell: tuple[int, int], heading_rad: float
-) -> NDArray[np.bool_]:
+def explained_at(levels: Levels, readings: Readings, cell: tuple[int, int], heading_rad: float) -> NDArray[np.bool_]:
     """Return for each reading whether it is feasible at a pose, ``bool[n]``.
 
     Args:
-        the_map: the map.
+        levels: the map, for each level of readings.
         readings: hits and misses.
         cell: ``(row, col)`` of the robot, in the grid.
         heading_rad: of the robot, in the map frame.
 
     O(cells of all bodies).
     """
-    obstacles = the_map.obstacles
+    explained = np.zeros(len(readings), np.bool_)
     # Only free cells are poses, for counting and search as well: the three have to agree.
-    if not obstacles.free[cell]:
-        return np.zeros(len(readings), np.bool_)
+    if levels.obstacles.free[cell]:
+        for the_map, which in levels.parted(readings):
+            explained[which] = _explained(the_map, readings[which], cell, heading_rad)
+    return explained
+
+
+def _explained(
+    the_map: PreparedMap, readings: Readings, cell: tuple[int, int], heading_rad: float
+) -> NDArray[np.bool_]:
+    """Return for each reading of one level whether it is feasible at a free cell, ``bool[n]``."""
+    obstacles = the_map.obstacles
     drawn = Drawn.of(readings, turned(np.array([heading_rad])), the_map.spec.resolution_m)
     body, beam = drawn.bodies(drawn.body_lengths(the_map.error_radius_cells, 2 * max(the_map.spec.shape)))
     is_met = _look_up(obstacles.blocking, np.array(cell) + body, outside=obstacles.outside_blocks)

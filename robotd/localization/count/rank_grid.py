@@ -15,6 +15,7 @@ from robotd.grid.kernels.draw.draw_kernel import BeamSettings, turned
 from robotd.grid.kernels.shared.packed_map import PAD_WORDS, TILE_ROWS, WORD_CELLS, unpack
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.obstacles.prepared_map import PreparedMap
 
 _READINGS_MAX = int(np.iinfo(np.uint16).max)
@@ -55,17 +56,20 @@ class RankGrid:
         self.readings = 0
         self._headings = turned(np.array(self.headings_rad, np.float64))
         self._threads = threads
+        self._the_map = the_map
         self._map = the_map.packed
-        reach_cells = 2 * max(the_map.spec.shape)
-        self._how = BeamSettings(the_map.spec.resolution_m, the_map.error_radius_cells, reach_cells)
         self._refuse_if_too_large(bits_of(0))
         self._counters = self._map.blank_counters(len(self.headings_rad), bits_of(0))
 
-    def add(self, readings: Readings) -> None:
+    def add(self, readings: Readings, on: PreparedMap | None = None) -> None:
         """Count readings; many at once cost less than one after the other.
 
         O(directions x cells / 64 x length of the longest beam in cells + readings x headings x cells / 64), where the
         directions are those of all readings at all headings.
+
+        Args:
+            readings: hits and misses.
+            on: the same map, prepared for another error radius, if these have another.
 
         Raises:
             ValueError: there are more than 65535; then none was counted.
@@ -73,9 +77,14 @@ class RankGrid:
         """
         if self.readings + len(readings) > _READINGS_MAX:
             raise ValueError(f"a rank grid counts {_READINGS_MAX} readings")
-        self._count(readings, subtract=False)
+        self._count(readings, on or self._the_map, subtract=False)
 
-    def remove(self, readings: Readings) -> None:
+    def add_by_level(self, readings: Readings, levels: Levels) -> None:
+        """Count readings each with the error radius of its range, on the map that this was made for; as :meth:`add`."""
+        for the_map, which in levels.parted(readings):
+            self.add(readings[which], the_map)
+
+    def remove(self, readings: Readings, on: PreparedMap | None = None) -> None:
         """Take back readings that were added, in any order; costs what adding them did.
 
         Which readings were added is not remembered: taking back others leaves counts that mean nothing.
@@ -85,22 +94,23 @@ class RankGrid:
         """
         if len(readings) > self.readings:
             raise ValueError(f"{len(readings)} readings cannot be taken back of {self.readings}")
-        self._count(readings, subtract=True)
+        self._count(readings, on or self._the_map, subtract=True)
 
-    def _count(self, readings: Readings, *, subtract: bool) -> None:
+    def _count(self, readings: Readings, on: PreparedMap, *, subtract: bool) -> None:
         if len(readings) == 0:
             return
         total = self.readings + (-len(readings) if subtract else len(readings))
         # First the room, which may be refused: then the counters are as they were, and the total, too.
         self._make_room(bits_of(total))
-        self._count_with_room(readings, subtract=subtract)
+        self._count_with_room(readings, on, subtract=subtract)
         self.readings = total
 
-    def _count_with_room(self, readings: Readings, *, subtract: bool) -> None:
+    def _count_with_room(self, readings: Readings, on: PreparedMap, *, subtract: bool) -> None:
         """Count readings for which the counters have room."""
-        beams = kernels.in_use().draw.draw_beams(readings.rows, self._headings, self._how)
+        how = BeamSettings(self.spec.resolution_m, on.error_radius_cells, 2 * max(self.spec.shape))
+        beams = kernels.in_use().draw.draw_beams(readings.rows, self._headings, how)
         threads = self._threads_for(len(readings) * len(self.headings_rad))
-        kernels.in_use().count.count_feasible(self._counters, self._map, beams, subtract=subtract, threads=threads)
+        kernels.in_use().count.count_feasible(self._counters, on.packed, beams, subtract=subtract, threads=threads)
 
     def _threads_for(self, beams: int) -> int:
         """Return how many threads are worth starting."""

@@ -7,6 +7,8 @@ a rate as where nobody has looked, or the reading means nothing. What the map kn
 begin, and how far off they are: that is what its places are recognized by.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,12 +27,25 @@ _PEAK = 0.36755259694786135
 """Of Student's t with three degrees of freedom."""
 
 
-def elsewhere(readings: Readings, model: ErrorModel) -> NDArray[np.float64]:
+@dataclass(frozen=True, slots=True, eq=False)
+class GoingOn:
+    """What is expected of ``m`` readings, by bearing, if for each the wall of the two before it goes on."""
+
+    is_wall: NDArray[np.bool_]
+    """``bool[m]``: whether there are two before it that make a wall which it can meet."""
+    heads_m: NDArray[np.float64]
+    """``float64[m, 2]``: where it then ends, robot frame."""
+    densities: NDArray[np.float64]
+    """``float64[m]``: of its range, if it does [1/m]."""
+
+
+def elsewhere(readings: Readings, model: ErrorModel, going_on: GoingOn) -> NDArray[np.float64]:
     """Return how likely each reading is, given those before it, somewhere in any building.
 
     Args:
         readings: ``m`` of them, by bearing.
         model: how readings err.
+        going_on: what is expected of them.
 
     Returns:
         ``float64[m]``: for hits the density [1/m], for misses the chance; without those that mean nothing.
@@ -39,14 +54,22 @@ def elsewhere(readings: Readings, model: ErrorModel) -> NDArray[np.float64]:
     known = model.anywhere(readings.range_m, is_hit)
     stays_open = np.flatnonzero(~is_hit[1:] & ~is_hit[:-1]) + 1
     known[stays_open] = _GOES_ON + (1.0 - _GOES_ON) * known[stays_open]
-    if len(readings) > 2:
-        going_on, is_wall = _going_on(readings, model)
-        known[2:] = np.where(is_wall, _GOES_ON * going_on + (1.0 - _GOES_ON) * known[2:], known[2:])
-    return known
+    return or_going_on(known, going_on.densities, _GOES_ON * going_on.is_wall)
 
 
-def _going_on(readings: Readings, model: ErrorModel) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Return the density of each reading but the first two if the wall of the two before goes on, and where it can."""
+def or_going_on(
+    otherwise: NDArray[np.float64], densities: NDArray[np.float64], chances: NDArray[np.floating]
+) -> NDArray[np.float64]:
+    """Return densities of readings, ``float64[..., m]``, if walls go on by chance, and else they are otherwise."""
+    either: NDArray[np.float64] = chances * densities + (1.0 - chances) * otherwise
+    return either
+
+
+def going_on(readings: Readings, model: ErrorModel) -> GoingOn:
+    """Return where each reading ends, and how it scatters, if the wall of the two before it, by bearing, goes on."""
+    found = GoingOn(np.zeros(len(readings), np.bool_), np.zeros((len(readings), 2)), np.zeros(len(readings)))
+    if len(readings) < 3:
+        return found
     heads, is_hit, ahead = readings.heads_m, readings.is_hit, readings[2:]
     wall, last = heads[1:-1] - heads[:-2], heads[1:-1]
     # Two heads in one place make no wall, but must not divide by nothing either.
@@ -57,11 +80,13 @@ def _going_on(readings: Readings, model: ErrorModel) -> tuple[NDArray[np.float64
     starts = ahead.rows[:, 2:4]
     to_last = last - starts
     expected_m = (to_last[:, 0] * wall[:, 1] - to_last[:, 1] * wall[:, 0]) / aslant
-    beyond = starts + expected_m[:, None] * way - last
+    found.heads_m[2:] = starts + expected_m[:, None] * way
+    beyond = found.heads_m[2:] - last
     farther = np.hypot(beyond[:, 0], beyond[:, 1]) / length
     # The line through two heads errs by both of them, the more the farther it is drawn on.
     error_m = np.sqrt(model.range_sigma_m**2 * (1.0 + (1.0 + farther) ** 2 + farther**2) + _ROUGHNESS_M**2)
     spread_m = error_m * length / np.abs(aslant)
     tail = 1.0 + ((ahead.range_m - expected_m) / spread_m) ** 2 / 3.0
-    is_wall = is_hit[2:] & is_hit[1:-1] & is_hit[:-2] & (expected_m > 0.0) & (farther < _FARTHEST)
-    return _PEAK / (tail * tail * spread_m), is_wall
+    found.densities[2:] = _PEAK / (tail * tail * spread_m)
+    found.is_wall[2:] = is_hit[2:] & is_hit[1:-1] & is_hit[:-2] & (expected_m > 0.0) & (farther < _FARTHEST)
+    return found

@@ -9,6 +9,9 @@ seldom (something new stands there). So what is explained, what is not, what end
 walls are all one density, and it integrates to one: a pose gains nothing by facing much clutter or the unknown.
 Around the obstacle that stops it, a reading scatters by the error of the sensor and that of the map; the robot that
 made the map knew its poses to a few centimetres and to a fraction of a degree.
+
+Readings that follow each other along a wall of the map say more than its cells do: the wall goes on straight, there as
+anywhere (:mod:`.elsewhere`). Without that, no place of a map of coarse cells was as likely as being nowhere.
 """
 
 from dataclasses import dataclass, replace
@@ -18,13 +21,16 @@ from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
 from robotd.grid import kernels
+from robotd.grid.growth import grown_by_disk, grown_by_disk_updated
 from robotd.grid.kernels.cast.cast_kernel import SKIP_MAX
 from robotd.grid.kernels.weigh.weigh_kernel import IN_UNKNOWN, ChanceMap
 from robotd.grid.readings import Readings
 from robotd.grid.tables import NO_INFORMATION, SURELY_OCCUPIED
 from robotd.grid.window import CellWindow, influence
-from robotd.localization.judge.elsewhere import elsewhere
+from robotd.localization.judge.elsewhere import GoingOn, elsewhere, going_on, or_going_on
 from robotd.localization.judge.error_model import ErrorModel
+
+_ON_WALL_M = 0.075
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,6 +39,8 @@ class Sight:
 
     beams: NDArray[np.float64]
     """``float64[m, 8]``, as :meth:`.WeighKernel.weigh_beams` takes them."""
+    going_on: GoingOn
+    """What is expected of each if walls go on straight."""
     elsewhere: NDArray[np.float64]
     """``float64[m]``, how likely each is somewhere in any building."""
     seen_so_far: NDArray[np.float64]
@@ -57,6 +65,8 @@ class Likelihood:
     spec: GridSpec
     model: ErrorModel
     chances: ChanceMap
+    on_walls: NDArray[np.bool_]
+    """``bool[rows, cols]``: where a wall that goes on is one of the map's."""
     vacant_cells: int
     """In this many the robot may be."""
 
@@ -65,7 +75,8 @@ class Likelihood:
         """Prepare a map: ``uint8[rows, cols]``, the evidence of the occupancy grid, which is copied. O(cells)."""
         own = np.array(cells, np.uint8, order="C")
         chances = ChanceMap(own, skips_of(own), _stops(model, spec.resolution_m))
-        return cls(spec, model, chances, _vacant(own))
+        on_walls = grown_by_disk(own > NO_INFORMATION, _on_wall_cells(spec))
+        return cls(spec, model, chances, on_walls, _vacant(own))
 
     def updated(self, cells: NDArray[np.uint8], changed: CellWindow) -> "Likelihood":
         """Return the likelihood on a map that differs from this one's in a window alone; this one stays as it is.
@@ -77,10 +88,12 @@ class Likelihood:
         own, skips = np.array(cells, np.uint8, order="C"), self.chances.skips.copy()
         here, there, part = (window.slices for window in influence(changed, SKIP_MAX, self.spec.shape))
         skips[here] = skips_of(np.ascontiguousarray(own[part]))[there]
+        walls, radius_cells = own > NO_INFORMATION, _on_wall_cells(self.spec)
+        on_walls = grown_by_disk_updated(self.on_walls, walls, changed, radius_cells)
         # Counted in the window alone, on both sides of the change.
         more = _vacant(own[changed.slices]) - _vacant(self.chances.cells[changed.slices])
         chances = replace(self.chances, cells=own, skips=skips)
-        return replace(self, chances=chances, vacant_cells=self.vacant_cells + more)
+        return replace(self, chances=chances, on_walls=on_walls, vacant_cells=self.vacant_cells + more)
 
     @property
     def vacant_m2(self) -> float:
@@ -100,9 +113,11 @@ class Likelihood:
         along_m = np.sqrt(model.range_sigma_m**2 + across_m**2 + resolution_m**2 / 12.0)
         x, y, *lengths = np.stack((readings.start_x_m, readings.start_y_m, range_m, along_m, across_m)) / resolution_m
         beams = np.stack((x, y, np.cos(bearing_rad), np.sin(bearing_rad), *lengths, readings.is_miss), axis=1)
-        is_hit, likely = readings.is_hit, elsewhere(readings, model)
+        is_hit, straight = readings.is_hit, going_on(readings, model)
+        likely = elsewhere(readings, model, straight)
         free = np.exp(-model.unmapped_per_m * range_m)
-        return Sight(beams, likely, free, likely / model.anywhere(range_m, is_hit), model.meaningless(is_hit))
+        unseen = likely / model.anywhere(range_m, is_hit)
+        return Sight(beams, straight, likely, free, unseen, model.meaningless(is_hit))
 
     def densities(self, sight: Sight, poses: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return how likely readings are by where they end, ``float64[n, m, 3]``.
@@ -124,11 +139,23 @@ class Likelihood:
 
     def logs(self, sight: Sight, poses: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the logarithm of the likelihood of each reading at each pose, ``float64[n, m]``."""
-        return self._with_meaningless(sight, self.densities(sight, poses).sum(axis=2))
+        mapped = self.densities(sight, poses).sum(axis=2)
+        straight = sight.going_on
+        goes_on = straight.is_wall & self._is_on_walls(straight.heads_m, poses)
+        chances = self.model.mapped_walls_go_on * goes_on
+        return self._with_meaningless(sight, or_going_on(mapped, straight.densities, chances))
 
     def elsewhere_logs(self, sight: Sight) -> NDArray[np.float64]:
         """Return the same for a robot that is not on the map, ``float64[m]``."""
         return self._with_meaningless(sight, sight.elsewhere)
+
+    def _is_on_walls(self, heads_m: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return whether points ``float64[m, 2]``, robot frame, lie on walls of the map, ``bool[n, m]`` by pose."""
+        cos, sin = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
+        x_m = poses[:, 0, None] + cos * heads_m[:, 0] - sin * heads_m[:, 1]
+        y_m = poses[:, 1, None] + sin * heads_m[:, 0] + cos * heads_m[:, 1]
+        at = self.spec.flat_at(np.stack((x_m, y_m), axis=-1).reshape(-1, 2))
+        return ((at >= 0) & self.on_walls.ravel()[np.maximum(at, 0)]).reshape(x_m.shape)
 
     def _with_meaningless(self, sight: Sight, densities: NDArray[np.float64]) -> NDArray[np.float64]:
         logs: NDArray[np.float64] = np.log((1.0 - self.model.outlier_share) * densities + sight.meaningless)
@@ -141,6 +168,11 @@ def skips_of(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
     over_vacant = kernels.in_use().cast.skip_codes(~vacant, none)[1:-1, 1:-1]
     over_unknown = kernels.in_use().cast.skip_codes(~unknown, none)[1:-1, 1:-1]
     return np.where(vacant, over_vacant, np.where(unknown, over_unknown, 1)).astype(np.uint8)
+
+
+def _on_wall_cells(spec: GridSpec) -> float:
+    """Return how far from a wall's cells a point is still on it: as far as cells round, and as maps err."""
+    return max(1.5, _ON_WALL_M / spec.resolution_m)
 
 
 def _vacant(cells: NDArray[np.uint8]) -> int:

@@ -2,12 +2,17 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.binary import BinaryMap
 from robotd.grid.kernels.shared.packed_map import PackedMap
 from robotd.grid.packing import repacked
+from robotd.grid.ternary import TernaryMap
 from robotd.grid.window import CellWindow
 from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,6 +49,19 @@ class PreparedMap:
     def of_binary(cls, binary: BinaryMap, error_radius_cells: float) -> "PreparedMap":
         """Prepare a map as the paper reads it: unknown cells are obstacles."""
         return cls.of(Obstacles.of(binary.occupied, error_radius_cells), binary.spec, error_radius_cells)
+
+    def changed(
+        self,
+        ternary: TernaryMap,
+        unknown: UnknownCells,
+        changed: CellWindow,
+        before_cores: NDArray[np.bool_] | None = None,
+    ) -> "PreparedMap":
+        """Return this map after its cells changed in a window alone; this one stays as it is."""
+        radius_cells = self.error_radius_cells
+        obstacles = self.obstacles.updated(ternary, unknown, radius_cells, changed, before_cores)
+        # A disk reaches whole cells along a row or a column, so rounding its radius down loses none of them.
+        return self.updated(obstacles, changed.grown(int(radius_cells), self.spec.shape))
 
     def updated(self, obstacles: Obstacles, changed: CellWindow) -> "PreparedMap":
         """Return this map with obstacles that differ from its own in a window alone; this one stays as it is.

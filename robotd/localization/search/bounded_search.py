@@ -6,6 +6,7 @@ The paper's kappa and loc ([BrownDonald2000]_ sec. 2.2.1, 2.2.3): the same answe
 it; and a cell is given up as soon as it has missed too many.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,16 +14,19 @@ from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
 from robotd.grid import kernels
-from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question
+from robotd.grid.kernels.search.search_kernel import BUDGET_MAX, Ground, Planes, Question
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
 from robotd.grid.window import CellWindow
-from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.search.cell_disk import CellDisk
 
 _FEW_CELLS = 48 * 48
 """A window so small is looked at cell by cell."""
 POSES_MAX = 1 << 18
+_WORK_PER_S = 100_000_000
+"""How much of a budget is a second: in four recorded buildings 50 to 150 million a second were looked at, the least on
+the largest map, on one core of a Xeon with AVX-512 that other programs used, too."""
 READINGS_MAX = int(np.iinfo(np.uint16).max)
 
 
@@ -34,17 +38,16 @@ class SearchMap:
     planes: Planes
 
     @classmethod
-    def of(cls, obstacles: Obstacles, spec: GridSpec, error_radius_cells: float) -> "SearchMap":
-        """Prepare a map whose obstacles were grown by this much; O(cells)."""
-        return cls(spec, kernels.in_use().search.make_planes(_ground(obstacles, error_radius_cells)))
+    def of(cls, levels: Levels) -> "SearchMap":
+        """Prepare a map; O(cells x levels)."""
+        return cls(levels.spec, kernels.in_use().search.make_planes(_ground(levels)))
 
-    def updated(self, obstacles: Obstacles, window: CellWindow) -> "SearchMap":
-        """Return the map after cells changed, all of them in a window; this one stays as it is.
+    def updated(self, levels: Levels, window: CellWindow) -> "SearchMap":
+        """Return the map after cells changed on some level, all of them in a window; this one stays as it is.
 
         O(cells near the window), and a copy.
         """
-        ground = _ground(obstacles, self.planes.ground.error_radius_cells)
-        return SearchMap(self.spec, kernels.in_use().search.renew_planes(self.planes, ground, window))
+        return SearchMap(self.spec, kernels.in_use().search.renew_planes(self.planes, _ground(levels), window))
 
 
 def best_poses(
@@ -56,6 +59,7 @@ def best_poses(
     least_rank: int = 1,
     prior: CellDisk | CellWindow | None = None,
     limit: int = POSES_MAX,
+    budget_s: float = math.inf,
     threads: int = 1,
 ) -> PoseSet:
     """Return the best poses: the same whatever the number of threads, and the same as if all had been counted.
@@ -68,6 +72,7 @@ def best_poses(
         least_rank: if no pose explains this many readings, none is returned.
         prior: where poses are wanted; None is everywhere.
         limit: how many poses are returned at most: of more, those above the least rank that leaves few enough.
+        budget_s: about how long it may take at most, in work that takes so long on a reference machine.
         threads: how many threads may share the work.
 
     Raises:
@@ -81,6 +86,7 @@ def best_poses(
     if len(readings) == 0 or len(headings_rad) == 0 or len(spans) == 0:
         return PoseSet.nothing(max(1, least_rank - slack))
     farthest_m = float(np.abs(readings.rows[:, 2:4]).max())
+    budget = BUDGET_MAX if math.isinf(budget_s) else int(budget_s * _WORK_PER_S)
     question = Question(
         readings=readings.rows,
         headings_rad=headings_rad,
@@ -92,6 +98,7 @@ def best_poses(
         by_blocks=window.size > _FEW_CELLS,
         spans=spans,
         reach_cells=2 * (max(shape) + farthest_m / search_map.spec.resolution_m),
+        budget=budget,
     )
     return kernels.in_use().search.search_poses(search_map.planes, question, threads=threads)
 
@@ -105,13 +112,14 @@ def _spans(prior: CellDisk | CellWindow, shape: tuple[int, int]) -> tuple[CellWi
     return window, np.tile(np.array((window.first_col, window.end_col), np.int32), (rows, 1))
 
 
-def _ground(obstacles: Obstacles, error_radius_cells: float) -> Ground:
+def _ground(levels: Levels) -> Ground:
+    obstacles = levels.obstacles
     return Ground(
         free=np.ascontiguousarray(obstacles.free),
         blocking=np.ascontiguousarray(obstacles.blocking),
-        grown=np.ascontiguousarray(obstacles.grown),
+        grown=np.stack([level.obstacles.grown for level in levels.maps]),
         outside_blocks=obstacles.outside_blocks,
         outside_ends=obstacles.outside_ends,
         blocked_by=obstacles.blocked_by,
-        error_radius_cells=error_radius_cells,
+        radii=levels.radii,
     )

@@ -15,6 +15,7 @@ from robotd.localization.fit.refinement import PoseBox, refine
 from robotd.localization.fit.refinement_settings import RefinementSettings, Walls
 from robotd.localization.fit.tracking import Tracked, TrackingSettings, track
 from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from tests.benchmarks import workload
 from tests.benchmarks.peers.questions import PRIOR_M, PRIOR_RAD, Questions
@@ -28,7 +29,7 @@ def answers(questions: Questions) -> list[dict[str, object]]:
     """Return what :mod:`tests.benchmarks.peers.answer` prints for a peer."""
     field = WallField.of(workload.SPEC, questions.occupied, questions.occupied)
     radius_cells = workload.ERROR_RADIUS_CELLS
-    search_map = SearchMap.of(Obstacles.of(questions.occupied, radius_cells), workload.SPEC, radius_cells)
+    search_map = SearchMap.of(Levels.of(Obstacles.of(questions.occupied, radius_cells), workload.SPEC, radius_cells))
     headings_rad = np.array(even_headings(_HEADINGS))
 
     def near(readings: Readings, prior: Pose2) -> Pose2 | None:

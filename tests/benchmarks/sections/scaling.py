@@ -22,6 +22,7 @@ from robotd.localization.count.count_all import count_all
 from robotd.localization.count.rank_grid import bits_of
 from robotd.localization.even_headings import even_headings
 from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from tests.benchmarks import workload
@@ -59,7 +60,7 @@ class Site:
 
     @cached_property
     def search_map(self) -> SearchMap:
-        return SearchMap.of(self.obstacles, self.spec, workload.ERROR_RADIUS_CELLS)
+        return SearchMap.of(Levels.of(self.obstacles, self.spec, workload.ERROR_RADIUS_CELLS))
 
     @property
     def mebibytes(self) -> str:

@@ -17,6 +17,7 @@ from robotd.grid.window import CellWindow
 from robotd.localization.even_headings import even_headings
 from robotd.localization.fit.refinement import PoseBox, refine
 from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from robotd.localization.search.cell_disk import CellDisk
 from tests.benchmarks import workload
@@ -43,7 +44,8 @@ def timings() -> Iterator[Timing]:
         ("L", workload.building(), workload.LARGE, 90.0, 20.0),
     ):
         obstacles = Obstacles.of(occupied, workload.ERROR_RADIUS_CELLS)
-        ready = SearchMap.of(obstacles, spec, workload.ERROR_RADIUS_CELLS)
+        levels = Levels.of(obstacles, spec, workload.ERROR_RADIUS_CELLS)
+        ready = SearchMap.of(levels)
         poses = workload.poses_in(occupied, 200)
         cases = [
             Case(pose, Readings.of(workload.sweep_of(occupied, 100 + number, pose).measured))
@@ -52,9 +54,9 @@ def timings() -> Iterator[Timing]:
         yield _everywhere(name, ready, WallField.of(spec, occupied, occupied), cases, goal_ms)
         yield _two_threads(name, ready, cases[0])
         yield _tracking(name, ready, cases[0])
-        yield timed(f"{name}, map made ready to search", partial(SearchMap.of, obstacles, spec, 1.5), 5)
+        yield timed(f"{name}, map made ready to search", partial(SearchMap.of, levels), 5)
         row, col = (size // 2 for size in spec.shape)
-        again = partial(ready.updated, obstacles, CellWindow(row - 60, row + 60, col - 60, col + 60))
+        again = partial(ready.updated, levels, CellWindow(row - 60, row + 60, col - 60, col + 60))
         yield timed(f"{name}, ready again where 120 x 120 cells changed", again, 9, goal_ms=prepare_ms)
 
 

@@ -44,7 +44,7 @@ def made_ready(held: Held) -> Held:
 
 
 def arrays(ready: ReadyMap) -> list[Any]:
-    planes, packed = ready.searched.planes, ready.prepared.packed
+    planes, packed = ready.searched.planes, ready.prepared.maps[0].packed
     return [
         *(planes.cells, planes.pooled, planes.near, planes.ground.free, planes.ground.blocking, planes.ground.grown),
         *(packed.free, packed.blocking, packed.grown, packed.tiles),

@@ -16,6 +16,7 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
 from robotd.grid.window import CellWindow
 from robotd.localization.even_headings import even_headings
+from robotd.localization.obstacles.error_radius import ErrorRadius
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 from robotd.localization.stop import CountedStop, SearchedStop
@@ -33,7 +34,14 @@ maps = hnp.arrays(np.uint8, SPEC.shape, elements=st.sampled_from([0, 0, 0, 1, 2]
 
 def ready(cells: NDArray[np.uint8], rival_share: float = 0.15, localized_share: float = 0.01) -> ReadyMap:
     evidence = np.choose(cells, (np.uint8(0), np.uint8(255), np.uint8(128)))
-    settings = LocalizationSettings(range_error_m=0.1, rival_share=rival_share, localized_share=localized_share)
+    # An angle so wide that readings of a metre are of three levels.
+    settings = LocalizationSettings(
+        range_error_m=0.1,
+        error_radius=ErrorRadius.BY_RANGE,
+        bearing_error_rad=0.2,
+        rival_share=rival_share,
+        localized_share=localized_share,
+    )
     return ReadyMap.of(OccupancyGrid(SPEC, evidence), settings)
 
 

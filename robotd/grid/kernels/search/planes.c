@@ -19,7 +19,7 @@ typedef struct {
 
 int64_t search_cells_size(const search_map *map)
 {
-    return 3 * (int64_t)(strips(map) + 4) * strip_size(map);
+    return (int64_t)(GROWN + map->levels) * (strips(map) + 4) * strip_size(map);
 }
 
 int64_t search_pooled_size(const search_map *map)
@@ -100,7 +100,7 @@ typedef struct {
 static void offsets_of(const search_map *map, int32_t key, offsets *of)
 {
     of->count = 0;
-    for (int32_t i = 0; key > 0 && i < (2 * RING + 1) * (2 * RING + 1); i++)
+    for (int32_t i = 0; key > 0 && key < map->sectors && i < (2 * RING + 1) * (2 * RING + 1); i++)
         if (map->key_of[i] == key) {
             of->at[of->count][0] = i / (2 * RING + 1) - RING;
             of->at[of->count++][1] = i % (2 * RING + 1) - RING;
@@ -195,6 +195,11 @@ static void deal(const bitmaps *maps, int32_t pool, int32_t key, int32_t first, 
         deal_row(maps, pool, key, row);
 }
 
+static const uint8_t *grown_on(const search_map *map, int32_t level)
+{
+    return map->grown + (size_t)level * (size_t)map->rows * (size_t)map->cols;
+}
+
 static void fill_pooled(const bitmaps *maps, int32_t first, int32_t last)
 {
     const search_map *map = maps->map;
@@ -203,14 +208,15 @@ static void fill_pooled(const bitmaps *maps, int32_t first, int32_t last)
     last = clamp(last + RING, low, high);
     const int32_t deepest = last + WINDOW, words = maps->words;
     const int32_t left = clamp(maps->first - 1, 0, words), right = clamp(maps->last + 2, 0, words);
-    for (int32_t row = first - RING; row < deepest + RING; row++) {
+    for (int32_t row = first - RING; row < deepest + RING; row++)
         pack_row(map, map->blocking, row, map->outside_blocks, left, right, bitmap_row(maps, maps->blocking, row));
-        pack_row(map, map->grown, row, map->outside_ends, left, right, bitmap_row(maps, maps->grown, row));
-    }
     for (int32_t key = 0; key < map->keys; key++) {
         const uint64_t outside = far_heads(map, key) ? ~(uint64_t)0 : 0;
         offsets of;
         offsets_of(map, key, &of);
+        for (int32_t row = first; (key == 0 || key >= map->sectors) && row < deepest; row++)
+            pack_row(map, grown_on(map, level_of_key(map, key)), row, map->outside_ends, left, right,
+                     bitmap_row(maps, maps->grown, row));
         for (int32_t row = first; row < deepest; row++)
             look_back(maps, &of, row);
         for (int32_t step = 1; step < WINDOW; step *= 2) {
@@ -273,8 +279,8 @@ static void fill_outside(const search_map *map)
 {
     const int32_t outside[3] = {0, map->outside_blocks, map->outside_ends};
     const size_t size = (size_t)(strips(map) + 4) * (size_t)strip_size(map);
-    for (int32_t which = 0; which < 3; which++)
-        memset(cell_plane(map, which), outside[which] ? 0xff : 0, size * sizeof *map->cells);
+    for (int32_t which = 0; which < GROWN + map->levels; which++)
+        memset(cell_plane(map, which), outside[which < GROWN ? which : GROWN] ? 0xff : 0, size * sizeof *map->cells);
     for (int i = 0; i < POOLS; i++)
         for (int32_t key = 0; key < map->keys; key++)
             memset(pooled_phase(map, pools[i], key, 0, 0), far_heads(map, key) ? 0xff : 0,
@@ -298,7 +304,8 @@ void search_prepare(const search_map *map, int32_t row_first, int32_t row_last, 
         fill_outside(map);
     fill_cells(map, FREE, map->free, 0, row_first, row_last, scratch);
     fill_cells(map, BLOCKING, map->blocking, map->outside_blocks, row_first, row_last, scratch);
-    fill_cells(map, GROWN, map->grown, map->outside_ends, row_first, row_last, scratch);
+    for (int32_t level = 0; level < map->levels; level++)
+        fill_cells(map, GROWN + level, grown_on(map, level), map->outside_ends, row_first, row_last, scratch);
     fill_pooled(&maps, row_first, row_last);
     fill_near(map, box, (uint8_t *)scratch);
 }

@@ -15,7 +15,7 @@
 enum {
     FREE,
     BLOCKING,
-    GROWN
+    GROWN /* on the first level; the others follow */
 };
 
 static inline int32_t up(int32_t value, int32_t step)
@@ -95,10 +95,21 @@ static inline uint64_t *pooled_phase(const search_map *map, int32_t pool, int32_
     return first + (size_t)key * key_size(map, pool) + (size_t)(row * pool + col) * phase_size(map, pool);
 }
 
+/* The key of a level but the first, which tells no directions apart: its readings are few. */
+static inline int32_t key_of_level(const search_map *map, int32_t level)
+{
+    return map->sectors - 1 + level;
+}
+
+static inline int32_t level_of_key(const search_map *map, int32_t key)
+{
+    return key < map->sectors ? 0 : key - map->sectors + 1;
+}
+
 /* Whether a head far outside can be met: not if it ends nothing, or if the body has been blocked before. */
 static inline int32_t far_heads(const search_map *map, int32_t key)
 {
-    return map->outside_ends && !(map->outside_blocks && key > 0);
+    return map->outside_ends && !(map->outside_blocks && key > 0 && key < map->sectors);
 }
 
 /* Whether 64 columns of blocks from one on lie farther outside than BEYOND, all of them. */

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "search/search_masks.h"
-#include "search/search_window.h"
+#include "search/search_units.h"
 #include "shared/arena.h"
 #include "shared/threads.h"
 
@@ -20,48 +20,12 @@
 #define STEPS 12
 #define FEW_WINDOWS 1 /* as many windows are looked at sooner than the blocks in them are bounded */
 
-static int32_t units_of(const search_job *job)
-{
-    if (job->by_blocks)
-        return block_words(job->map, WINDOW) * (block_rows(job->map, WINDOW) / 8);
-    return up(job->area[1] - job->area[0], WINDOW) * up(job->area[3] - job->area[2], WINDOW);
-}
-
-static void place_units(search *s)
-{
-    const search_job *job = s->job;
-    s->units = 0;
-    if (!job->by_blocks) {
-        for (int32_t row = job->area[0]; row < job->area[1]; row += WINDOW)
-            for (int32_t col = job->area[2]; col < job->area[3]; col += WINDOW) {
-                s->tiles[s->units][0] = row;
-                s->tiles[s->units++][1] = col;
-            }
-        return;
-    }
-    const int32_t high = 8 * WINDOW, wide = 64 * WINDOW;
-    for (int32_t row = job->area[0] / high; row * high < job->area[1]; row++)
-        for (int32_t word = job->area[2] / wide; word * wide < job->area[3]; word++) {
-            s->tiles[s->units][0] = word;
-            s->tiles[s->units++][1] = 8 * row;
-        }
-}
-
-/* Which blocks of a row of a tile are in the area. */
-static uint64_t within(const search_job *job, const int32_t *tile, int32_t i)
-{
-    const int32_t row = (tile[1] + i) * WINDOW, first = 64 * tile[0];
-    if (row + WINDOW <= job->area[0] || row >= job->area[1])
-        return 0;
-    const int32_t low = clamp(job->area[2] / WINDOW - first, 0, 63),
-                  high = clamp(up(job->area[3], WINDOW) - first, 0, 64);
-    return high <= low ? 0 : ~UINT64_C(0) >> (64 - high) & ~UINT64_C(0) << low;
-}
-
-static int8_t key_of(const search_map *map, const beam *b)
+static int32_t key_of(const search_map *map, const beam *b)
 {
     const int32_t ring = 2 * RING + 1;
     int8_t keys[2];
+    if (b->level > 0)
+        return key_of_level(map, b->level);
     if (b->at.cells < map->blocked_by)
         return 0;
     for (int which = 0; which < 2; which++) {
@@ -92,6 +56,11 @@ static void pool_beams(worker *self, int which)
     }
 }
 
+static int64_t looked_at(const worker *self)
+{
+    return self->work + self->at.work;
+}
+
 static void draw(worker *self, int32_t heading)
 {
     const search *s = self->shared;
@@ -109,6 +78,7 @@ static void bound_tile(worker *self, int which, const int32_t *tile, uint64_t *c
 {
     const search *s = self->shared;
     pool_beams(self, which);
+    self->work += self->hits;
     s->with->bound_tile(&s->grids[which], self->pooled[which], self->hits, tile, s->job->bits, counter);
 }
 
@@ -121,6 +91,7 @@ static void bound_heading(worker *self, int32_t heading)
     for (int32_t unit = 0; unit < s->units; unit++) {
         uint64_t *counter = counter_of(s, heading, unit);
         bound_tile(self, 0, s->tiles[unit], counter);
+        memcpy(where, s->open[unit], sizeof where);
         s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] =
             greatest_of(counter, s->job->bits, where) + s->misses;
     }
@@ -142,7 +113,7 @@ static void search_tile(worker *self, int32_t heading, int which, const int32_t 
             if (any == 0)
                 continue;
             bound_tile(self, which + 1, part, counter);
-            reach(counter, bits, least_of(s) - s->misses, finer);
+            reach(counter, bits, s->asked - s->misses, finer);
             for (int i = 0; i < 8; i++)
                 finer[i] &= doubled(hopeful[4 * low + i / 2], right);
             search_tile(self, heading, which + 1, part, finer);
@@ -164,9 +135,9 @@ static void search_unit(worker *self, int32_t heading, int32_t unit)
         search_window(self, heading, tile[0], tile[1]);
         return;
     }
-    reach(counter_of(s, heading, unit), s->job->bits, least_of(s) - s->misses, hopeful);
+    reach(counter_of(s, heading, unit), s->job->bits, s->asked - s->misses, hopeful);
     for (int i = 0; i < 8; i++)
-        hopeful[i] &= within(s->job, tile, i);
+        hopeful[i] &= s->open[unit][i];
     search_tile(self, heading, 0, tile, hopeful);
 }
 
@@ -181,6 +152,10 @@ static int32_t descend(worker *self, int32_t heading, int32_t unit, int32_t *pla
         int32_t row = 0;
         if (which > 0)
             bound_tile(self, which, part, counter);
+        if (which == 0)
+            memcpy(where, s->open[unit], sizeof where);
+        else
+            memset(where, 0xff, sizeof where);
         bound = greatest_of(counter, s->job->bits, where);
         while (where[row] == 0)
             row++;
@@ -192,14 +167,25 @@ static int32_t descend(worker *self, int32_t heading, int32_t unit, int32_t *pla
     return bound + s->misses;
 }
 
-/* Search the units of a heading that can hold an answer. */
+/* Whether a unit can hold an answer at a heading. */
+static int may_hold(const search *s, int32_t heading, int32_t unit)
+{
+    return !s->job->by_blocks || s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] >= s->asked;
+}
+
+/* Search the units of a heading that can hold an answer, as far as its share of the budget goes. */
 static void search_heading(worker *self, int32_t heading)
 {
-    const search *s = self->shared;
+    search *s = self->shared;
+    const int64_t before = looked_at(self);
     int drawn = 0;
     for (int32_t unit = 0; unit < s->units; unit++) {
-        if (s->job->by_blocks && s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] < least_of(s))
+        if (!may_hold(s, heading, unit))
             continue;
+        if (looked_at(self) - before > s->share) {
+            __atomic_store_n(&s->job->is_complete, 0, __ATOMIC_RELAXED);
+            return;
+        }
         if (!drawn)
             draw(self, heading);
         drawn = 1;
@@ -211,18 +197,59 @@ static void work(void *shared, int32_t number)
 {
     search *s = shared;
     worker *self = &s->workers[number];
-    const int32_t count = s->phase == BOUNDING ? s->job->heading_count : s->ordered;
-    for (int32_t next; (next = take_one(&s->next, count)) >= 0;)
+    for (int32_t next; (next = take_one(&s->next, s->taken)) >= 0;)
         if (s->phase == BOUNDING)
             bound_heading(self, next);
         else
-            search_heading(self, s->order[next]);
+            search_heading(self, s->together[next]);
 }
 
-static void share(search *s)
+/* Share what was taken among the threads. */
+static void share(search *s, int32_t taken)
 {
     s->next = 0;
+    s->taken = taken;
     share_among_threads(work, s, s->job->threads);
+    s->work = 0;
+    for (int32_t i = 0; i < THREADS_MAX; i++)
+        s->work += looked_at(&s->workers[i]);
+}
+
+/* From now on answers must come near what was found. */
+static void look_up(search *s)
+{
+    s->asked = s->least;
+    s->reached = s->job->best_rank;
+}
+
+/* Take the next headings that can hold an answer. Returns how many. */
+static int32_t take_some(search *s, int32_t *next)
+{
+    int32_t taken = 0;
+    for (; taken < TOGETHER && *next < s->ordered; ++*next) {
+        int32_t unit = 0;
+        while (unit < s->units && !may_hold(s, s->order[*next], unit))
+            unit++;
+        if (unit < s->units)
+            s->together[taken++] = s->order[*next];
+    }
+    return taken;
+}
+
+/* Search the headings that can hold an answer, some at a time, until this much of the budget is spent. */
+static void search_all(search *s, int64_t budget)
+{
+    int32_t next = 0, taken;
+    for (look_up(s); (taken = take_some(s, &next)) > 0; look_up(s)) {
+        s->share = (budget - s->work) / taken;
+        if (s->share <= 0) {
+            s->job->is_complete = 0;
+            return;
+        }
+        share(s, taken);
+        if (s->job->pose_count > s->job->limit)
+            compact(s);
+    }
 }
 
 /* Bring the best of some to their beginning, in order; equal ones stay in the order of headings. */
@@ -271,6 +298,7 @@ static int32_t seed(search *s, worker *first)
     sort_best(s->hopes, count, SEEDS);
     for (int32_t i = 0; i < clamp(count, 0, SEEDS) && s->hopes[i].bound >= s->least; i++) {
         const int32_t *place = s->hopes[i].place;
+        look_up(s);
         if (place[0] >= s->job->map->rows || place[1] >= s->job->map->cols || allowed_misses(s) < 0 ||
             !open_window(s->job, place[0], place[1], &first->at))
             continue;
@@ -302,7 +330,7 @@ static void rank(search *s, int32_t bound)
         if (job->best_rank >= job->least_rank && least <= job->best_rank + step / 2)
             return;
         s->least = least;
-        share(s);
+        search_all(s, job->budget / 2);
         if (job->best_rank >= least || least == low)
             return;
     }
@@ -314,6 +342,7 @@ static void share_scratch(search *s, const search_job *job, arena *from)
     const size_t units = (size_t)units_of(job), headings = (size_t)job->heading_count;
     const size_t readings = (size_t)job->reading_count;
     TAKE(from, s->tiles, units);
+    TAKE(from, s->open, job->by_blocks ? units : 0);
     TAKE(from, s->bounds, headings * units);
     TAKE(from, s->order, headings);
     TAKE(from, s->hopes, headings);
@@ -350,7 +379,8 @@ static void begin(search *s, search_job *job)
         s->workers[i].shared = s;
     place_units(s);
     job->best_rank = job->pose_count = 0;
-    s->least = larger(1, job->least_rank - job->slack);
+    job->is_complete = 1;
+    s->least = s->asked = larger(1, job->least_rank - job->slack);
 }
 
 int32_t search_poses(search_job *job)
@@ -362,14 +392,14 @@ int32_t search_poses(search_job *job)
     pthread_mutex_init(&s.lock, NULL);
     if (job->by_blocks) {
         s.phase = BOUNDING;
-        share(&s);
+        share(&s, job->heading_count);
         rank(&s, seed(&s, &s.workers[0]));
     } else
         from_the_middle(&s);
     s.phase = COLLECTING;
     s.least = larger(1, larger(job->least_rank, job->best_rank) - job->slack);
     if (!job->by_blocks || job->best_rank >= job->least_rank) {
-        share(&s);
+        search_all(&s, job->budget);
         compact(&s);
     }
     if (job->best_rank < job->least_rank) {

@@ -17,14 +17,17 @@ typedef struct {
     const double *headings; /* [heading_count][2]: sine and cosine */
     const double *sines;    /* [heading_count][reading_count], of each beam's bearing in the map */
     const double *cosines;
+    const int32_t *levels; /* [reading_count], of each range */
+    const double *radii;   /* [map->levels]: error radius [cells] */
     int32_t reading_count, heading_count;
-    double resolution_m, error_radius_cells, reach_cells;
+    double resolution_m, reach_cells;
     int32_t area[4];      /* rows from [0] to before [1], columns from [2] to before [3] */
     const int32_t *spans; /* [area rows][2]: first column and the one after the last */
     int32_t by_blocks;    /* whether blocks are bounded first, or the few windows of the area are looked at at once */
     int32_t slack, least_rank;
-    int32_t limit; /* of poses that are returned */
-    int32_t bits;  /* planes of a counter, at least 3; 2^bits > reading_count */
+    int64_t budget; /* of what is looked at: heads in tiles of blocks, readings at windows, steps along bodies */
+    int32_t limit;  /* of poses that are returned */
+    int32_t bits;   /* planes of a counter, at least 3; 2^bits > reading_count */
     int32_t threads;
     int32_t instructions; /* as in count_feasible */
     uint64_t *scratch;    /* search_scratch_words() of it */
@@ -32,6 +35,7 @@ typedef struct {
     int32_t best_rank;    /* out */
     int32_t least;        /* out: every pose of at least this rank is returned, and no other */
     int32_t pose_count;   /* out */
+    int32_t is_complete;  /* out: whether the budget was enough */
 } search_job;
 
 /* How much scratch a search needs. */

@@ -84,7 +84,7 @@ static inline TARGET window NAME(maybe)(const search_map *map, const beam *b, in
         blocked &= NAME(seen)(map, cell_plane(map, BLOCKING), row + b->before[0], col + b->before[1]);
     if (b->is_miss)
         return ~blocked;
-    return NAME(seen)(map, cell_plane(map, GROWN), row + b->at.head[0], col + b->at.head[1]) & ~blocked;
+    return NAME(seen)(map, cell_plane(map, GROWN + b->level), row + b->at.head[0], col + b->at.head[1]) & ~blocked;
 }
 
 /* Count what the ends of the beams say; returns whether any cell is left. Counters begin so that they overflow with
@@ -108,6 +108,7 @@ static TARGET int NAME(count_ends)(const search_job *job, const beam *beams, she
         const window over = NAME(window_add_three_bits)(at->misses, 1, NAME(window_sum_of_seven)(miss));
         const window carry = NAME(window_carry_on)(at->misses, 1, 3, at->bits, over);
         at->alive &= ~carry;
+        at->work += 7;
         if (!NAME(any)(at->alive))
             return 0;
     }
@@ -116,10 +117,11 @@ static TARGET int NAME(count_ends)(const search_job *job, const beam *beams, she
 
 /* The cells, among some, from which a body meets too many cells that block. Steps are skipped as long as nothing that
  * blocks is near the middle of the cells that are left. */
-static TARGET window NAME(blocked)(const search_map *map, const beam *b, const sheet *at, window cells)
+static TARGET window NAME(blocked)(const search_map *map, const beam *b, sheet *at, window cells)
 {
     window once = {0}, blocked = {0};
     for (int32_t k = b->at.start[0] == 0 && b->at.start[1] == 0; k < b->at.cells;) {
+        at->work++;
         const int32_t row = body_cell(&b->at, 0, k), col = body_cell(&b->at, 1, k);
         const int32_t clear = clearance(map, at->middle[0] + row, at->middle[1] + col) - at->radius;
         if (clear > 0) {
@@ -172,8 +174,8 @@ static TARGET void NAME(draw_heading)(const search_job *job, int32_t heading, be
         const double start_row = starts_here ? 0.0 : (h[0] * r[1] + h[1] * r[2]) / job->resolution_m;
         const double start_col = starts_here ? 0.0 : (h[1] * r[1] - h[0] * r[2]) / job->resolution_m;
         beam *b = beams + i;
-        b->at =
-            draw_reading(start_row, start_col, sines[i], cosines[i], r[0], job->error_radius_cells, job->reach_cells);
+        b->level = job->levels[i];
+        b->at = draw_reading(start_row, start_col, sines[i], cosines[i], r[0], job->radii[b->level], job->reach_cells);
         b->is_miss = r[3] > 0.0;
         for (int axis = 0; axis < 2; axis++) {
             b->last[axis] = body_cell(&b->at, axis, b->at.cells - 1);

@@ -6,8 +6,12 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.grid.error_radii import ErrorRadii
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.window import CellWindow
+
+BUDGET_MAX = 1 << 62
+"""More than can ever be looked at."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -16,12 +20,13 @@ class Ground:
 
     free: NDArray[np.bool_]
     blocking: NDArray[np.bool_]
+    """Both ``bool[rows, cols]``, contiguous."""
     grown: NDArray[np.bool_]
-    """All ``bool[rows, cols]``, contiguous."""
+    """``bool[levels, rows, cols]``, contiguous: by each of the radii."""
     outside_blocks: bool
     outside_ends: bool
     blocked_by: int
-    error_radius_cells: float
+    radii: ErrorRadii
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +70,10 @@ class Question:
     after the last."""
     reach_cells: float
     """Where bodies end at the latest; more than the map is wide and high changes nothing."""
+    budget: int = BUDGET_MAX
+    """How much may be looked at, whatever the time is: as long as it takes on one machine, on any machine the same is
+    found. Headings are searched in an order, and when it is spent, or a heading takes more than its share of what is
+    left, the poses that were found are not all. What counts is for each kernel to say."""
 
 
 class SearchKernel(Protocol):

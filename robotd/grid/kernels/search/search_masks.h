@@ -2,10 +2,10 @@
 #include <stdint.h>
 #include <string.h>
 
+/* The greatest count among some blocks; of these, those that have it are left. */
 static int32_t greatest_of(const uint64_t *counter, int32_t bits, uint64_t *where)
 {
     int32_t value = 0;
-    memset(where, 0xff, 8 * sizeof *where);
     for (int32_t bit = bits - 1; bit >= 0; bit--) {
         uint64_t any = 0;
         for (int i = 0; i < 8; i++)

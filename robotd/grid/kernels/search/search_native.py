@@ -16,7 +16,7 @@ from robotd.grid.window import CellWindow
 
 def make_planes(ground: Ground) -> Planes:
     """See :class:`.SearchKernel`."""
-    key_of = endings(ground.error_radius_cells, ground.blocked_by)
+    key_of = endings(ground.radii.cells[0], ground.blocked_by)
     sizes = _map_of(ground, key_of)
     cells = np.empty(lib.search_cells_size(sizes), np.uint16)
     pooled = np.empty(lib.search_pooled_size(sizes), np.uint64)
@@ -73,12 +73,15 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     job.readings, job.headings = floats(readings), floats(turned)
     job.sines, job.cosines = floats(sines), floats(cosines)
     job.reading_count, job.heading_count = len(readings), len(headings_rad)
-    job.resolution_m, job.error_radius_cells = question.resolution_m, planes.ground.error_radius_cells
-    job.reach_cells = question.reach_cells
+    radii = planes.ground.radii
+    levels, cells = radii.levels(readings[:, 0]).astype(np.int32), np.array(radii.cells)
+    job.levels, job.radii = ints(levels), floats(cells)
+    job.resolution_m, job.reach_cells = question.resolution_m, question.reach_cells
     job.area = window.first_row, window.end_row, window.first_col, window.end_col
     job.spans = ints(question.spans)
     job.by_blocks = question.by_blocks
     job.slack, job.least_rank, job.limit = question.slack, question.least_rank, limit
+    job.budget = question.budget
     job.bits, job.threads = max(3, len(readings).bit_length()), threads
     job.instructions = instructions_named(instructions)
     scratch = np.empty(lib.search_scratch_words(job), np.uint64)
@@ -88,7 +91,9 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1, instru
     found = poses[: job.pose_count]
     # Threads find poses in any order; the answer must not depend on that.
     order = np.lexsort((found[:, 2], found[:, 1], found[:, 0]))
-    return PoseSet.of_rows(found[order], job.best_rank, job.least, slack=question.slack)
+    return PoseSet.of_rows(
+        found[order], job.best_rank, job.least, slack=question.slack, is_complete=bool(job.is_complete)
+    )
 
 
 @functools.lru_cache(maxsize=8)
@@ -103,7 +108,8 @@ def _map_of(ground: Ground, key_of: NDArray[np.int8]) -> Any:
     """Return ``search_map *`` of no planes yet; it does not keep the arrays alive."""
     c_map = ffi.new("search_map *")
     c_map.rows, c_map.cols = ground.free.shape
-    c_map.keys = int(key_of.max()) + 1
+    c_map.levels, c_map.sectors = len(ground.radii.cells), int(key_of.max()) + 1
+    c_map.keys = c_map.sectors + c_map.levels - 1
     c_map.outside_blocks, c_map.outside_ends = ground.outside_blocks, ground.outside_ends
     c_map.blocked_by = ground.blocked_by
     c_map.free, c_map.blocking = octets(ground.free.view(np.uint8)), octets(ground.blocking.view(np.uint8))

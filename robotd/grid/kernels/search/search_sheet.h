@@ -15,7 +15,7 @@ typedef uint64_t pair __attribute__((vector_size(32), aligned(2), may_alias));
 typedef struct {
     reading_on_grid at;
     int32_t last[2], before[2];
-    int32_t is_miss;
+    int32_t is_miss, level;
 } beam;
 
 /* A head as the grid of blocks sees it. */
@@ -34,6 +34,7 @@ typedef struct {
 /* The counters of one window. */
 typedef struct {
     int32_t row, col, bits, start, radius;
+    int64_t work;      /* what was looked at in all windows so far */
     int32_t middle[2]; /* all that are alive are at most radius from it */
     window alive, misses[BITS_MAX + 1];
     window *maybe; /* [readings]: from where the end of each beam is right */

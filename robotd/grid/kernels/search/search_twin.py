@@ -1,6 +1,6 @@
 """Searching for the best poses, in NumPy: the twin of the kernel in C."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from robotd.grid.window import CellWindow
 
 def make_planes(ground: Ground) -> Planes:
     """See :class:`.SearchKernel`."""
-    key_of = endings(ground.error_radius_cells, ground.blocked_by)
+    key_of = endings(ground.radii.cells[0], ground.blocked_by)
     return Planes(ground, key_of, np.empty(0, np.uint16), np.empty(0, np.uint64), np.empty(0, np.uint8), None)
 
 
@@ -37,28 +37,34 @@ def search_poses(planes: Planes, question: Question, *, threads: int = 1) -> Pos
         cells, heads = _count(around, beams, free, np.zeros(len(free), np.int64), total - least, bodies=False)
         bounds.append((total - int(heads.min(initial=total)), heading, cells, heads))
     # The most promising headings first: what they reach raises the least rank, and the others need not be counted.
+    left, is_complete = question.budget, True
     for bound, heading, hopeful, heads in sorted(bounds, key=lambda bound: -bound[0]):
         if bound < least:
             break
+        if left <= 0:
+            is_complete = False
+            break
         kept = heads <= total - least
         beams = _beams(ground, question, heading)
+        # What counts is how many readings how many cells were asked for, by their heads already.
+        left -= total * int(kept.sum())
         cells, misses = _count(around, beams, hopeful[kept], heads[kept], total - least, bodies=True)
         ranks = total - misses
         best = max(best, int(ranks.max(initial=0)))
         least = max(least, best - question.slack if best >= question.least_rank else 0)
         found.append(np.column_stack((np.full(len(cells), heading), cells, ranks)).astype(np.int32))
     if best < question.least_rank:
-        return PoseSet.nothing(max(1, question.least_rank - question.slack))
-    return _limited(np.concatenate(found), best, least, question)
+        return replace(PoseSet.nothing(max(1, question.least_rank - question.slack)), is_all=is_complete)
+    return _limited(np.concatenate(found), best, least, question, is_complete=is_complete)
 
 
-def _limited(poses: NDArray[np.int32], best: int, least: int, question: Question) -> PoseSet:
+def _limited(poses: NDArray[np.int32], best: int, least: int, question: Question, *, is_complete: bool) -> PoseSet:
     """Return the poses of a rank, or of the least higher one that leaves few enough."""
     while (poses[:, 3] >= least).sum() > question.limit:
         least += 1
     poses = poses[poses[:, 3] >= least]
     in_order = poses[np.lexsort((poses[:, 2], poses[:, 1], poses[:, 0]))]
-    return PoseSet.of_rows(in_order, best, least, slack=question.slack)
+    return PoseSet.of_rows(in_order, best, least, slack=question.slack, is_complete=is_complete)
 
 
 def _asked_for(free: NDArray[np.bool_], question: Question) -> NDArray[np.bool_]:
@@ -68,20 +74,21 @@ def _asked_for(free: NDArray[np.bool_], question: Question) -> NDArray[np.bool_]
     return wanted & free
 
 
-Beam = tuple[NDArray[np.int64], NDArray[np.int64] | None]
-"""The cells of the body, ``int64[n, 2]``, and the head, None for a miss."""
+Beam = tuple[NDArray[np.int64], NDArray[np.int64] | None, int]
+"""The cells of the body, ``int64[n, 2]``, the head, None for a miss, and the level."""
 
 
 def _beams(ground: Ground, question: Question, heading: int) -> list[Beam]:
     """Draw all readings at one heading."""
     at = turned(question.headings_rad[heading : heading + 1])
     drawn = Drawn.of(Readings(question.readings), at, question.resolution_m)
-    lengths = drawn.body_lengths(ground.error_radius_cells, question.reach_cells)
+    levels = ground.radii.levels(drawn.range_cells)
+    lengths = drawn.body_lengths(np.array(ground.radii.cells)[levels], question.reach_cells)
     cells, _ = drawn.bodies(lengths)
     bodies = np.split(cells, np.cumsum(lengths)[:-1])
     return [
-        (body, None if is_miss else head)
-        for body, head, is_miss in zip(bodies, drawn.head_cells, drawn.is_miss, strict=True)
+        (body, None if is_miss else head, level)
+        for body, head, is_miss, level in zip(bodies, drawn.head_cells, drawn.is_miss, levels.tolist(), strict=True)
     ]
 
 
@@ -90,8 +97,9 @@ class _Around:
     """A map with what lies outside around it, so that looking somewhere is looking up one number."""
 
     grown: NDArray[np.bool_]
+    """``bool[levels, rows * cols]`` of the padded map."""
     blocking: NDArray[np.bool_]
-    """Both ``bool[rows * cols]`` of the padded map."""
+    """``bool[rows * cols]`` of it."""
     margin: tuple[int, int]
     cols: int
     blocked_by: int
@@ -100,9 +108,9 @@ class _Around:
     def of(cls, ground: Ground) -> "_Around":
         rows, cols = ground.free.shape
         margin = ((rows, rows), (cols, cols))
-        grown = np.pad(ground.grown, margin, constant_values=ground.outside_ends)
+        grown = np.pad(ground.grown, ((0, 0), *margin), constant_values=ground.outside_ends)
         blocking = np.pad(ground.blocking, margin, constant_values=ground.outside_blocks)
-        return cls(grown.ravel(), blocking.ravel(), (rows, cols), 3 * cols, ground.blocked_by)
+        return cls(grown.reshape(len(grown), -1), blocking.ravel(), (rows, cols), 3 * cols, ground.blocked_by)
 
     def places(self, cells: NDArray[np.intp]) -> NDArray[np.intp]:
         """Return where cells ``intp[n, 2]`` of the map lie, ``intp[n]``."""
@@ -135,11 +143,11 @@ def _count(
         bodies: whether beams count that meet their head and are blocked, or those that do not meet their head.
     """
     places, kept = around.places(cells), np.arange(len(cells))
-    for body, head in beams:
+    for body, head, level in beams:
         # A miss has no head to be missed.
         if head is None and not bodies:
             continue
-        meets = np.ones(len(places), np.bool_) if head is None else around.grown[places + around.steps(head)]
+        meets = np.ones(len(places), np.bool_) if head is None else around.grown[level][places + around.steps(head)]
         misses = misses + (_blocked(around, places, body, meets) if bodies else ~meets)
         good = misses <= allowed
         if not good.all():

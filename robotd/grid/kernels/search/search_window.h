@@ -3,6 +3,8 @@
 
 #include "search/search_kernels.h"
 
+#define TOGETHER 4 /* headings that are searched before what they reached raises what is asked for */
+
 /* A unit at a heading that seems good, and the window of it that does. */
 typedef struct {
     int32_t bound, heading, unit, place[2];
@@ -17,6 +19,7 @@ typedef struct {
     pooled_beam *pooled[POOLS]; /* [readings], of the heads of hits */
     int32_t hits;
     int32_t drawn; /* on how many grids they lie for this heading */
+    int64_t work;  /* how many heads in tiles of blocks it looked at so far */
     sheet at;
 } worker;
 
@@ -27,12 +30,16 @@ typedef struct search {
     grid grids[POOLS];
     int32_t units;
     int32_t (*tiles)[2]; /* [units]: column of words and first row of blocks, or row and column of a window */
+    uint64_t (*open)[8]; /* [units], if by blocks: which of the blocks have a cell where a pose may be */
     uint64_t *counters;  /* [headings][units][bits][8], if by blocks */
     int32_t *bounds;     /* [headings][units] */
     int32_t *order;      /* [ordered]: the headings that can hold an answer, the best bound first */
     int32_t ordered;
-    hope *hopes; /* [headings] */
-    int32_t next;
+    hope *hopes;                /* [headings] */
+    int32_t together[TOGETHER]; /* the headings that are searched at a time */
+    int32_t next, taken;        /* of these */
+    int64_t work;               /* what all of them have looked at */
+    int64_t share;              /* how much each of these headings may cost */
     enum {
         BOUNDING,
         RANKING,
@@ -40,14 +47,15 @@ typedef struct search {
     } phase;        /* ranking: only the best rank is sought */
     int32_t misses; /* how many readings met nothing */
     int32_t least;  /* what a pose must explain to be returned, as far as is known */
+    int32_t asked;  /* what it was before these headings: what is looked at must not depend on which of them is first */
+    int32_t reached; /* the best rank, then */
     pthread_mutex_t lock;
     worker workers[THREADS_MAX];
 } search;
 
 static void raise_least(search *s, int32_t least)
 {
-    if (least > s->least)
-        __atomic_store_n(&s->least, least, __ATOMIC_RELAXED);
+    s->least = larger(s->least, least);
 }
 
 static void found_rank(search *s, int32_t rank)
@@ -99,14 +107,9 @@ static void report(search *s, int32_t heading, const sheet *at)
     pthread_mutex_unlock(&s->lock);
 }
 
-static int32_t least_of(const search *s)
-{
-    return __atomic_load_n(&s->least, __ATOMIC_RELAXED);
-}
-
 static int32_t allowed_misses(const search *s)
 {
-    return s->job->reading_count - least_of(s);
+    return s->job->reading_count - s->asked;
 }
 
 /* Work out the rank of the cell that seems best: some rank that is reached, so that answers must come near it. */
@@ -117,8 +120,7 @@ static void try_best(worker *self)
     window misses[BITS_MAX + 1];
     memcpy(misses, self->at.misses, sizeof misses);
     const int32_t seen = keep_best(&self->at);
-    if (s->job->reading_count - seen > __atomic_load_n(&s->job->best_rank, __ATOMIC_RELAXED) &&
-        s->with->count_bodies(s->job, self->beams, &self->at)) {
+    if (s->job->reading_count - seen > s->reached && s->with->count_bodies(s->job, self->beams, &self->at)) {
         pthread_mutex_lock(&s->lock);
         found_rank(s, s->job->reading_count - keep_best(&self->at));
         pthread_mutex_unlock(&s->lock);

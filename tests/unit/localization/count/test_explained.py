@@ -14,7 +14,7 @@ from robotd.grid.readings import Readings
 from robotd.grid.ternary import TernaryMap
 from robotd.localization.count.explained import explained_at
 from robotd.localization.obstacles.beam_obstacles import Obstacles
-from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.obstacles.unknown_cells import UnknownCells
 from robotd.localization.reference.feasible_poses import feasible_poses
 from robotd.localization.reference.probe import probe_of
@@ -51,7 +51,7 @@ def test_it_is_feasibility_at_that_pose(
 ) -> None:
     ternary = TernaryMap(SPEC, cells == 1, cells == 0)
     obstacles = Obstacles.of_map(ternary, unknown, error_radius_cells, blocked_by=blocked_by)
-    the_map = PreparedMap.of(obstacles, SPEC, error_radius_cells)
+    the_map = Levels.of(obstacles, SPEC, error_radius_cells)
     probes = [
         probe_of(
             reading,

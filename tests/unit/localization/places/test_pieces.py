@@ -75,7 +75,7 @@ def test_a_spiral_is_one_region() -> None:
 
 
 def two_rooms() -> PreparedMap:
-    return ready_rooms().prepared
+    return ready_rooms().prepared.maps[0]
 
 
 def ready_rooms() -> ReadyMap:

@@ -15,6 +15,7 @@ from robotd.grid.readings import Readings
 from robotd.localization.count.count_all import count_all
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.obstacles.beam_obstacles import Obstacles
+from robotd.localization.obstacles.levels import Levels
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.reference.rank import loc_of, rank_of
 from robotd.localization.search.bounded_search import SearchMap, best_poses
@@ -56,7 +57,7 @@ def test_counted_all_at_once_in_batches_or_searched_loc_is_the_papers(
     assert np.array_equal(ranks.rank, rank)
     assert_same(ranks.best_poses(slack), expected)
     assert_same(count_all(prepared, Readings.of(sweep), headings_rad, slack=slack, memory_bytes=0), expected)
-    searched = SearchMap.of(obstacles, spec, RADIUS)
+    searched = SearchMap.of(Levels.of(obstacles, spec, RADIUS))
     assert_same(best_poses(searched, Readings.of(sweep), np.array(headings_rad), slack=slack), expected)
 
 

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robotd.grid.error_radii import ErrorRadii
 from robotd.grid.footprints import dilate, disk_footprint
 from robotd.grid.kernels.search.search_kernel import Ground, Question
 from robotd.grid.window import CellWindow
@@ -32,9 +33,10 @@ def ground_of(shape: tuple[int, int], radius: float, outside: tuple[bool, bool],
         blocking[: random.choice([0, 0, 3, 8])] = True
         blocking = np.ascontiguousarray(np.rot90(blocking))
     blocks, ends = outside
-    grown = dilate(blocking, disk_footprint(radius), outside=ends)
+    radii = ErrorRadii((0.0, radius), (float(random.choice([0.0, 1e9])),))  # read on one level or the other
+    grown = np.stack([dilate(blocking, disk_footprint(each), outside=ends) for each in radii.cells])
     free = ~blocking & (random.random(shape) < 0.05)
-    return Ground(free, blocking, grown, blocks, ends, int(random.integers(1, 3)), radius)
+    return Ground(free, blocking, grown, blocks, ends, int(random.integers(1, 3)), radii)
 
 
 def question_of(shape: tuple[int, int], range_cells: float, start: float) -> Question:

@@ -2,6 +2,7 @@
 
 import functools
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,20 +11,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from robotd.grid.error_radii import ErrorRadii
 from robotd.grid.footprints import dilate, disk_footprint
 from robotd.grid.kernels import Kernels
-from robotd.grid.kernels.search.search_kernel import Ground, Planes, Question
+from robotd.grid.kernels.search.search_kernel import BUDGET_MAX, Ground, Planes, Question
 from robotd.grid.kernels.twins import TWINS
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.window import CellWindow
 from tests.support.kernel_tables import NATIVE, both, needs_native
 
-RADIUS = 1.5
+RADII = ErrorRadii((1.5, 3.0), (12.0,))
 
 
 def ground_of(solid: NDArray[np.bool_], outside: bool = True, blocked_by: int = 1) -> Ground:
-    grown = dilate(solid, disk_footprint(RADIUS), outside=outside)
-    return Ground(~solid, solid, grown, outside, outside, blocked_by, RADIUS)
+    grown = np.stack([dilate(solid, disk_footprint(radius), outside=outside) for radius in RADII.cells])
+    return Ground(~solid, solid, grown, outside, outside, blocked_by, RADII)
 
 
 def question_of(shape: tuple[int, int], seed: int, **changes: int) -> Question:
@@ -73,7 +75,7 @@ def test_planes_renewed_in_a_window_are_planes_made_anew(
     after = before.copy()
     after[window.slices] = np.random.default_rng(seed).random(window.shape) < 0.1
     old, new = ground_of(before, outside), ground_of(after, outside)
-    changed = np.argwhere((old.blocking != new.blocking) | (old.grown != new.grown))
+    changed = np.argwhere((old.blocking != new.blocking) | (old.grown != new.grown).any(axis=0))
     if len(changed):
         (row_first, col_first), (row_last, col_last) = changed.min(axis=0).tolist(), changed.max(axis=0).tolist()
         window = CellWindow(row_first, row_last + 1, col_first, col_last + 1)
@@ -144,3 +146,34 @@ def test_planes_that_the_twin_made_are_searched_and_renewed() -> None:
     assert_same(NATIVE.search.search_poses(planes, question), found_by_numpy(1))
     renewed = NATIVE.search.renew_planes(planes, ground, CellWindow.whole(ground.free.shape))
     assert_same(NATIVE.search.search_poses(renewed, question), found_by_numpy(1))
+
+
+@both
+def test_with_any_budget_what_is_found_is_there_and_only_with_enough_is_it_all(kernels: Kernels) -> None:
+    ground, question = case(2)
+    planes, everything = kernels.search.make_planes(ground), found_by_numpy(2)
+    known = {tuple(pose): rank for pose, rank in zip(everything.poses.tolist(), everything.ranks, strict=True)}
+    cut = 0
+    for budget in [0, *(4**power for power in range(14)), BUDGET_MAX]:
+        found = kernels.search.search_poses(planes, replace(question, budget=budget))
+        assert found.best_rank <= everything.best_rank
+        if found.is_all:
+            assert_same(found, everything)
+        cut += not found.is_all
+        for pose, rank in zip(found.poses.tolist(), found.ranks.tolist(), strict=True):
+            assert rank == known.get(tuple(pose), rank)
+    assert found.is_all
+    assert cut > 2
+
+
+@needs_native
+def test_what_a_budget_is_enough_for_does_not_depend_on_threads() -> None:
+    """So a recording comes to the same on a machine with more of them."""
+    for seed in range(3):
+        ground, question = case(seed)
+        planes = NATIVE.search.make_planes(ground)
+        for budget in (3**power for power in range(4, 18)):
+            asked = replace(question, budget=budget)
+            alone = NATIVE.search.search_poses(planes, asked)
+            for threads in (2, 3, 7):
+                assert_same(NATIVE.search.search_poses(planes, asked, threads=threads), alone)

@@ -1,0 +1,93 @@
+"""Readings of several error radii: rnk over all is the sum over the levels, however it is worked out."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from numpy.typing import NDArray
+
+from robotd.core.grid_spec import GridSpec
+from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.grid.readings import Readings
+from robotd.grid.ternary import TernaryMap
+from robotd.grid.window import CellWindow
+from robotd.localization.count.explained import explained_at
+from robotd.localization.count.rank_grid import RankGrid
+from robotd.localization.obstacles.error_radius import ErrorRadius
+from robotd.localization.obstacles.levels import Levels
+from robotd.localization.radii import radii_of
+from robotd.localization.reference.rank import rank_of
+from robotd.localization.settings import LocalizationSettings
+
+SPEC = GridSpec(0.1, -0.5, 0.3, (14, 17))
+BY_RANGE = LocalizationSettings(error_radius=ErrorRadius.BY_RANGE)
+SETTINGS = replace(BY_RANGE, range_error_m=0.1, bearing_error_rad=0.2)
+readings = st.builds(
+    RangeReading,
+    st.just(0),
+    st.floats(-math.pi, math.pi),
+    st.sampled_from([ReadingStatus.OK, ReadingStatus.OK, ReadingStatus.MISS]),
+    st.floats(0.05, 1.5),
+)
+maps = hnp.arrays(np.uint8, SPEC.shape, elements=st.sampled_from([0, 0, 0, 1, 2]))
+
+
+def ternary_of(cells: NDArray[np.uint8]) -> TernaryMap:
+    return TernaryMap(SPEC, cells == 1, cells == 0)
+
+
+def levels_of(cells: NDArray[np.uint8]) -> Levels:
+    radii = radii_of(SETTINGS, SPEC)
+    return Levels.of_map(ternary_of(cells), SETTINGS.unknown, radii, blocked_by=SETTINGS.blocked_by)
+
+
+@settings(max_examples=60, deadline=None)
+@given(maps, st.lists(readings, min_size=1, max_size=6), st.floats(-4.0, 4.0))
+def test_counted_level_by_level_it_is_the_papers_count_with_the_radius_of_each_reading(
+    cells: NDArray[np.uint8], taken: list[RangeReading], heading_rad: float
+) -> None:
+    levels = levels_of(cells)
+    ranks = RankGrid(levels.maps[0], [heading_rad])
+    ranks.add_by_level(Readings.of(taken), levels)
+    expected = np.zeros(SPEC.shape, np.int64)
+    for reading in taken:
+        level = int(levels.radii.levels(np.array([(reading.range_m or 0.0) / SPEC.resolution_m]))[0])
+        expected += rank_of(
+            levels.maps[level].obstacles,
+            [reading],
+            [heading_rad],
+            resolution_m=SPEC.resolution_m,
+            error_radius_cells=levels.radii.cells[level],
+        )[0]
+    assert np.array_equal(ranks.rank[0], expected)
+    cell = 5, 8
+    assert explained_at(levels, Readings.of(taken), cell, heading_rad).sum() == expected[cell]
+    for prepared, which in levels.parted(Readings.of(taken)):
+        ranks.remove(Readings.of(taken)[which], prepared)
+    assert not ranks.rank.any()
+
+
+@settings(max_examples=40, deadline=None)
+@given(maps, st.integers(0, 2**32))
+def test_updated_in_a_window_they_are_what_they_are_made_anew(cells: NDArray[np.uint8], seed: int) -> None:
+    window, after = CellWindow(3, 9, 5, 8), cells.copy()
+    after[window.slices] = np.random.default_rng(seed).integers(0, 3, window.shape)
+    levels = levels_of(cells).updated(ternary_of(after), SETTINGS.unknown, window)
+    anew = levels_of(after)
+    assert levels.radii == anew.radii
+    assert len(levels.maps) >= 3
+    for one, other in zip(levels.maps, anew.maps, strict=True):
+        for name in ("free", "blocking", "grown"):
+            assert np.array_equal(getattr(one.obstacles, name), getattr(other.obstacles, name))
+
+
+@pytest.mark.parametrize(("cell_m", "least"), [(0.05, 1.5), (0.1, 1.0), (0.2, 1.0)])
+def test_a_radius_is_no_less_than_what_cells_round_away(cell_m: float, least: float) -> None:
+    spec = GridSpec(cell_m, 0.0, 0.0, (400, 400))
+    assert radii_of(BY_RANGE, spec).cells[0] == least
+    constant = LocalizationSettings(error_radius=ErrorRadius.CONSTANT)
+    assert radii_of(constant, spec).cells == (constant.error_radius_cells(cell_m),)
