@@ -10,6 +10,7 @@ from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import SweepDone
 from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.core.reading import ReadingStatus
+from robotd.localization.stop_poses import StopPoses
 from robotd.sim.buildings.building import RecordedBuilding, select_stops
 from robotd.sim.buildings.log_file import read_log
 from robotd.sim.recorded_robot import OdometrySource, RecordedRobot
@@ -29,7 +30,10 @@ def robot_of(log: Path, odometry: OdometrySource) -> RecordedRobot:
 
 def config() -> Config:
     seeing_far = Config()
-    return replace(seeing_far, rangefinder=replace(seeing_far.rangefinder, range_max_m=10.0))
+    rangefinder = replace(seeing_far.rangefinder, range_max_m=10.0)
+    # A recorded robot sees only where it was, and that is known in its odometry's frame.
+    by_odometry = replace(seeing_far.localization, stops=StopPoses.ODOMETRY)
+    return replace(seeing_far, rangefinder=rangefinder, localization=by_odometry)
 
 
 @pytest.mark.parametrize("name", LOGS)

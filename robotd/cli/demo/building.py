@@ -22,6 +22,7 @@ from robotd.contract.estimate import PoseState
 from robotd.contract.events import MapChanged
 from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.core.errors import MissionError
+from robotd.localization.stop_poses import StopPoses
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.sim.buildings.building import RecordedBuilding, encode_recorded_building, select_stops
 from robotd.sim.load import load_robot
@@ -87,7 +88,13 @@ def _config() -> Config:
         gain_hz=2.0,
     )
     # Twenty metres and more lie between the walls of a hall; the laser of the recorded robot saw them.
-    return replace(config, driving=driving, rangefinder=replace(config.rangefinder, range_max_m=12.0))
+    return replace(
+        config,
+        driving=driving,
+        rangefinder=replace(config.rangefinder, range_max_m=12.0),
+        # A recorded robot sees only where it was, and that is known in its odometry's frame.
+        localization=replace(config.localization, stops=StopPoses.ODOMETRY),
+    )
 
 
 def _localize_at(parts: Rig, console: Console, number: int, probe_m: tuple[float, float]) -> Trial:
