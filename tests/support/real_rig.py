@@ -100,6 +100,16 @@ async def program_of(*arguments: str, stderr: int | None = None) -> AsyncIterato
         await process.wait()
 
 
+def child_of(pid: int, module: str) -> int | None:
+    """Return the process that a daemon has for a module, if there is one now."""
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError, IndexError):
+            parent = status.read_text().rpartition(")")[2].split()[1]
+            if parent == str(pid) and module.encode() in (status.parent / "cmdline").read_bytes():
+                return int(status.parent.name)
+    return None
+
+
 def give_precedence(pid: int) -> None:
     """Let a process and its session go before others, where this is allowed.
 

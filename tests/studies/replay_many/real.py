@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import os
 import random
 import shutil
 import signal
@@ -25,7 +26,7 @@ from robotd.sim.buildings.world import load_world
 from robotd.sim.faults.catalogue import FAULTS
 from robotd.sim.robot import DEVICES, SimulatedRobot
 from tests.studies.replay_many.outcome import Outcome, difference
-from tests.support.real_rig import DAEMON, STALLING_DAEMON, armed, program_of, until_ready
+from tests.support.real_rig import DAEMON, STALLING_DAEMON, armed, child_of, program_of, until_ready
 
 WORLD = "laboratory"
 READINGS = 40
@@ -155,6 +156,8 @@ class _Session:
             "boards killed": self._boards_killed,
             "daemon frozen": lambda: self._still(self._daemon),
             "daemon stalled": self._stall,
+            "head killed": lambda: self._to_head(signal.SIGKILL),
+            "head frozen": lambda: self._to_head(signal.SIGSTOP),  # and killed, when it was silent for long enough
         }
 
     async def _mission(self, mission: Mission) -> None:
@@ -219,6 +222,13 @@ class _Session:
             process.send_signal(signal.SIGSTOP)
             await asyncio.sleep(self.rng.uniform(0.05, _STILL_MAX_S))
             process.send_signal(signal.SIGCONT)
+
+    async def _to_head(self, number: signal.Signals) -> None:
+        """Send a signal to the process that computes; in a replay none dies."""
+        head = child_of(self._daemon.pid, "robotd.head")
+        if head is not None:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(head, number)
 
     async def _boards_killed(self) -> None:
         """Cut the power of all boards, and give it back."""

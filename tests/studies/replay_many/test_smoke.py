@@ -29,6 +29,6 @@ def test_a_random_session_of_vendor_devices_replays(seed: int, robot: int) -> No
 @pytest.mark.real_clock
 def test_a_real_session_replays(tmp_path: Path) -> None:
     """A mission, and nothing beside it: more, and beside busy programs, is for ``make replay-many``."""
-    outcome = run_real_session(3, actions=1, kept=tmp_path)
+    outcome = run_real_session(26, actions=1, kept=tmp_path)
     assert outcome.differs is None, f"{outcome.kept} after {outcome.done}"
     assert outcome.results > 0
