@@ -5,11 +5,11 @@ import logging
 import socket
 import struct
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
-from robotd.server.zmtp import GREETING, Message, Peer, Ping, Reader, Violation, pong, ready
+from robotd.server.zmtp import GREETING, Message, Peer, Ping, Reader, Said, Violation, pong, ready
 
 log = logging.getLogger(__name__)
 
@@ -88,6 +88,10 @@ class Connection:
         self._gone = gone
         self._reader = Reader(longest_bytes=manners.longest_bytes, most_frames=manners.most_frames)
         self._outgoing: deque[memoryview] = deque()
+        self._says: Iterator[Said] | None = None
+        """What was read, and not taken yet."""
+        self._is_wanted = True
+        self._takes_nothing = False
         self._is_known = False
         self._is_writing = False
         self._loop.add_reader(end, self._read)
@@ -104,18 +108,22 @@ class Connection:
         is_full = self.waiting_bytes > 0 and (
             len(self._outgoing) >= self._manners.queue or self.waiting_bytes + len(data) > self._manners.queue_bytes
         )
-        if self._socket is None or is_full:
+        if self._socket is None or self._takes_nothing or is_full:
             return False
         self._put(data)
         return True
 
     def listen(self, *, to_it: bool) -> None:
-        """Read on, or leave in the kernel what comes until it is wanted."""
-        if self._socket is not None:
-            if to_it:
-                self._loop.add_reader(self._socket, self._read)
-            else:
-                self._loop.remove_reader(self._socket)
+        """Read on, or leave what was read as it is, and in the kernel what comes, until it is wanted."""
+        self._is_wanted = to_it
+        if self._socket is None:
+            return
+        if not to_it:
+            self._loop.remove_reader(self._socket)
+        elif self._says is None:
+            self._loop.add_reader(self._socket, self._read)
+        else:
+            self._loop.call_soon(self._hear)
 
     def close(self, why: str = "") -> None:
         """End it; cut off if there is a reason."""
@@ -132,6 +140,9 @@ class Connection:
             self._owner.left(self)
         self._gone(self, why)
 
+    def _is_heard(self) -> bool:
+        return self._socket is not None and self._is_wanted
+
     def _greeted_too_late(self) -> None:
         self.close(f"it did not say what it is within {_GREETS_WITHIN_S:g} s")
 
@@ -147,11 +158,20 @@ class Connection:
         if not data:
             self.close()
             return
+        self._says = self._reader.feed(data)
+        self._hear()
+
+    def _hear(self) -> None:
+        """Take what it says one by one, for as long as it is wanted."""
+        if self._says is None or not self._is_heard():
+            return
         try:
-            for said in self._reader.feed(data):
+            for said in self._says:
                 self._take(said)
-                if not self.is_open:
+                if not self._is_heard():
                     return
+            self._says = None
+            self.listen(to_it=True)
         except Violation as violation:
             if violation.frames:
                 self._owner.overheard(self, violation.frames)
@@ -188,8 +208,10 @@ class Connection:
         except (BlockingIOError, InterruptedError):
             count = 0
         except OSError:
-            self.close()
-            return
+            # It takes nothing any more; what it asked before it went, a stop among it, is still to be read.
+            self._takes_nothing = True
+            self._outgoing.clear()
+            self.waiting_bytes = count = 0
         self._taken(count)
         is_more = bool(self._outgoing)
         if is_more and not self._is_writing:

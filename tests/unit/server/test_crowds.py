@@ -99,9 +99,11 @@ async def test_a_stop_in_too_many_frames_is_obeyed_before_its_client_is_cut_off(
 async def test_a_program_that_stops_the_robot_and_ends_is_obeyed(serving: Serving, tmp_path: Path) -> None:
     async with serving() as control:
         control.armed = True
-        asks = b"".join(message(encode_request(number, GetStatus())) for number in range(50))
+        asks = b"".join(
+            message(encode_request(number, GetStatus())) for number in range(2000)
+        )  # more than is read at once
         async with raw(tmp_path / "commands.sock", b"DEALER") as (_, writer):
-            writer.write(asks + message(encode_request(99, Stop("enough"))))
+            writer.write(asks + message(encode_request(9999, Stop("enough"))))
         await others_are_served(tmp_path)
         async with asyncio.timeout(10.0):
             await control.halted.wait()
