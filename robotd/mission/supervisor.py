@@ -64,7 +64,13 @@ class Supervisor:
         self.halts = 0
         """How often the robot was stopped: who waited for something compares, and sees whether a stop came between."""
         self._current = CurrentMode(self.publish_status)
-        self._told = WhereaboutsTold(context.whereabouts, news.publish, self.publish_status, context.head.forget)
+        self._told = WhereaboutsTold(
+            context.whereabouts,
+            news.publish,
+            self.publish_status,
+            context.head.forget,
+            context.settings.localization,
+        )
         self.arming = Arming(self, self._current, lambda: faults_of(self.robot, battery_min_v))
         self.holding = Holding(self, context.hold, self.arming)
         self._watch = DeviceWatch(self, self.holding, self.arming, self._told.doubt, battery_min_v)

@@ -5,6 +5,8 @@ from collections.abc import Callable
 
 from robotd.core.clock import now_ns
 from robotd.core.pose import Odometry
+from robotd.localization.advice import advice_on
+from robotd.localization.settings import LocalizationSettings
 from robotd.mission.news import Publish
 from robotd.mission.whereabouts.map_in_use import MapInUse, in_place_of
 from robotd.mission.whereabouts.tie import Tie
@@ -23,12 +25,17 @@ class WhereaboutsTold:
         publish: Publish,
         publish_status: Callable[[], None],
         let_go: Callable[[int], None],
+        settings: LocalizationSettings,
     ) -> None:
-        """Change ``whereabouts``; another map is told of in the status, too, and ``let_go`` of the one before."""
+        """Change ``whereabouts``; another map is told of in the status, too, and ``let_go`` of the one before.
+
+        Where ``settings`` cannot work on it, the log says which.
+        """
         self._whereabouts = whereabouts
         self._publish = publish
         self._publish_status = publish_status
         self._let_go = let_go
+        self._settings = settings
 
     def begin(self) -> None:
         """Say that nothing is known yet."""
@@ -38,6 +45,8 @@ class WhereaboutsTold:
         """Take another map into use."""
         before = self._whereabouts.map_in_use
         log.info("map %s (%s) is in use%s", place.name, place.map_id, in_place_of(before))
+        if (advice := advice_on(self._settings, place.spec)) is not None:
+            log.warning("map %s: %s", place.name, advice)
         self._whereabouts.adopt(place, tie)
         if before is not None and before.number != place.number:
             self._let_go(before.number)
