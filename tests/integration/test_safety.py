@@ -85,14 +85,14 @@ class Plug:
 
 
 class Holding:
-    """Computes at once, but keeps the result of an insertion or of preparing to localize until it is let go."""
+    """Computes at once, but keeps the result of laying a sweep in or of preparing to localize until it is let go."""
 
     def __init__(self) -> None:
         self.go = asyncio.Event()
 
     async def run(self, name: str, function: Callable[..., object], *args: object) -> object:
         result = function(*args)
-        if name in {"insert", "prepare"}:
+        if name in {"insert", "place stop", "prepare"}:
             await self.go.wait()
         return result
 
