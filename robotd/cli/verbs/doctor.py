@@ -130,6 +130,8 @@ def _config(file: Path) -> ConfigFound:
 
 
 def _doctor(arguments: argparse.Namespace) -> int:
+    if arguments.file is not None:
+        config.load(arguments.file)  # what was named must be one; without, what is missing is a finding
     findings = examine(arguments.file)
     if arguments.json:
         document: dict[str, Any] = dataclasses.asdict(findings)
