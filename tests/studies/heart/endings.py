@@ -46,6 +46,7 @@ async def idle(rig: Rig, client: AsyncClient) -> bool:
 async def sweeping(rig: Rig, client: AsyncClient) -> bool:
     """In the middle of a sweep."""
     await armed(client)
+    rig.expect_stops()  # on a busy machine the lease may end before the front does
     await client.start(MapStart.of("heart", (), rig.robot.truth), LEASE_S)
     return True
 
@@ -54,6 +55,7 @@ async def driving(rig: Rig, client: AsyncClient) -> bool:
     """On the way."""
     await armed(client)
     here, start = rig.robot.truth, rig.robot.start
+    rig.expect_stops()
     goal_m = start.y_m - 0.8 if here.y_m > start.y_m else start.y_m + 0.8
     await client.start(DriveTo(start.x_m, goal_m, Legs.STRAIGHT), LEASE_S)
     return True
@@ -73,7 +75,6 @@ async def end_front(rig: Rig, daemon_pid: int, mode: str, number: signal.Signals
         session = (await client.hello()).session
         is_on_mission = await MODES[mode](rig, client)
         before = (await client.status()).mode
-        rig.expect_stops()
         renewed_ns = now_ns()  # the lease began before this, so a stop may even be early
         if is_on_mission:
             with suppress(RobotdError):
