@@ -283,7 +283,7 @@ async def test_a_stall_while_something_is_computed_ends_nothing(
         mission_id = begin(it)
         await phase(it, MissionPhase.COMPUTING, 0)
         await asyncio.sleep(0.1)
-        assert computing == ["insert"]
+        assert computing == ["place stop"]
         assert not stall(it)
         assert it.daemon.control.status.held is None
         assert (await ended(it, mission_id)).phase is MissionPhase.DONE
