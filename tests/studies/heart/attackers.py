@@ -137,8 +137,10 @@ def main() -> None:
     attack = ATTACKERS[sys.argv[1]](Path(sys.argv[2]), float(sys.argv[3]))
     next(attack)
     print("begun", flush=True)
+    parent = os.getppid()
     for _ in attack:
-        """Go on."""
+        if os.getppid() != parent:  # a run that was killed leaves nothing behind
+            break
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ from tests.support.real_rig import Rig, armed, ms_since
 LEASE_S = 0.5
 _UNDER_WAY_S = 0.2
 _AGAIN = 100
-_AGAIN_AFTER_S = 0.3
+_AGAIN_AFTER_S = 2.0
 
 
 @dataclass
