@@ -104,7 +104,7 @@ class Subject:
         ways: dict[str, Mission] = {
             "mapping": MapStart.of("trial", (), here),
             "localizing": Localize(tie=False),
-            "driving": DriveTo(here.x_m + 0.05, here.y_m, Legs.PLANNED),
+            "driving": DriveTo(here.x_m + 0.05, here.y_m, Legs.STRAIGHT),
         }
         return ways[state]
 
