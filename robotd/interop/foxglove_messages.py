@@ -16,6 +16,7 @@ from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import MapChanged, SweepDone
 from robotd.contract.topics import LogEntry
 from robotd.core.clock import NS_PER_S
+from robotd.core.grid_bytes import unpacked_cells
 from robotd.core.pose import IDENTITY, Odometry, Pose2
 from robotd.core.reading import ReadingStatus
 
@@ -101,7 +102,9 @@ class FoxgloveFrames:
         """Return the whole map, a byte a cell: there is no message for a part of it."""
         spec = change.spec
         if change.whole:
-            self._cells = change.values.copy()
+            # Where it was packed already it has no values of its own.
+            whole = change.values if change.packed is None else unpacked_cells(change.packed, spec)
+            self._cells = whole.copy()
         elif self._cells.shape == spec.shape:
             self._cells.flat[change.cells] = change.values
         content = {

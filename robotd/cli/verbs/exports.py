@@ -21,8 +21,10 @@ from robotd.interop.carmen import PlacedSweep, encode_carmen
 from robotd.interop.foxglove_messages import SCHEMAS, FoxgloveFrames
 from robotd.interop.tum import TimedPose, encode_tum
 
-_TUM = Kind("a trajectory in the TUM form", lambda head: head[:1].isdigit() and len(head.split(b"\n")[0].split()) == 8)
-_CARMEN = Kind("a CARMEN log", lambda head: head.startswith((b"ODOM ", b"ROBOTLASER1 ", b"FLASER ", b"PARAM ", b"#")))
+_MARK = "# Made by robotctl export"
+"""What files of lines begin with: only ours are written again, for somebody's log looks just like one."""
+_TUM = Kind("a trajectory made by robotctl export", lambda head: head.startswith(_MARK.encode()))
+_CARMEN = Kind("a CARMEN log made by robotctl export", lambda head: head.startswith(_MARK.encode()))
 _MCAP = Kind("an MCAP file for Foxglove", lambda head: head.startswith(b"\x89MCAP") and b"foxglove" in head)
 _PROFILE = "foxglove"
 """Marks the files that are ours to write again, and are no recordings."""
@@ -56,13 +58,13 @@ def _tum(arguments: argparse.Namespace) -> int:
         for event in heard.events
         if isinstance(event, PoseEstimate) and event.best is not None and event.state in states
     ]
-    return _written(arguments, "".join(encode_tum(poses)).encode(), len(poses), "poses")
+    return _written_lines(arguments, encode_tum(poses), len(poses), "poses")
 
 
 def _carmen(arguments: argparse.Namespace) -> int:
     heard = _Heard.of(arguments.file, PoseEstimate, SweepDone)
     sweeps = list((_on_map if arguments.on_map else _by_odometry)(heard))
-    return _written(arguments, "".join(encode_carmen(sweeps)).encode(), len(sweeps), "sweeps")
+    return _written_lines(arguments, encode_carmen(sweeps), len(sweeps), "sweeps")
 
 
 def _by_odometry(heard: _Heard) -> Iterator[PlacedSweep]:
@@ -103,6 +105,10 @@ def _foxglove(arguments: argparse.Namespace) -> int:
             count += 1
     writer.finish()  # type: ignore[no-untyped-call]  # mcap leaves it without types
     return _written(arguments, written.getvalue(), count, "messages")
+
+
+def _written_lines(arguments: argparse.Namespace, lines: Iterator[str], count: int, what: str) -> int:
+    return _written(arguments, "".join((f"{_MARK}\n", *lines)).encode(), count, what)
 
 
 def _written(arguments: argparse.Namespace, content: bytes, count: int, what: str) -> int:

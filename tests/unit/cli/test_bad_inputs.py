@@ -66,6 +66,11 @@ OTHERS = {
     "map import --maps": ["MAPYAML"],
     "map export --config": ["kitchen", "NEW"],
     "map export --maps": ["kitchen", "NEW"],
+    "map stops --config": ["kitchen"],
+    "map stops --maps": ["kitchen"],
+    "export tum file": ["NEW"],
+    "export carmen file": ["NEW"],
+    "export foxglove file": ["NEW"],
 }
 """What else the command line needs for the verb to come as far as the bad file."""
 MAP_YAML = b"image: in.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
@@ -134,7 +139,7 @@ def command(name: str, bad: Path, directory: Path) -> list[str]:
     others += {
         "map copy": ["hall", "other"],
         "map rename": ["hall", "other"],
-        "map delete": ["hall"],
+        "map delete": ["hall", "--yes"],
         "map compare": ["hall", "other"],
     }.get(verb, [])
     if verb == "calibrate range":
