@@ -8,7 +8,7 @@ from robotd.contract.events import MapChanged
 from robotd.contract.requests import GetStatus, MapShow
 from robotd.contract.topics import Published, Topic, to_wire
 from robotd.core.broadcast import Subscription
-from robotd.core.errors import RobotdError
+from robotd.core.errors import RobotdError, ServerError
 from robotd.core.log_limit import LogLimit
 from robotd.server.control import Control
 from robotd.server.map_queue import MapQueue
@@ -44,7 +44,10 @@ class Publisher:
             # From the first moment on there is a status for the greeting, which clients take as the sign to begin.
             status = await self._control.perform(GetStatus())
             self._publish(status)
-        except Exception as error:  # the next one comes within a second
+        except ServerError as error:
+            # What moves the robot is busy, or ends as this begins: no fault of ours, and the next comes within a second.
+            log.debug("the first status was refused: %s", error)
+        except Exception as error:
             self._complain("the first status", error)
         while True:
             event = await self._events.get()

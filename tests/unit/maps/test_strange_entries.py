@@ -189,6 +189,6 @@ def test_a_file_system_that_keeps_another_name_is_found_out(root: Path, monkeypa
     def publish_under_another_name(temporary: Path, final: Path, files: dict[str, Buffer]) -> None:
         publish_directory(temporary, final.with_name(f"{final.name}~"), files)
 
-    monkeypatch.setattr("robotd.maps.store.publish_directory", publish_under_another_name)
+    monkeypatch.setattr("robotd.maps.archive.publish_directory", publish_under_another_name)
     with pytest.raises(MapError, match="keeps other names"):
         MapStore(root).save("lab", grid_of(3), {}, 3)
