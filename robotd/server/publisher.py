@@ -45,7 +45,7 @@ class Publisher:
             status = await self._control.perform(GetStatus())
             self._publish(status)
         except ServerError as error:
-            # What moves the robot is busy, or ends as this begins: no fault of ours, and the next comes within a second.
+            # What moves the robot is busy, or ends as this begins: no fault of ours, and the next comes soon.
             log.debug("the first status was refused: %s", error)
         except Exception as error:
             self._complain("the first status", error)
