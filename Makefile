@@ -29,7 +29,7 @@ demo-busy: .venv/.dev  ## Whether make demo finishes beside busy programs: N="2 
 
 test: .venv/.dev  ## Run all tests
 	@echo "robotd: running all tests (about three minutes on two cores)"
-	@$(BIN)/python -m pytest -n 2 --dist worksteal -q $(PYTEST_ARGS)
+	@$(BIN)/python -m pytest -n 3 --dist worksteal -q $(PYTEST_ARGS)  # three on two cores: the slowest wait for real time
 
 bench: .venv/.dev  ## Measure the engine: all of it into docs/benchmarks, or a part: make bench ONLY=counting
 	@$(BIN)/python -m tests.benchmarks.run $(if $(ONLY),--only $(ONLY))
