@@ -29,11 +29,13 @@ def calibrate_head(now: Constants, distance_m: float) -> Procedure:
         here = there
     play_rad, play_error_rad = combined(plays)
     ahead_rad, ahead_error_rad = combined(aheads)
+    # Gears have no less than none; where they have none, noise says a little less as often as a little more.
+    backlash_rad = max(0.0, now.backlash_rad + play_rad)
     zero_rad = math.remainder(now.pan_zero_rad - ahead_rad, math.tau)
     return Calibration(
         (
             Found("pantilt", "pan_zero_rad", "rad", zero_rad, ahead_error_rad, now.pan_zero_rad),
-            Found("pantilt", "backlash_rad", "rad", now.backlash_rad + play_rad, play_error_rad, now.backlash_rad),
+            Found("pantilt", "backlash_rad", "rad", backlash_rad, play_error_rad, now.backlash_rad),
         ),
         (
             Residuals("direction of the legs", "rad", np.array([angle for angle, _ in aheads]) - ahead_rad),

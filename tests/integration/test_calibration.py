@@ -71,6 +71,15 @@ async def test_zero_and_play_of_the_head_are_found(live: Live) -> None:
     assert found["pan_zero_rad"].value == pytest.approx(PAN_ZERO_RAD, abs=0.005)
 
 
+async def test_a_head_without_play_has_no_less_than_none(live: Live) -> None:
+    _, config = robot_and_config()
+    tight = replace(config, pantilt=replace(config.pantilt, backlash_rad=0.0))
+    for seed in range(2):  # noise says a little less than none in one of two
+        async with live(SimulatedRobot(load_world("laboratory"), seed), tight) as it:
+            found = by_key(await carried_out(it, calibrate_head(constants(tight), 1.5)))
+        assert 0.0 <= found["backlash_rad"].value < 0.005
+
+
 async def test_the_range_bias_is_found_before_a_wall(live: Live) -> None:
     robot, config = robot_and_config()
     async with live(robot, config) as it:
