@@ -1,6 +1,6 @@
 """Where the head's zero is, and how much play its gears have.
 
-The play shows in two sweeps from one place, one each way round: what the one sees ahead the other sees aside. The zero
+The play shows in two sweeps from one place, one each way round: what the one sees ahead the other sees turned. The zero
 is where the robot goes when it drives straight: that is ahead, whatever the head calls it.
 """
 

@@ -42,11 +42,11 @@ def test_a_likelihood_that_was_updated_is_as_if_made_anew(
     before = likelihood.chances.skips.copy()
     window = CellWindow(rows[0], min(40, sum(rows)), cols[0], min(200, sum(cols)))
     cells[window.slices] = random.choice(kinds, window.shape)
-    updated, anew = likelihood.updated(cells, window), Likelihood.of(SPEC, cells, ErrorModel())
-    np.testing.assert_array_equal(updated.chances.cells, anew.chances.cells)
-    np.testing.assert_array_equal(updated.chances.skips, anew.chances.skips)
-    np.testing.assert_array_equal(updated.on_walls, anew.on_walls)
-    assert updated.vacant_cells == anew.vacant_cells
+    updated, remade = likelihood.updated(cells, window), Likelihood.of(SPEC, cells, ErrorModel())
+    np.testing.assert_array_equal(updated.chances.cells, remade.chances.cells)
+    np.testing.assert_array_equal(updated.chances.skips, remade.chances.skips)
+    np.testing.assert_array_equal(updated.on_walls, remade.on_walls)
+    assert updated.vacant_cells == remade.vacant_cells
     np.testing.assert_array_equal(likelihood.chances.skips, before)
 
 

@@ -73,14 +73,14 @@ def test_counted_level_by_level_it_is_the_papers_count_with_the_radius_of_each_r
 
 @settings(max_examples=40, deadline=None)
 @given(maps, st.integers(0, 2**32))
-def test_updated_in_a_window_they_are_what_they_are_made_anew(cells: NDArray[np.uint8], seed: int) -> None:
+def test_updated_in_a_window_they_are_what_they_are_made_from_nothing(cells: NDArray[np.uint8], seed: int) -> None:
     window, after = CellWindow(3, 9, 5, 8), cells.copy()
     after[window.slices] = np.random.default_rng(seed).integers(0, 3, window.shape)
     levels = levels_of(cells).updated(ternary_of(after), SETTINGS.unknown, window)
-    anew = levels_of(after)
-    assert levels.radii == anew.radii
+    remade = levels_of(after)
+    assert levels.radii == remade.radii
     assert len(levels.maps) >= 3
-    for one, other in zip(levels.maps, anew.maps, strict=True):
+    for one, other in zip(levels.maps, remade.maps, strict=True):
         for name in ("free", "blocking", "grown"):
             assert np.array_equal(getattr(one.obstacles, name), getattr(other.obstacles, name))
 

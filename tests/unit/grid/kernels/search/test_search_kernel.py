@@ -80,10 +80,10 @@ def test_planes_renewed_in_a_window_are_planes_made_anew(
         (row_first, col_first), (row_last, col_last) = changed.min(axis=0).tolist(), changed.max(axis=0).tolist()
         window = CellWindow(row_first, row_last + 1, col_first, col_last + 1)
     planes = NATIVE.search.renew_planes(NATIVE.search.make_planes(old), new, window)
-    anew: Planes = NATIVE.search.make_planes(new)
-    assert np.array_equal(planes.near, anew.near)
-    assert np.array_equal(planes.cells, anew.cells)
-    assert np.array_equal(planes.pooled, anew.pooled)
+    remade: Planes = NATIVE.search.make_planes(new)
+    assert np.array_equal(planes.near, remade.near)
+    assert np.array_equal(planes.cells, remade.cells)
+    assert np.array_equal(planes.pooled, remade.pooled)
 
 
 @needs_native
