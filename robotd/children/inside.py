@@ -40,8 +40,7 @@ def adopted(argv: Sequence[str]) -> Birth:
         argv: as :func:`robotd.children.process.spawn` makes it, without the program's name.
     """
     parent, memory_bytes, descriptors, *arguments = argv
-    # Beside the end of the channel, which a child that computes would find out late: the kernel ends it.
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    die_with_parent()  # beside the end of the channel, which a child that computes would find out late
     if os.getppid() != int(parent):  # it went before we had asked for that
         raise SystemExit(0)
     # Only the parent decides when to end: of a terminal's Ctrl-C it hears as well, and stops the robot first.
@@ -53,6 +52,11 @@ def adopted(argv: Sequence[str]) -> Birth:
     with suppress(OSError):  # where memory is short, the kernel shall take a child before the one that stops the robot
         Path("/proc/self/oom_score_adj").write_text("500", encoding="ascii")
     return Birth(tuple(int(number) for number in descriptors.split(",")), tuple(arguments))
+
+
+def die_with_parent() -> None:
+    """Have the kernel end this process when its parent has ended, by whatever cause."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 async def live(life: Channel, version: str) -> None:

@@ -10,6 +10,7 @@ from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from robotd.children.inside import die_with_parent
 from robotd.cli.emulated import config_text
 from robotd.client import AsyncClient
 from robotd.contract.device_status import LinkState
@@ -90,7 +91,14 @@ class Rig:
 async def program_of(*arguments: str, stderr: int | None = None) -> AsyncIterator[asyncio.subprocess.Process]:
     """Start a Python program in a session of its own; kill it in the end if it still lives."""
     process = await asyncio.create_subprocess_exec(
-        sys.executable, *arguments, stdout=asyncio.subprocess.PIPE, stderr=stderr, cwd=_ROOT, start_new_session=True
+        *(sys.executable, *arguments),
+        stdout=asyncio.subprocess.PIPE,
+        stderr=stderr,
+        cwd=_ROOT,
+        start_new_session=True,
+        # A daemon that outlives a run that was killed goes on opening its lines, and pseudo-terminals are numbered
+        # again: the next run's daemon finds its own taken, and is never ready.
+        preexec_fn=die_with_parent,
     )
     try:
         yield process

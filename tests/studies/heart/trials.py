@@ -11,6 +11,7 @@ from contextlib import aclosing
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from robotd.children.inside import die_with_parent
 from robotd.client import AsyncClient
 from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import MapStart
@@ -94,6 +95,7 @@ async def attacker(name: str, runtime_dir: Path, share: float) -> AsyncIterator[
         *(sys.executable, "-m", "tests.studies.heart.attackers", name, str(runtime_dir), str(share)),
         stdout=subprocess.PIPE,
         start_new_session=True,
+        preexec_fn=die_with_parent,
         cwd=Path(__file__).parents[3],
     )
     assert process.stdout is not None

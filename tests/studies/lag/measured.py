@@ -3,19 +3,21 @@ millisecond came. When it is told to end it writes both to a file.
 """
 
 import asyncio
+import os
 import sys
 import time
 from array import array
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from robotd.app.daemon import run
+from robotd.children.process import Program
 from robotd.config import load
 from robotd.core.log import configure
-from robotd.localization.localizer import Localizer
+from robotd.head import far
 from tests.studies.lag.samples import Samples
-from tests.studies.lag.workload import large_estimate
 
+ROOT = Path(__file__).parents[3]
 BEAT_NS = 1_000_000
 REGIONS = "regions"
 """In place of a map's answers, every estimate holds 32 large regions."""
@@ -42,10 +44,8 @@ async def _beat(into: "array[int]") -> NoReturn:
 
 
 def _answer_with_regions() -> None:
-    def estimate(localizer: Localizer, time_ns: int, *, final: bool) -> Any:
-        return large_estimate(time_ns, final=final)
-
-    Localizer.estimate = estimate  # type: ignore[assignment,method-assign]  # the rest of its way is what is measured
+    os.environ["PYTHONPATH"] = str(ROOT)  # a child looks for no module where it was started
+    far.program = lambda log_level: Program(("-m", "tests.studies.lag.regions_head"), arguments=(log_level,))
 
 
 async def _main(samples_file: Path, config_file: Path) -> None:
