@@ -1,6 +1,7 @@
 """``make stops``: whatever ends the daemon, in whatever motion, whatever the devices speak; fails if one moves on."""
 
 import argparse
+import logging
 import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
@@ -64,7 +65,7 @@ def main() -> None:
     arguments = parser.parse_args()
     tried = [row for row in rows() if arguments.only in str(row)]
     bad = 0
-    with ProcessPoolExecutor(arguments.processes) as pool:
+    with ProcessPoolExecutor(arguments.processes, initializer=_quietly) as pool:
         if arguments.trials:
             bad += _in_memory(pool, tried, arguments.trials)
         if arguments.real:
@@ -108,6 +109,11 @@ def _as_processes(pool: Executor, tried: Sequence[Row], trials: int) -> int:
         texts = [f"{sum(rest_s is not None for rest_s in cell)}/{len(cell)}" for cell in cells]
         _print_row(row, texts, _ms([rest_s for cell in cells for rest_s in cell]))
     return bad
+
+
+def _quietly() -> None:
+    """Keep warnings of the daemons tried out of the table: with no handler of theirs they go to the terminal."""
+    logging.getLogger("robotd").addHandler(logging.NullHandler())
 
 
 def _applies(row: Row, cause: str) -> bool:
