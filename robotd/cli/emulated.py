@@ -6,8 +6,8 @@ from pathlib import Path
 
 from robotd.cli.outputs import CONFIG_MARK, write
 from robotd.config import Config, effective_text, loads
-from robotd.config.writer import write_value
 from robotd.recording.reader import Recording
+from robotd.toml.writer import write_value
 
 RUNTIME_DIR, MAPS_DIR, RECORDINGS_DIR = "run", "maps", "recordings"
 

@@ -1,21 +1,17 @@
 """Configurations as files and texts."""
 
-import codecs
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from robotd.config.environment import runtime_dir
 from robotd.config.locations import locate
-from robotd.config.problems import Problems
-from robotd.config.toml_text import read_text
 from robotd.config.tree import Config
-from robotd.config.writer import write_table
 from robotd.core.endpoints import Endpoints
-from robotd.core.errors import ConfigError, TransportError
-
-_UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE, codecs.BOM_UTF32_BE)  # UTF-32-LE begins as UTF-16-LE does
-_WIDEST_LETTER = 4
+from robotd.core.errors import TransportError
+from robotd.toml.problems import Problems
+from robotd.toml.reader import read_file, read_text
+from robotd.toml.writer import write_table
 
 
 def load(path: Path) -> Config:
@@ -27,11 +23,7 @@ def load(path: Path) -> Config:
     Raises:
         ConfigError: all that is wrong with it, in ``problems``.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise ConfigError(f"cannot be read: {error.strerror}", file=str(path)) from error
-    return read_text(Config, _decoded(data, str(path)), str(path), partial(_prepare, directory=path.absolute().parent))
+    return read_file(Config, path, partial(_prepare, directory=path.absolute().parent))
 
 
 def loads(text: str, file: str = "configuration") -> Config:
@@ -57,14 +49,3 @@ def _prepare(table: dict[str, Any], problems: Problems, directory: Path) -> None
         Endpoints(Path(written if isinstance(written, str) else ""))
     except TransportError as error:
         problems.add(("server", "runtime_dir"), str(error))
-
-
-def _decoded(data: bytes, file: str) -> str:
-    """Return the text of a file; a byte order mark before it is no part of it."""
-    if data.startswith(_UTF_16) or b"\0" in data[:_WIDEST_LETTER]:
-        raise ConfigError("not TOML: UTF-16 or UTF-32; save it as UTF-8", file=file, line=1)
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = error.object.count(b"\n", 0, error.start) + 1
-        raise ConfigError("not TOML: not UTF-8", file=file, line=line) from error

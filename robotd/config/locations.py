@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from robotd.config.environment import home_of, variable
-from robotd.config.lines import KeyPath
-from robotd.config.problems import Problems
+from robotd.toml.lines import KeyPath
+from robotd.toml.problems import Problems
 
 DIRECTORIES: tuple[KeyPath, ...] = (("server", "runtime_dir"), ("maps", "dir"), ("recording", "dir"))
 PORTS: tuple[KeyPath, ...] = (("drive", "port"), ("pantilt", "port"), ("rangefinder", "port"))

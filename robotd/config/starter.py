@@ -4,9 +4,9 @@ import dataclasses
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from robotd.config.writer import write_value
 from robotd.core.bounds import Within, bounds_of
 from robotd.hardware.devices.catalogue import DIALECTS
+from robotd.toml.writer import write_value
 
 Values = Mapping[str, Mapping[str, object]]
 """By section and key."""

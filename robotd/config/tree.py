@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Annotated
 
-from robotd.config.chosen import ChosenBy
 from robotd.config.environment import runtime_dir
 from robotd.config.sections import MapsSettings, RecordingSettings
 from robotd.core.errors import ConfigError
@@ -32,6 +31,7 @@ from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.planning.settings import PlanningSettings
 from robotd.server.settings import ServerSettings
+from robotd.toml.chosen import ChosenBy
 
 
 def _by_dialect(device: str) -> ChosenBy:

@@ -23,9 +23,9 @@ from robotd.cli.show.half_blocks import can_draw_blocks
 from robotd.cli.show.strips import strip
 from robotd.cli.show.terminal import err, out, print_json, print_table
 from robotd.cli.verb import Verb
-from robotd.config.edit import with_values
 from robotd.contract.modes import Mode
 from robotd.core.errors import ConfigError, MissionError, RobotdError
+from robotd.toml.edit import with_values
 
 _DIGITS = 7
 _SHOWN = {"m": ("mm", 1000.0), "rad": ("deg", 180.0 / math.pi)}

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from robotd.config import Config, loads
-from robotd.config.writer import write_value
 from robotd.core.bounds import Within, bounds_of
 from robotd.core.errors import ConfigError
+from robotd.toml.writer import write_value
 
 
 def numbers() -> Iterator[tuple[str, str, Any]]:

@@ -4,8 +4,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 from robotd.config import Config, loads
-from robotd.config.lines import key_lines
-from robotd.config.problems import UNITS
+from robotd.toml.lines import key_lines
+from robotd.toml.problems import UNITS
 
 FILE = Path(__file__).parents[3] / "systemd" / "robotd.toml"
 

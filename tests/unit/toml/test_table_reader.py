@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from robotd.config.toml_text import read_text
 from robotd.core.errors import ConfigError
+from robotd.toml.reader import read_text
 
 
 class Pace(enum.StrEnum):

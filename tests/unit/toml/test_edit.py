@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robotd.config import loads
-from robotd.config.edit import with_values
 from robotd.core.errors import ConfigError
+from robotd.toml.edit import with_values
 
 SHIPPED = (Path(__file__).parents[3] / "systemd" / "robotd.toml").read_text()
 VALUES = {"drive": {"counts_per_m": 27_100.5}, "pantilt": {"pan_zero_rad": -0.02, "backlash_rad": 0.09}}

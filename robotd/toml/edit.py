@@ -3,9 +3,9 @@
 import tomllib
 from collections.abc import Mapping
 
-from robotd.config.lines import key_lines
-from robotd.config.writer import write_value
 from robotd.core.errors import ConfigError
+from robotd.toml.lines import key_lines
+from robotd.toml.writer import write_value
 
 Values = Mapping[str, Mapping[str, object]]
 """By section and key."""

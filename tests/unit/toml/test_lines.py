@@ -6,7 +6,7 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.config.lines import key_lines, line_of
+from robotd.toml.lines import key_lines, line_of
 
 TEXT = '''
 a = 1 # [no]

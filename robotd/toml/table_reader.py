@@ -14,10 +14,10 @@ import types
 import typing
 from typing import Annotated, Any, Generic, TypeVar, cast
 
-from robotd.config.chosen import ChosenBy, chosen_in
-from robotd.config.lines import KeyPath
-from robotd.config.problems import Problems, did_you_mean, unknown_name
 from robotd.core.bounds import Within, bounds_in
+from robotd.toml.chosen import ChosenBy, chosen_in
+from robotd.toml.lines import KeyPath
+from robotd.toml.problems import Problems, did_you_mean, unknown_name
 
 T = TypeVar("T")
 Table = dict[str, Any]

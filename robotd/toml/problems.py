@@ -5,8 +5,8 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from robotd.config.lines import KeyPath, line_of
 from robotd.core.errors import ConfigError
+from robotd.toml.lines import KeyPath, line_of
 
 UNITS = {
     "m": "metres",

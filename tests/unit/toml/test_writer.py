@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.config.toml_text import read_text
-from robotd.config.writer import write_table
+from robotd.toml.reader import read_text
+from robotd.toml.writer import write_table
 
 
 class Colour(enum.StrEnum):
