@@ -1,6 +1,7 @@
 """The child's side: what it was given at its birth, and how it shows that it lives."""
 
 import ctypes
+import logging
 import os
 import resource
 import signal
@@ -11,9 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robotd.children.channel import Channel
+from robotd.children.confinement import confine_to_program
 from robotd.children.pings import READY
 from robotd.children.sockets import SocketChannel
 from robotd.core.errors import ChildError
+from robotd.core.precedence import no_realtime
 
 _PR_SET_PDEATHSIG = 1
 
@@ -26,23 +29,33 @@ class Birth:
     """Of the channel by which it is watched, and of its lanes."""
     arguments: tuple[str, ...]
     """Of its own."""
+    unconfined: str
+    """Why the kernel does not keep it from other files than its program's; empty if it does."""
 
     def channels(self) -> tuple[Channel, list[Channel]]:
         """Return the channel by which it is watched, and the lanes; on the running loop, once."""
         life, *lanes = (SocketChannel(socket.socket(fileno=number)) for number in self.descriptors)
         return life, list(lanes)
 
+    def tell(self, log: logging.Logger) -> None:
+        """Say in the log what does not keep it from the files of others."""
+        if self.unconfined:
+            log.warning("not confined to its own files, for the kernel has no Landlock for it: %s", self.unconfined)
+
 
 def adopted(argv: Sequence[str]) -> Birth:
-    """Bind the life of this process to its parent's, and its memory to its bound; the first thing that a child does.
+    """Bind the life of this process to its parent's, and what it may have and reach to its bounds.
+
+    It is the first thing that a child does, before it imports what it computes by: libraries begin threads.
 
     Args:
         argv: as :func:`robotd.children.process.spawn` makes it, without the program's name.
     """
-    parent, memory_bytes, descriptors, *arguments = argv
+    parent, memory_bytes, sockets_in, descriptors, *arguments = argv
     die_with_parent()  # beside the end of the channel, which a child that computes would find out late
     if os.getppid() != int(parent):  # it went before we had asked for that
         raise SystemExit(0)
+    no_realtime()
     # Only the parent decides when to end: of a terminal's Ctrl-C it hears as well, and stops the robot first.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
@@ -51,7 +64,8 @@ def adopted(argv: Sequence[str]) -> Birth:
             resource.setrlimit(resource.RLIMIT_AS, (int(memory_bytes), int(memory_bytes)))
     with suppress(OSError):  # where memory is short, the kernel shall take a child before the one that stops the robot
         Path("/proc/self/oom_score_adj").write_text("500", encoding="ascii")
-    return Birth(tuple(int(number) for number in descriptors.split(",")), tuple(arguments))
+    unconfined = confine_to_program(sockets_in)
+    return Birth(tuple(int(number) for number in descriptors.split(",")), tuple(arguments), unconfined)
 
 
 def die_with_parent() -> None:

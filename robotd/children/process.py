@@ -27,6 +27,8 @@ class Program:
     arguments: tuple[str, ...] = ()
     memory_bytes: int = 0
     """Bound of its address space; 0 is none."""
+    sockets_in: str = ""
+    """Directory in which it makes and removes sockets; of all else it may read its program, and no more."""
     inherits: tuple[int, ...] = ()
     """Descriptors that it finds open under the same numbers."""
 
@@ -113,7 +115,7 @@ def _spawn(program: Program) -> Process:
             inherited.append(theirs.enter_context(far).fileno())
         # Safe path: what lies in the working directory must not be imported in place of what is installed.
         command = [sys.executable, "-P", *program.runs, str(os.getpid()), str(program.memory_bytes)]
-        command += [",".join(map(str, inherited)), *program.arguments]
+        command += [program.sockets_in, ",".join(map(str, inherited)), *program.arguments]
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=(*inherited, *program.inherits))
         try:
             running = Process(process, near_ends)

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from robotd.children.landlock import version
 from robotd.cli.connection import require_daemon
 from robotd.config import Config
 from robotd.core.errors import RobotdError
@@ -52,6 +53,7 @@ def checks(config: Config) -> Iterator[Check]:
     yield _room("maps", Path(config.maps.dir))
     yield _room("recordings", Path(config.recording.dir))
     yield _clock()
+    yield _confinement()
     yield daemon
 
 
@@ -113,6 +115,14 @@ def _clock() -> Check:
     said = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(now_s))
     remedy = "" if now_s > _BUILT_AFTER_S else "set it, or let it be set: timedatectl set-ntp true"
     return Check("clock", said, remedy)
+
+
+def _confinement() -> Check:
+    what = "children"
+    try:
+        return Check(what, f"the kernel keeps them from all files but their own (Landlock, version {version()})")
+    except OSError as error:  # nothing to be done for it in an afternoon, and the daemon serves without
+        return Check(what, f"not kept from files of their user: no Landlock ({error.strerror}; Linux 5.13 has it)")
 
 
 def _daemon(directory: Path) -> Check:

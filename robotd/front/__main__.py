@@ -7,12 +7,13 @@ from robotd.children.inside import Birth, adopted
 from robotd.core.clock import run_counting
 from robotd.core.errors import ChildError, RobotdError
 from robotd.core.log import configure
-from robotd.front.program import serve_clients
 
 log = logging.getLogger("robotd.front")
 
 
 async def _run(birth: Birth) -> None:
+    from robotd.front.program import serve_clients  # noqa: PLC0415  # NumPy begins threads: they are to be confined, too
+
     await serve_clients(*birth.channels())
 
 
@@ -20,6 +21,7 @@ def main() -> int:
     """Serve clients until the daemon hangs up; return the exit code."""
     birth = adopted(sys.argv[1:])
     configure(*birth.arguments)
+    birth.tell(log)
     try:
         run_counting(_run(birth))
     except ChildError as error:

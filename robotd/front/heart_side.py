@@ -36,6 +36,11 @@ class HeartSide:
         self._settings = settings
         self._outcomes = Outcomes()
 
+    @property
+    def runtime_dir(self) -> str:
+        """Where a front has its sockets."""
+        return self._settings.runtime_dir
+
     async def follow(self) -> None:
         """Note how missions end, whether there is a front or not, until cancelled."""
         await self._outcomes.follow(self._heart.events)

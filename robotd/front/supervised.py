@@ -24,15 +24,15 @@ def front_of(side: HeartSide, halt: Callable[[str], None]) -> Child:
     return Child(
         "front",
         __version__,
-        start=_start,
+        start=partial(_start, side.runtime_dir),
         serve=side.serve,
         died=partial(_died, halt),
     )
 
 
-def _start() -> Process:
+def _start(runtime_dir: str) -> Process:
     level = logging.getLevelName(logging.getLogger().getEffectiveLevel())
-    return spawn(Program(("-m", "robotd.front"), LANES, (level,), MEMORY_BYTES))
+    return spawn(Program(("-m", "robotd.front"), LANES, (level,), MEMORY_BYTES, runtime_dir))
 
 
 def _died(halt: Callable[[str], None], death: Death) -> None:

@@ -9,10 +9,13 @@ from contextlib import suppress
 from robotd.children.channel import HungUp
 from robotd.children.inside import Birth, adopted
 from robotd.core.log import configure
-from robotd.head.program import serve
+
+log = logging.getLogger("robotd.head")
 
 
 async def _main(birth: Birth) -> None:
+    from robotd.head.program import serve  # noqa: PLC0415  # NumPy begins threads: they are to be confined, too
+
     life, lanes = birth.channels()
     await serve(life, lanes)
 
@@ -21,13 +24,14 @@ def main() -> None:
     """Serve until the parent hangs up."""
     birth = adopted(sys.argv[1:])
     configure(*birth.arguments)
+    birth.tell(log)
     code = 1
     try:
         with suppress(HungUp):  # over whichever channel is looked at first
             asyncio.run(_main(birth))
         code = 0
     except Exception:
-        logging.getLogger("robotd.head").exception("the head ends")
+        log.exception("the head ends")
     os._exit(code)  # whatever is computed still: nobody waits for it any more
 
 

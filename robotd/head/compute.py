@@ -1,12 +1,11 @@
 """Array work, away from the event loop."""
 
 import asyncio
-import contextlib
-import os
-import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Protocol, TypeVar
+
+from robotd.core.precedence import give_way
 
 T = TypeVar("T")
 
@@ -25,7 +24,7 @@ class ThreadCompute:
     """
 
     def __init__(self) -> None:
-        self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="compute", initializer=_give_way)
+        self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="compute", initializer=give_way)
 
     async def run(self, name: str, function: Callable[..., T], *args: object) -> T:
         """Return ``function(*args)``, computed on the worker thread."""
@@ -38,12 +37,3 @@ class ThreadCompute:
     def abandon(self) -> None:
         """Wait for nothing: the job under way has no more to say, and with it the thread ends."""
         self._executor.shutdown(wait=False, cancel_futures=True)
-
-
-def _give_way() -> None:
-    """Let this thread, and those that it starts, have no precedence; on Linux niceness is a thread's own."""
-    thread = threading.get_native_id()
-    # Only precedence is given up: a daemon that was started nicer than others stays so.
-    if os.getpriority(os.PRIO_PROCESS, thread) < 0:
-        with contextlib.suppress(OSError):  # where that is forbidden it stays as it is
-            os.setpriority(os.PRIO_PROCESS, thread, 0)

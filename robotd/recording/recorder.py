@@ -15,6 +15,7 @@ from typing import IO
 from mcap.writer import CompressionType, Writer
 
 from robotd.core.errors import RecordingError
+from robotd.core.precedence import no_realtime
 from robotd.recording.budget import Budgets, source_of
 from robotd.recording.encoding import HEADER_TOPIC, PROFILE, encode, encode_header, is_raw
 from robotd.recording.entries import Entry, RecordingHeader
@@ -100,6 +101,7 @@ class Recorder(Journal):
         _log.error("recording to %s stopped: %s", self.path, reason)
 
     def _write_all(self, file: IO[bytes], header: RecordingHeader, earlier: Sequence[Entry]) -> None:
+        no_realtime()
         try:
             with file:
                 writer = _ChunkedFile(file)

@@ -11,13 +11,19 @@ from tests.studies.heart.attackers import ATTACKERS
 from tests.studies.heart.endings import MODES, end_front
 from tests.studies.heart.run import MEMORY_MIB
 from tests.studies.heart.trials import suffer, with_a_large_map
-from tests.support.real_rig import rig
+from tests.support.real_rig import child_of, rig
 
 SHARE = 0.2
 SOON_MS = 1000.0
 """However busy the machine that runs the tests; how soon it really is, ``make heart`` says."""
 
 pytestmark = pytest.mark.real_clock
+
+
+def all_threads_are_bounded(pid: int | None) -> bool:
+    """Whether no thread began before its process gave up what it did (:mod:`robotd.children.confinement`)."""
+    states = [thread.read_text() for thread in Path(f"/proc/{pid}/task").glob("*/status")]
+    return bool(states) and all("NoNewPrivs:\t1" in state for state in states)
 
 
 async def test_a_stop_is_on_the_wires_whatever_other_clients_do(tmp_path: Path) -> None:
@@ -33,6 +39,8 @@ async def test_a_stop_is_on_the_wires_whatever_other_clients_do(tmp_path: Path) 
 
 async def test_a_front_that_is_ended_leaves_the_robot_safe_and_is_followed_by_another(tmp_path: Path) -> None:
     async with rig(tmp_path) as it, it.daemon() as process:
+        for child in ("robotd.front", "robotd.head"):
+            assert all_threads_are_bounded(child_of(process.pid, child)), child
         for mode in MODES:
             ended = await end_front(it, process.pid, mode, signal.SIGKILL)
             assert ended.is_as_before, mode

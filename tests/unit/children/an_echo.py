@@ -1,13 +1,18 @@
 """A child for the tests: it gives back what it hears, and does what a word asks it to."""
 
 import asyncio
+import contextlib
 import os
+import signal
+import socket
+import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from robotd.children.channel import Channel
-from robotd.children.inside import adopted, live
+from robotd.children.inside import Birth, adopted, live
 
 
 async def main() -> None:
@@ -19,11 +24,11 @@ async def main() -> None:
         life.send(b"\x00\xff what is this")
         await asyncio.Event().wait()
     living = asyncio.create_task(live(life, "0.0" if birth.arguments == ("old",) else "1.0"))
-    echoing = asyncio.create_task(echo(lane))
+    echoing = asyncio.create_task(echo(lane, birth))
     await asyncio.wait((living, echoing), return_when=asyncio.FIRST_COMPLETED)
 
 
-async def echo(lane: Channel) -> None:
+async def echo(lane: Channel, birth: Birth) -> None:
     while True:
         match await lane.receive():
             case b"exit":
@@ -34,12 +39,45 @@ async def echo(lane: Channel) -> None:
                 lane.send(b"fed" if can_have(2**30) else b"no memory")
             case b"descriptors":
                 lane.send(descriptors())
+            case b"unconfined":
+                lane.send(birth.unconfined.encode())
+            case attempt if attempt.startswith(b"try "):
+                lane.send(attempted(*attempt.decode().split(" ", 2)[1:]))
             case message:
                 lane.send(message)
 
 
 def descriptors() -> bytes:
-    return " ".join(link.name for link in Path("/proc/self/fd").iterdir()).encode()
+    return " ".join(str(number) for number in range(1024) if is_open(number)).encode()
+
+
+def is_open(number: int) -> bool:
+    with contextlib.suppress(OSError):
+        os.fstat(number)
+        return True
+    return False
+
+
+def attempted(what: str, where: str) -> bytes:
+    """Say how an attempt to do something ended."""
+    ways: dict[str, Callable[[], object]] = {
+        "read": lambda: Path(where).read_bytes(),
+        "write": lambda: Path(where).write_bytes(b"yes"),
+        "open": lambda: os.close(os.open(where, os.O_RDWR | os.O_NOCTTY)),
+        "list": lambda: list(Path(where).iterdir()),
+        "remove": lambda: Path(where).unlink(),
+        "rename": lambda: Path(where).rename(where + "-"),
+        "truncate": lambda: os.truncate(where, 0),
+        "listen": lambda: socket.socket(socket.AF_UNIX).bind(where),
+        "run": lambda: subprocess.run((where,), check=True),
+        "signal": lambda: os.kill(int(where), signal.SIGCONT),
+        "connect": lambda: socket.socket().connect(("127.0.0.1", int(where))),
+    }
+    try:
+        ways[what]()
+    except OSError as error:
+        return (error.strerror or str(error)).encode()
+    return b"done"
 
 
 def can_have(size: int) -> bool:

@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import os
+import pty
 import resource
 import signal
 import socket
@@ -14,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+import robotd
+from robotd.children import landlock
 from robotd.children.channel import Channel
 from robotd.children.child import Child, Death
 from robotd.children.pings import Patience
@@ -25,10 +28,27 @@ ECHO = (str(Path(__file__).with_name("an_echo.py")),)
 PATIENCE = Patience(ready_s=60.0, silent_s=1.0)
 
 
+UNCONFINED = f"""
+import runpy
+from robotd.children import landlock
+landlock._CREATE_RULESET = -1  # no kernel has that system call
+runpy.run_path({ECHO[0]!r}, run_name="__main__")
+"""
+
+
+def landlock_refuses_all() -> bool:
+    """Whether the kernel knows how to refuse signals, the last thing that it learned of what is asked for."""
+    try:
+        return landlock.version() >= 6
+    except OSError:
+        return False
+
+
 class Echo:
     """An echo that is always there."""
 
-    def __init__(self) -> None:
+    def __init__(self, sockets_in: str) -> None:
+        self.sockets_in = sockets_in
         self.deaths: asyncio.Queue[Death] = asyncio.Queue()
         self.processes: list[Process] = []
         self.lane: Channel
@@ -42,7 +62,7 @@ class Echo:
         )
 
     def _start(self) -> Process:
-        self.processes.append(spawn(Program(ECHO, memory_bytes=2**29)))
+        self.processes.append(spawn(Program(ECHO, memory_bytes=2**29, sockets_in=self.sockets_in)))
         return self.processes[-1]
 
     async def _serve(self, lanes: Sequence[Channel]) -> None:
@@ -56,8 +76,8 @@ class Echo:
 
 
 @contextlib.asynccontextmanager
-async def an_echo() -> AsyncIterator[Echo]:
-    echo = Echo()
+async def an_echo(sockets_in: str = "") -> AsyncIterator[Echo]:
+    echo = Echo(sockets_in)
     running = asyncio.create_task(echo.child.run())
     try:
         async with asyncio.timeout(60.0):
@@ -133,6 +153,46 @@ async def test_without_descriptors_it_cannot_be_started_and_none_is_lost() -> No
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
     assert open_descriptors() == before
+
+
+@pytest.mark.skipif(not landlock_refuses_all(), reason="the kernel cannot keep a child from all of this")
+async def test_it_reaches_its_program_and_its_sockets_and_nothing_else_of_this_machine(tmp_path: Path) -> None:
+    run, maps = tmp_path / "run", tmp_path / "maps"
+    run.mkdir()
+    maps.mkdir()
+    (maps / "cells.bin").write_bytes(b"a map")
+    (run / "old.sock").touch()
+    board, line = pty.openpty()
+    with socket.create_server(("127.0.0.1", 0)) as elsewhere:
+        refused = {
+            f"open {os.ttyname(line)}",
+            "read /dev/null",
+            "list /dev",
+            "read /proc/self/mem",
+            *(f"{what} {maps / 'cells.bin'}" for what in ("read", "write", "remove", "rename", "truncate")),
+            f"list {maps}",
+            f"listen {maps / 'a.sock'}",
+            f"write {run / 'a file'}",
+            f"run {sys.executable}",
+            f"signal {os.getpid()}",
+            f"connect {elsewhere.getsockname()[1]}",
+        }
+        allowed = {f"read {robotd.__file__}", f"listen {run / 'new.sock'}", f"remove {run / 'old.sock'}"}
+        async with an_echo(str(run)) as echo:
+            answers = {asked: await echo.says(f"try {asked}".encode()) for asked in refused | allowed}
+    os.close(board)
+    os.close(line)
+    assert {asked for asked, answer in answers.items() if answer == b"done"} == allowed
+    assert (maps / "cells.bin").read_bytes() == b"a map"
+
+
+async def test_where_the_kernel_does_not_confine_it_that_is_said_and_it_serves(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A filter of system calls, as a service may have it, refuses what the kernel would do."""
+    monkeypatch.setattr(sys.modules[__name__], "ECHO", ("-c", UNCONFINED))
+    async with an_echo() as echo:
+        assert await echo.says(b"unconfined") == b"Function not implemented"
 
 
 def test_no_child_outlives_its_parent_whatever_it_is_at() -> None:

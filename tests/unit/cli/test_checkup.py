@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from robotd.cli.checkup import checks
+from robotd.children.landlock import version
+from robotd.cli.checkup import Check, checks
 from robotd.cli.main import main
 from robotd.config import Config, load
 
@@ -50,6 +51,21 @@ def test_what_keeps_a_daemon_from_its_ports_is_named(tmp_path: Path, monkeypatch
     assert any("systemctl disable --now ModemManager" in str(check) for check in checks(config_of(tmp_path)))
     monkeypatch.setattr("robotd.cli.checkup.shutil.disk_usage", lambda path: _Full())
     assert "make room" in str(next(check for check in checks(config_of(tmp_path)) if check.what == "maps"))
+
+
+def test_whether_the_kernel_confines_children_is_told_and_is_no_fault(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def told() -> Check:
+        (check,) = (check for check in checks(config_of(tmp_path)) if check.what == "children")
+        return check
+
+    monkeypatch.setattr("robotd.cli.checkup.version", lambda: 7)
+    assert "(Landlock, version 7)" in str(told())
+    monkeypatch.setattr("robotd.children.landlock._CREATE_RULESET", -1)
+    monkeypatch.setattr("robotd.cli.checkup.version", version)
+    assert "no Landlock (Function not implemented" in str(told())
+    assert told().is_well
 
 
 class _Full:

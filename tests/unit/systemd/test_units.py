@@ -66,6 +66,23 @@ def test_the_service_is_supervised_as_promised() -> None:
     assert keys["StartLimitIntervalSec"] == ["0"]
 
 
+def test_one_unit_holds_one_main_process_and_its_children() -> None:
+    """Only it is told to end, only it is heard, and only it is watched: it ends and watches its children itself."""
+    keys = settings()
+    assert len(keys["ExecStart"]) == 1
+    assert (keys["KillMode"], keys["NotifyAccess"]) == (["mixed"], ["main"])
+    assert keys["OOMPolicy"] == ["continue"], "a child that memory ran out for is started again"
+    assert [unit.name for unit in FOLDER.glob("*.service")] == [SERVICE.name]
+
+
+def test_the_daemon_goes_before_others_and_its_children_may_give_that_up_and_their_files() -> None:
+    keys = settings()
+    assert (keys["Nice"], keys["CPUWeight"]) == (["-15"], ["1000"])
+    allowed = " ".join(line for line in keys["SystemCallFilter"] if not line.startswith("~")).split()
+    calls = {"setpriority", "sched_setscheduler", "setrlimit", "prlimit64"}
+    assert calls | {f"landlock_{call}" for call in ("create_ruleset", "add_rule", "restrict_self")} <= set(allowed)
+
+
 def test_the_daemon_reaches_serial_lines_and_unix_sockets_only() -> None:
     keys = settings()
     assert keys["DevicePolicy"] == ["closed"]
