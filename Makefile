@@ -4,7 +4,7 @@
 # make help   the rest
 PYTHON ?= python3
 BIN := .venv/bin
-COMPILED := setup.py robotd/grid/kernels/build.py $(wildcard robotd/grid/kernels/*/*.[ch] firmware_proto/c/*.[ch]) robotd/sim/firmware/build.py
+COMPILED := setup.py robotd/grid/kernels/build.py $(wildcard robotd/grid/kernels/*/*.[ch] firmware_proto/c/*.[ch]) robotd/sim/firmware/firmware_build.py
 WORLD ?= laboratory
 SEED ?= 1
 PYTEST_ARGS ?=

@@ -44,7 +44,7 @@ class BuildIfPossible(build_ext):
 
 
 setup(
-    cffi_modules=["robotd/grid/kernels/build.py:builder", "robotd/sim/firmware/build.py:builder"],
+    cffi_modules=["robotd/grid/kernels/build.py:builder", "robotd/sim/firmware/firmware_build.py:builder"],
     cmdclass={"build_ext": BuildIfPossible},
     options={"bdist_wheel": {"py_limited_api": "cp311"}},
 )

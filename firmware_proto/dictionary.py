@@ -10,7 +10,7 @@ import zlib
 from collections.abc import Iterator
 from typing import Any
 
-from firmware_proto import common, drive, pantilt, rangefinder
+from firmware_proto import common, drive_messages, pantilt_messages, rangefinder_messages
 from firmware_proto.common import PROTOCOL_MAJOR, PROTOCOL_MINOR, Ack, BoardKind
 from firmware_proto.schema import REPLY, Message, wire_fields
 
@@ -24,13 +24,13 @@ _ENUMS: tuple[type[enum.IntEnum] | type[enum.IntFlag], ...] = (
     common.BoardState,
     common.Result,
     common.Fault,
-    pantilt.Motion,
-    rangefinder.ShotStatus,
+    pantilt_messages.Motion,
+    rangefinder_messages.ShotStatus,
 )
 _OF_KIND = {
-    BoardKind.DRIVE: drive.MESSAGES,
-    BoardKind.PANTILT: pantilt.MESSAGES,
-    BoardKind.RANGEFINDER: rangefinder.MESSAGES,
+    BoardKind.DRIVE: drive_messages.MESSAGES,
+    BoardKind.PANTILT: pantilt_messages.MESSAGES,
+    BoardKind.RANGEFINDER: rangefinder_messages.MESSAGES,
 }
 _SIZE_MAX = 256 * 1024
 

@@ -13,7 +13,15 @@ import sys
 import textwrap
 from pathlib import Path
 
-from firmware_proto import c_devices, c_messages, common, drive, framing, pantilt, rangefinder
+from firmware_proto import (
+    c_devices,
+    c_messages,
+    common,
+    drive_messages,
+    framing,
+    pantilt_messages,
+    rangefinder_messages,
+)
 from firmware_proto.c_messages import Enum
 from firmware_proto.common import BoardState
 from firmware_proto.rules import RULES
@@ -21,13 +29,13 @@ from firmware_proto.schema import Message, Wire, payload_size, wire_fields
 
 HERE = Path(__file__).parent
 
-_MODULES = (common, drive, pantilt, rangefinder)
+_MODULES = (common, drive_messages, pantilt_messages, rangefinder_messages)
 _TYPES = {"B": ("u8", 1), "H": ("u16", 2), "h": ("i16", 2), "I": ("u32", 4), "i": ("i32", 4), "Q": ("u64", 8)}
 _NUMBERS = {
     "PROTOCOL_MAJOR": common.PROTOCOL_MAJOR,
     "PROTOCOL_MINOR": common.PROTOCOL_MINOR,
     "DICTIONARY_CHUNK": common.DICTIONARY_CHUNK,
-    "TTL_LIMIT_MS": drive.TTL_LIMIT_MS,
+    "TTL_LIMIT_MS": drive_messages.TTL_LIMIT_MS,
     "PAYLOAD_MAX": framing.PAYLOAD_MAX,
     "PACKET_MAX": framing.PACKET_MAX,
 }
@@ -77,7 +85,8 @@ def filled(document: str) -> str:
 
 
 def _sections() -> dict[str, str]:
-    messages = {f"messages-{module.__name__.rpartition('.')[2]}": _messages(module.MESSAGES) for module in _MODULES}
+    names = [module.__name__.rpartition(".")[2].removesuffix("_messages") for module in _MODULES]
+    messages = {f"messages-{name}": _messages(module.MESSAGES) for name, module in zip(names, _MODULES, strict=True)}
     return messages | {"requests": _requests(), "enums": "\n".join(_enum(one) for one in declared_enums())}
 
 

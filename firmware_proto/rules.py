@@ -14,9 +14,9 @@ from firmware_proto.common import (
     Ping,
     Stop,
 )
-from firmware_proto.drive import SetVelocity
-from firmware_proto.pantilt import Aim, ReadAim, ReadLimits
-from firmware_proto.rangefinder import SetLaser, Shoot
+from firmware_proto.drive_messages import SetVelocity
+from firmware_proto.pantilt_messages import Aim, ReadAim, ReadLimits
+from firmware_proto.rangefinder_messages import SetLaser, Shoot
 from firmware_proto.schema import Message
 
 _ALWAYS = frozenset(BoardState)

@@ -21,10 +21,10 @@ from robotd.mission.control import Control
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.settings import MissionSettings
 from robotd.mission.news import News
-from robotd.mission.robot import Robot
 from robotd.mission.safety.causes import Causes
 from robotd.mission.safety.lease import EndlessLease, Lease
 from robotd.mission.supervisor import Supervisor
+from robotd.mission.three_devices import Robot
 from robotd.recording.preroll import PrerollJournal
 
 

@@ -14,11 +14,11 @@ from typing import NoReturn
 from robotd import __version__
 from robotd.app.callbacks import stopping_on_errors
 from robotd.app.compose import Daemon, compose, head_settings, serial_connectors
+from robotd.app.daemon_lock import lock_directory
 from robotd.app.ending import Ending
-from robotd.app.health import Notifier, feed_watchdog, watchdog_s
-from robotd.app.lock import lock_directory
 from robotd.app.stall_guard import guarded
 from robotd.app.stalls import Stalls, keep_going
+from robotd.app.watchdog import Notifier, feed_watchdog, watchdog_s
 from robotd.children.child import Child
 from robotd.config import Config, default_path, effective_text, load
 from robotd.contract.modes import Mode

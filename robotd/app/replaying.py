@@ -19,7 +19,7 @@ from robotd.core.text import printable
 from robotd.hardware.devices.catalogue import request_words
 from robotd.head.cores import cores
 from robotd.head.desk import Desk
-from robotd.head.in_process import InProcess
+from robotd.head.near import InProcess
 from robotd.mission.noted import check_noted
 from robotd.mission.safety.causes import check_cause
 from robotd.recording.comparison import Difference, compare, results_digest

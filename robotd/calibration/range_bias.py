@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from robotd.calibration.found import Calibration, Constants, Found, Procedure, Residuals, Step
-from robotd.calibration.stops import Stop, along, stop, way
+from robotd.calibration.two_way_stops import Stop, along, stop, way
 from robotd.calibration.wall_bias import WallSeen, fit_wall, fit_wall_bias
 from robotd.contract.missions import DriveStraight
 from robotd.core.reading import ReadingStatus, Sweep

@@ -5,7 +5,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from contextlib import suppress
 
 from robotd.children.channel import Channel
-from robotd.children.memory import memory_channel
+from robotd.children.memory_channel import memory_channel
 from robotd.core.errors import ChildError
 
 Main = Callable[[Channel, Sequence[Channel]], Awaitable[None]]

@@ -14,7 +14,7 @@ from pathlib import Path
 from robotd.children.channel import Channel
 from robotd.children.confinement import confine_to_program
 from robotd.children.pings import READY
-from robotd.children.sockets import SocketChannel
+from robotd.children.socket_channel import SocketChannel
 from robotd.core.errors import ChildError
 from robotd.core.precedence import no_realtime
 

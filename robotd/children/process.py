@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from robotd.children.channel import Channel
-from robotd.children.sockets import SocketChannel
+from robotd.children.socket_channel import SocketChannel
 from robotd.core.errors import ChildError
 
 

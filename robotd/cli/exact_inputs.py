@@ -12,7 +12,7 @@ from robotd.exact.formats import FORMATS
 from robotd.exact.outlines import outlines
 from robotd.exact.planar import PlanarSet
 from robotd.exact.rationals import DEFAULT, Arithmetic, rational
-from robotd.exact.readings import beams_of
+from robotd.exact.readings_table import beams_of
 from robotd.grid.binary import BinaryMap
 from robotd.maps.store import MapStore
 from robotd.maps.version_files import MANIFEST

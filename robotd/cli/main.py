@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from robotd.cli.verb import Verb
 
 WORDS = {
-    "status": ("control", "show the whole robot in one look"),
-    "arm": ("control", "allow motion"),
-    "disarm": ("control", "stop and forbid motion"),
-    "stop": ("control", "stop now, whatever is under way; it needs arm before it moves again"),
-    "clear": ("control", "acknowledge latched faults; the robot stays disarmed"),
+    "status": ("status_and_arming", "show the whole robot in one look"),
+    "arm": ("status_and_arming", "allow motion"),
+    "disarm": ("status_and_arming", "stop and forbid motion"),
+    "stop": ("status_and_arming", "stop now, whatever is under way; it needs arm before it moves again"),
+    "clear": ("status_and_arming", "acknowledge latched faults; the robot stays disarmed"),
     "map": ("maps", "make, save, load and look at maps"),
     "localize": ("where", "sweep where it stands and say where that is on the map in use"),
     "pose": ("where", "print the newest pose estimate"),
@@ -49,7 +49,7 @@ WORDS = {
     "export": ("exports", "write a recording for other programs: a trajectory, a CARMEN log, a file for Foxglove"),
     "eval": ("evaluate", "tell how often localization is right, ambiguous, lost, or sure and wrong on real logs"),
     "config": ("configuration", "check and show configurations"),
-    "schema": ("schema", "print every request, reply and event as one JSON Schema, made from the types"),
+    "schema": ("wire_schema", "print every request, reply and event as one JSON Schema, made from the types"),
     "exact": ("exact", "localize on a map of polygons by the exact combinatorial algorithm, without rounding"),
     "doctor": ("doctor", "say what this installation consists of, which kernels it uses and why, and what it can see"),
     "demo": ("demo", "show the main job, end to end, on a simulated robot"),

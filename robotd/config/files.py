@@ -10,7 +10,7 @@ from robotd.config.tree import Config
 from robotd.core.endpoints import Endpoints
 from robotd.core.errors import TransportError
 from robotd.toml.problems import Problems
-from robotd.toml.reader import read_file, read_text
+from robotd.toml.settings_reader import read_file, read_text
 from robotd.toml.writer import write_table
 
 

@@ -15,10 +15,10 @@ from functools import cmp_to_key
 from heapq import heapify, heappop, heappush
 
 from robotd.exact.arrangement import Arrangement, Edge, Mask, Vertex
-from robotd.exact.events import Event, Piece, events_of
 from robotd.exact.planar import PlanarSet
 from robotd.exact.points import Point
 from robotd.exact.supports import Line, crossings, order_after
+from robotd.exact.sweep_events import Event, Piece, events_of
 
 
 def arrange(sets: Sequence[PlanarSet]) -> Arrangement:

@@ -1,7 +1,7 @@
 """What a head does, whatever process it is in: bytes of a job in, bytes of its answer out."""
 
 from robotd.head.desk import Desk
-from robotd.head.table import perform
+from robotd.head.job_table import perform
 from robotd.head.wire import pack_answer, pack_error, unpack_job
 
 

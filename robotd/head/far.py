@@ -24,7 +24,7 @@ from robotd.core.errors import ChildError, RemoteProtocolError, RobotdError
 from robotd.core.text import printable_bytes
 from robotd.head.job import A, Job
 from robotd.head.jobs import Forget
-from robotd.head.memory import Memory
+from robotd.head.remembered import Memory
 from robotd.head.settings import HeadSettings
 from robotd.head.wire import NUMBER, JobFailed, pack_job, unpack_answer
 

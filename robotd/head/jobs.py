@@ -1,4 +1,4 @@
-"""Every job there is: what is asked, declared once; :mod:`robotd.head.table` says what carries it out.
+"""Every job there is: what is asked, declared once; :mod:`robotd.head.job_table` says what carries it out.
 
 Who asks knows maps and stops by number alone, and chooses the numbers. A map in a number is a row of *generations*: an
 insertion makes the next of one and leaves that one as it is, so a mission that is stopped while a sweep is laid in goes

@@ -25,7 +25,7 @@ from robotd.maps.archive import Archive
 from robotd.maps.version_files import Content
 from robotd.mission.map_requests import MapRequests
 from robotd.mission.noted import NotedMap, noted, request_of
-from robotd.mission.safety.modes import Occasion
+from robotd.mission.safety.mode_table import Occasion
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.keeping import Keeping
 from robotd.recording.entries import CommandEntry

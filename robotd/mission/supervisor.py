@@ -1,6 +1,6 @@
 """Who allows motion: the mode and its mission, what watches over them, and the stop that comes before everything.
 
-The rules are in :mod:`robotd.mission.safety.modes`; the parts made here carry them out, each with one job: arming,
+The rules are in :mod:`robotd.mission.safety.mode_table`; the parts made here carry them out, each with one job: arming,
 holding, watching the devices, the mission under way, telling where the robot is. What goes wrong anywhere ends in
 :meth:`Supervisor.halt`, and there the preformatted stop goes to every board before anything is cancelled, logged or
 published.
@@ -23,7 +23,7 @@ from robotd.mission.safety.current_mode import CurrentMode
 from robotd.mission.safety.device_watch import DeviceWatch
 from robotd.mission.safety.holding import Holding
 from robotd.mission.safety.lease import Lease
-from robotd.mission.safety.modes import Occasion
+from robotd.mission.safety.mode_table import Occasion
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.telling import WhereaboutsTold
 from robotd.mission.whereabouts.tie import Tie

@@ -30,7 +30,7 @@ from robotd.server.letters import Letter
 from robotd.server.rates import ALTOGETHER_HZ, PER_CLIENT_HZ, Often, Rates
 from robotd.server.replies import Asker, Replies
 from robotd.server.request_log import RequestLog
-from robotd.server.under_way import UnderWay
+from robotd.server.requests_under_way import UnderWay
 
 _OVERTAKEN = ServerError(ErrorCode.REFUSED, "overtaken by a stop")
 _TOO_OFTEN = f"a client may ask {PER_CLIENT_HZ:g} times a second, all of them together {ALTOGETHER_HZ:g} times"

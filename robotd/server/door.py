@@ -13,7 +13,7 @@ from pathlib import Path
 
 from robotd.core.errors import TransportError
 from robotd.core.log_limit import LogLimit
-from robotd.server.connection import Connection, Manners, Owner, Process
+from robotd.server.client_connection import Connection, Manners, Owner, Process
 
 MOST = 384
 """Connections altogether, a client has up to three; far below what the process may open."""

@@ -9,7 +9,7 @@ from robotd.contract.plain import VERSION
 from robotd.contract.request import Request
 from robotd.contract.requests import Disarm, Hello, Stop
 from robotd.core.clock import now_ns, wall_offset_ns
-from robotd.server.control import Control
+from robotd.server.mission_port import Control
 
 
 class Handlers:

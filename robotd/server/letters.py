@@ -9,7 +9,7 @@ from collections import deque
 from dataclasses import dataclass
 from itertools import count
 
-from robotd.server.connection import Connection
+from robotd.server.client_connection import Connection
 from robotd.server.zmtp import message
 
 _LAST_BYTES = 2**23

@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Callable
 
 from robotd.contract.topics import EVENTS, Published, Topic, encode_frame, to_wire
-from robotd.server.connection import Connection
+from robotd.server.client_connection import Connection
 from robotd.server.zmtp import Violation, message
 
 _JOIN, _LEAVE = b"\x01", b"\x00"

@@ -10,8 +10,8 @@ from robotd.contract.topics import Published, Topic, to_wire
 from robotd.core.broadcast import Subscription
 from robotd.core.errors import RobotdError, ServerError
 from robotd.core.log_limit import LogLimit
-from robotd.server.control import Control
 from robotd.server.map_queue import MapQueue
+from robotd.server.mission_port import Control
 from robotd.server.outlet import Outlet
 
 DEPTH = 4096

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from robotd.core.endpoints import Endpoints
+from robotd.server.client_connection import Manners
 from robotd.server.commands import Commands
-from robotd.server.connection import Manners
-from robotd.server.control import Control
 from robotd.server.door import Door
 from robotd.server.handlers import Handlers
 from robotd.server.letters import Letters
+from robotd.server.mission_port import Control
 from robotd.server.publisher import DEPTH, Publisher
 from robotd.server.settings import ServerSettings
 

@@ -13,7 +13,7 @@ import enum
 import math
 
 from firmware_proto.common import Fault
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.core.pose import Pose2
 from robotd.sim.buildings.building import RecordedBuilding, View, view_from
 from robotd.sim.emulators.catalogue import Dialects

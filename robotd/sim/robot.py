@@ -6,16 +6,16 @@ from typing import Protocol
 
 from robotd.core.errors import ConfigError
 from robotd.core.pose import Pose2
-from robotd.sim.boards.board import Board
+from robotd.sim.boards.emulated_board import Board
 from robotd.sim.buildings.world import World
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.hosting.board_clock import BoardClock, DriveOnClock, HeadOnClock, LaserOnClock
 from robotd.sim.hosting.host import HostedBoard, OwnBoard
 from robotd.sim.physics.body import Body, BodySettings
-from robotd.sim.physics.head import Head, HeadSettings
 from robotd.sim.physics.laser import Laser, LaserSettings
 from robotd.sim.physics.noise import NoiseSettings, stream
 from robotd.sim.physics.plant import DrivePlant, HeadPlant, ScannerPlant
+from robotd.sim.physics.steppers import Head, HeadSettings
 from robotd.sim.physics.walls import Point, clearance_m
 
 DEVICES = ("drive", "pantilt", "rangefinder")

@@ -34,7 +34,7 @@ PROGRAMS = {
     "robotd.head.__main__",  # a process of the daemon's
     *(f"robotd.cli.verbs.{module}" for module, *_ in WORDS.values()),
     "robotd.grid.kernels.build",  # these three make what is compiled and generated
-    "robotd.sim.firmware.build",
+    "robotd.sim.firmware.firmware_build",
     "firmware_proto.generate",
 }
 FILES = {

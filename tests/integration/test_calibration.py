@@ -5,15 +5,15 @@ from dataclasses import replace
 
 import pytest
 
-from robotd.calibration.head import calibrate_head
-from robotd.calibration.odometry import calibrate_heading, calibrate_odometry
+from robotd.calibration.head_zero import calibrate_head
 from robotd.calibration.range_bias import calibrate_range
+from robotd.calibration.wheel_scales import calibrate_heading, calibrate_odometry
 from robotd.config import Config
 from robotd.contract.missions import Look, Turn
 from robotd.sim.buildings.world import load_world
-from robotd.sim.physics.head import HeadSettings
 from robotd.sim.physics.laser import LaserSettings
 from robotd.sim.physics.noise import NoiseSettings
+from robotd.sim.physics.steppers import HeadSettings
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.calibrating import by_key, carried_out, constants

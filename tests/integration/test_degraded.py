@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import new_journal
 from robotd.config import Config
@@ -18,10 +18,10 @@ from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, Clear, Stop
 from robotd.core.errors import MissionError
 from robotd.mission.missions.stop_and_sweep import SweepSettings
-from robotd.sim.boards.rangefinder import RangefinderBoard
+from robotd.sim.boards.rangefinder_board import RangefinderBoard
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
-from robotd.sim.emulators.ptu import PtuEmulator
+from robotd.sim.emulators.emulated_ptu import PtuEmulator
 from robotd.sim.faults.laid import cables, connects_of
 from robotd.sim.physics.plant import ShotAnswer
 from robotd.sim.robot import SimulatedRobot, own_board

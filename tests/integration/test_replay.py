@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from firmware_proto.framing import Deframer, encode_frame
-from firmware_proto.rangefinder import Shot, ShotStatus
+from firmware_proto.rangefinder_messages import Shot, ShotStatus
 from robotd.app.replaying import replay_recording
 from robotd.core.clock import run_virtual
 from robotd.recording.comparison import RESULTS

@@ -44,7 +44,7 @@ from robotd.recording.preroll import PrerollJournal
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects, Firmware
 from robotd.sim.physics.body import Body
-from robotd.sim.physics.head import Head
+from robotd.sim.physics.steppers import Head
 from robotd.sim.robot import DEVICES, SimulatedRobot, board_of, own_board
 from robotd.sim.runtime import connectors
 from tests.support.living import in_directory, until_ready

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from firmware_proto.common import BoardKind
-from firmware_proto.drive import OdometryReport, SetVelocity
+from firmware_proto.drive_messages import OdometryReport, SetVelocity
 from firmware_proto.framing import Deframer
 from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import Legs, MapStart

@@ -19,8 +19,8 @@ from robotd.head.compute import Compute
 from robotd.head.desk import Desk
 from robotd.head.far import FarHead
 from robotd.head.head import Head
-from robotd.head.in_process import InProcess
 from robotd.head.jobs import HeldMap, ShowMap, TakeMap
+from robotd.head.near import InProcess
 from robotd.head.program import serve
 from robotd.head.settings import HeadSettings
 from robotd.mission.whereabouts.map_in_use import MapInUse

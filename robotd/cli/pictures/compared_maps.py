@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from robotd.cli.pictures.sheet import ESTIMATE, INK, PATH, evidence, extent_of, known_box, legend, paper, save
-from robotd.grid.comparison import FREE, OCCUPIED, MapComparison
+from robotd.grid.map_comparison import FREE, OCCUPIED, MapComparison
 
 _BOTH = (0.13, 0.19, 0.24, 1.0)
 _FIRST = (0.85, 0.51, 0.17, 1.0)

@@ -10,8 +10,8 @@ from matplotlib.path import Path as Outline
 from robotd.cli.pictures.sheet import INK, TRUTH, paper, save
 from robotd.core.rectangle import Rectangle
 from robotd.exact.arrangement import Arrangement
+from robotd.exact.closed_polylines import outline_loops, single_lines, single_points
 from robotd.exact.feasible import best_rank, of_rank
-from robotd.exact.loops import outline_loops, single_lines, single_points
 from robotd.exact.planar import PlanarSet
 
 SOLID = "#4a5763"

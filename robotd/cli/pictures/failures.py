@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 
 from robotd.cli.pictures.sheet import ESTIMATE, PATH, TRUTH, Points, evidence, known_box, legend, paper, save
 from robotd.core.pose import Pose2
-from robotd.evaluation.job import Job
 from robotd.evaluation.result import Result
+from robotd.evaluation.seeking import Job
 from robotd.evaluation.verdict import CaseVerdict
 from robotd.logs.scan import Scan
 

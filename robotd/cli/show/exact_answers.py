@@ -9,10 +9,10 @@ from robotd.cli.show.terminal import print_json, print_pairs, print_table
 from robotd.core.errors import RobotdError
 from robotd.exact.beams import Beam
 from robotd.exact.casting import CastVerdict, Outcome, cast
+from robotd.exact.error_bracket import smallest_error
 from robotd.exact.points import Point
 from robotd.exact.rationals import Rational, rational
 from robotd.exact.regions import Region
-from robotd.exact.smallest_error import smallest_error
 from robotd.exact.surds import Number
 
 Place = tuple[float, Region]

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from robotd import config
 from robotd.calibration.found import Calibration, Constants, Found, Procedure
-from robotd.calibration.head import calibrate_head
-from robotd.calibration.odometry import FULL_ROUNDS, calibrate_heading, calibrate_odometry
+from robotd.calibration.head_zero import calibrate_head
 from robotd.calibration.range_bias import calibrate_range, leg_for
+from robotd.calibration.wheel_scales import FULL_ROUNDS, calibrate_heading, calibrate_odometry
 from robotd.cli.connection import connect
 from robotd.cli.exit_codes import OK
 from robotd.cli.guide import constants_of, guided

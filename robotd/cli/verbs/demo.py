@@ -1,6 +1,6 @@
 """``demo room`` and ``demo building``; ``make demo`` and ``make demo-real`` call them."""
 
-from robotd.cli.demo import building, room
+from robotd.cli.demo import real_building, room
 from robotd.cli.verb import Verb
 
 VERBS = (
@@ -15,7 +15,7 @@ VERBS = (
         "demo building",
         "the same in a recorded building: map real stops of a CARMEN log, then be found at those kept out of the map",
         "robotctl demo building intel.corrected.log.gz",
-        building.run,
-        building.add_arguments,
+        real_building.run,
+        real_building.add_arguments,
     ),
 )

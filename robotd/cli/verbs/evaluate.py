@@ -23,13 +23,13 @@ from robotd.cli.surveys import evaluate_surveys
 from robotd.cli.verb import Verb
 from robotd.core.errors import RecordingError
 from robotd.evaluation.division import Division
-from robotd.evaluation.job import Job, JobSettings, run
 from robotd.evaluation.log_report import LogReport, MapFacts
 from robotd.evaluation.processes import over_processes
 from robotd.evaluation.protocol import WORDS as PROTOCOL_WORDS
 from robotd.evaluation.protocol import Protocol, checked_word
 from robotd.evaluation.recorded import Reach
 from robotd.evaluation.result import Result
+from robotd.evaluation.seeking import Job, JobSettings, run
 from robotd.evaluation.tally import Tally
 from robotd.evaluation.verdict import RIGHT_M, RIGHT_RAD
 from robotd.grid import kernels

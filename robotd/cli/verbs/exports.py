@@ -17,7 +17,7 @@ from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import Event, SweepDone
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RecordingError
-from robotd.interop.carmen import PlacedSweep, encode_carmen
+from robotd.interop.carmen_writer import PlacedSweep, encode_carmen
 from robotd.interop.foxglove_messages import SCHEMAS, FoxgloveFrames
 from robotd.interop.tum import TimedPose, encode_tum
 

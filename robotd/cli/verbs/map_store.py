@@ -13,7 +13,7 @@ from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import complain, out, print_json, print_table
 from robotd.cli.verb import Verb
 from robotd.core.errors import ConfigError
-from robotd.grid.comparison import MapComparison, compare_maps
+from robotd.grid.map_comparison import MapComparison, compare_maps
 from robotd.maps.entry import MapEntry
 from robotd.maps.store import MapStore
 

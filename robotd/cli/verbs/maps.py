@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 from robotd.cli.connection import connect
 from robotd.cli.exit_codes import OK
 from robotd.cli.motion import carry_out, legs_argument, mission_verb
-from robotd.cli.odometry import odometry_argument
 from robotd.cli.outputs import PNG, output_argument
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import heading_of_deg, number, whole
 from robotd.cli.show.half_blocks import Ink, can_draw_blocks, draw, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import Verb
-from robotd.cli.verbs import map_files, map_stops, map_store
+from robotd.cli.verbs import map_files, map_store, stored_stops
+from robotd.cli.wheels import odometry_argument
 from robotd.contract.answers import MapEntryInfo
 from robotd.contract.arguments import MapName
 from robotd.contract.estimate import PoseEstimate
@@ -249,5 +249,5 @@ VERBS = (
     ),
     *map_files.VERBS,
     *map_store.VERBS,
-    *map_stops.VERBS,
+    *stored_stops.VERBS,
 )

@@ -10,16 +10,16 @@ from pathlib import Path
 
 from robotd.cli.emulated import config_text, recorded_config_text, recorded_dialects, write_config
 from robotd.cli.exit_codes import FAILED, OK
-from robotd.cli.odometry import odometry_argument
 from robotd.cli.outputs import LINKS, MADE_CONFIG, TRUTH_LINES, output_argument
 from robotd.cli.show.terminal import command_line, err, out, print_json, print_pairs
 from robotd.cli.verb import Verb
+from robotd.cli.wheels import odometry_argument
 from robotd.core.log import configure
 from robotd.recording.reader import read
 from robotd.sim.buildings.world import world_names
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects, Firmware
 from robotd.sim.fakes.fake_robot import FakeRobot
-from robotd.sim.faults.catalogue import FAULTS, meaning_of
+from robotd.sim.faults.fault_words import FAULTS, meaning_of
 from robotd.sim.faults.laid import run_faulty_on_ptys
 from robotd.sim.faults.plan import PlannedFault, parse_plan
 from robotd.sim.hosting.pace import PATIENCE_S

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from firmware_proto.common import BoardKind
-from firmware_proto.drive import DriveReport, OdometryReport, SetVelocity
+from firmware_proto.drive_messages import DriveReport, OdometryReport, SetVelocity
 from firmware_proto.schema import Message
 from robotd.core.angles import wrap_rad
 from robotd.core.broadcast import Broadcast

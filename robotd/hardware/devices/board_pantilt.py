@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from firmware_proto import pantilt as proto
+from firmware_proto import pantilt_messages as proto
 from firmware_proto.common import BoardKind
 from firmware_proto.schema import Message
 from robotd.core.angles import wrap_rad

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from firmware_proto import rangefinder as proto
+from firmware_proto import rangefinder_messages as proto
 from firmware_proto.common import BoardKind
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.core.errors import DeviceError, LinkTimeout
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.board_device import BoardDevice

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from firmware_proto.common import BoardKind, HelloReply, Kill, Ping, Stop
 from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START, answers_for, requests_for
-from firmware_proto.drive import SetVelocity
+from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.framing import Deframer, RawFrame, encode_frame
 from firmware_proto.schema import Message, payload_size
 from robotd.core.errors import LocalProtocolError

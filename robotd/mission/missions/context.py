@@ -12,8 +12,8 @@ from robotd.head.head import Head
 from robotd.mission.missions.settings import MissionSettings
 from robotd.mission.missions.stop_and_sweep import Sweeper
 from robotd.mission.news import Publish
-from robotd.mission.robot import Robot
 from robotd.mission.safety.hold import Hold
+from robotd.mission.three_devices import Robot
 from robotd.mission.whereabouts.whereabouts import Whereabouts
 from robotd.recording.results import result_of
 

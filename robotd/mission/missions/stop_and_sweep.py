@@ -20,8 +20,8 @@ from robotd.hardware.devices.pantilt import PanTiltLimits
 from robotd.mission.missions.sweep_plan import SweepPart, plan_sweep
 from robotd.mission.motion.legs import rotate_to, settle
 from robotd.mission.motion.steering import DrivingSettings
-from robotd.mission.robot import Robot
 from robotd.mission.safety.hold import Hold
+from robotd.mission.three_devices import Robot
 
 FAILED = frozenset(
     {

@@ -8,14 +8,14 @@ from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import Mission
 from robotd.contract.modes import Mode
 from robotd.core.errors import MissionError, RobotdError
-from robotd.mission.missions.advice import with_advice
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.rows import MISSION_ROWS, Host, MissionRow
+from robotd.mission.missions.saving_advice import with_advice
 from robotd.mission.safety.arming import Arming
 from robotd.mission.safety.current_mode import CurrentMode
 from robotd.mission.safety.holding import Holding
 from robotd.mission.safety.lease import Lease
-from robotd.mission.safety.modes import Occasion
+from robotd.mission.safety.mode_table import Occasion
 from robotd.mission.safety.stopper import Stopper
 
 MakeLease = Callable[[float, Callable[[], None]], Lease]

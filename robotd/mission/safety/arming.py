@@ -7,7 +7,7 @@ from robotd.core.errors import LinkTimeout, MissionError
 from robotd.core.silence import within
 from robotd.hardware.devices.device import Device
 from robotd.mission.safety.current_mode import CurrentMode
-from robotd.mission.safety.modes import Occasion
+from robotd.mission.safety.mode_table import Occasion
 from robotd.mission.safety.stopper import Stopper
 
 _DEVICE_TIMEOUT_S = 5.0

@@ -2,7 +2,7 @@
 
 from robotd.contract.device_status import LinkState
 from robotd.hardware.devices.drive import Drive
-from robotd.mission.robot import Robot
+from robotd.mission.three_devices import Robot
 
 
 def low_battery(drive: Drive, least_v: float) -> str | None:

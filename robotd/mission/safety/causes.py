@@ -18,7 +18,7 @@ from robotd.core.errors import RecordingError
 from robotd.core.text import printable
 from robotd.mission.safety.hold import Stall
 from robotd.mission.safety.holding import Holding
-from robotd.mission.safety.modes import Occasion
+from robotd.mission.safety.mode_table import Occasion
 from robotd.mission.safety.stopper import Stopper
 from robotd.recording.journal import Journal
 

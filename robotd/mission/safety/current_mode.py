@@ -8,7 +8,7 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import MissionError
 from robotd.core.log_limit import LogLimit
 from robotd.core.text import printable
-from robotd.mission.safety.modes import Occasion, next_mode
+from robotd.mission.safety.mode_table import Occasion, next_mode
 
 _LONGEST_REASON = 500
 """Letters: reasons quote devices and clients, and stand in every status."""

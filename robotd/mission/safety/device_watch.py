@@ -10,7 +10,7 @@ from robotd.hardware.devices.device import Device
 from robotd.mission.safety.arming import Arming
 from robotd.mission.safety.battery import low_battery
 from robotd.mission.safety.holding import Holding
-from robotd.mission.safety.modes import Occasion
+from robotd.mission.safety.mode_table import Occasion
 from robotd.mission.safety.stopper import Stopper
 
 

@@ -16,7 +16,7 @@ from robotd.core.errors import LinkTimeout, RobotdError
 from robotd.core.silence import within
 from robotd.mission.safety.arming import Arming
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, LATELY_NS, FellSilent, Hold, Stall
-from robotd.mission.safety.modes import Occasion
+from robotd.mission.safety.mode_table import Occasion
 from robotd.mission.safety.stopper import Stopper
 
 _ARM_TIMEOUT_S = 5.0

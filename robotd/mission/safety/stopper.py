@@ -3,8 +3,8 @@
 from typing import Protocol
 
 from robotd.contract.modes import Mode
-from robotd.mission.robot import Robot
-from robotd.mission.safety.modes import Occasion
+from robotd.mission.safety.mode_table import Occasion
+from robotd.mission.three_devices import Robot
 
 
 class Stopper(Protocol):

@@ -10,22 +10,22 @@ from robotd.core.errors import ConfigError
 from robotd.hardware.devices import catalogue as dialects
 from robotd.hardware.devices.dialect import Line
 from robotd.hardware.wire.tfmini import Model
-from robotd.sim.boards.drive import DriveBoard
-from robotd.sim.boards.pantilt import PanTiltBoard
-from robotd.sim.boards.rangefinder import RangefinderBoard
-from robotd.sim.emulators import rflex, rwi
-from robotd.sim.emulators.dimetix import DimetixEmulator
-from robotd.sim.emulators.disto import DistoEmulator
-from robotd.sim.emulators.dynamixel import DynamixelEmulator
+from robotd.sim.boards.drive_board import DriveBoard
+from robotd.sim.boards.pantilt_board import PanTiltBoard
+from robotd.sim.boards.rangefinder_board import RangefinderBoard
+from robotd.sim.emulators import emulated_rflex, rwi
+from robotd.sim.emulators.emulated_dimetix import DimetixEmulator
+from robotd.sim.emulators.emulated_disto import DistoEmulator
+from robotd.sim.emulators.emulated_dynamixel import DynamixelEmulator
+from robotd.sim.emulators.emulated_lw20 import Lw20Emulator
+from robotd.sim.emulators.emulated_lwnx import LwnxEmulator
+from robotd.sim.emulators.emulated_ptu import PtuEmulator
+from robotd.sim.emulators.emulated_rflex import RflexEmulator
+from robotd.sim.emulators.emulated_scip import ScipEmulator
+from robotd.sim.emulators.emulated_tfmini import TfminiEmulator
 from robotd.sim.emulators.fixed import FixedEmulator
-from robotd.sim.emulators.lw20 import Lw20Emulator
-from robotd.sim.emulators.lwnx import LwnxEmulator
 from robotd.sim.emulators.paced import Paced
-from robotd.sim.emulators.ptu import PtuEmulator
-from robotd.sim.emulators.rflex import RflexEmulator
 from robotd.sim.emulators.rwi import RwiEmulator
-from robotd.sim.emulators.scip import ScipEmulator
-from robotd.sim.emulators.tfmini import TfminiEmulator
 from robotd.sim.hosting.host import HostedBoard
 from robotd.sim.physics.plant import DrivePlant, HeadPlant, ScannerPlant
 
@@ -65,7 +65,7 @@ DRIVES: Mapping[str, Emulator[DrivePlant]] = {
     "rflex": _spoken(
         dialects.DRIVES["rflex"].line,
         RflexEmulator,
-        {"counts_per_m": rflex.COUNTS_PER_M, "counts_per_rad": rflex.COUNTS_PER_RAD},
+        {"counts_per_m": emulated_rflex.COUNTS_PER_M, "counts_per_rad": emulated_rflex.COUNTS_PER_RAD},
     ),
 }
 _HEADS: Mapping[str, Callable[[HeadPlant], HostedBoard]] = {"dynamixel": DynamixelEmulator, "ptu": PtuEmulator}

@@ -26,9 +26,9 @@ from firmware_proto.common import (
     Stop,
 )
 from firmware_proto.dictionary import REQUEST_END, requests_for
-from firmware_proto.drive import DriveReport, OdometryReport, SetVelocity
+from firmware_proto.drive_messages import DriveReport, OdometryReport, SetVelocity
 from firmware_proto.framing import Deframer, RawFrame
-from firmware_proto.pantilt import Aim, AimReadback, AimReport, Motion, ReadAim, ReadLimits
+from firmware_proto.pantilt_messages import Aim, AimReadback, AimReport, Motion, ReadAim, ReadLimits
 from firmware_proto.rules import RULES
 from firmware_proto.schema import Message, payload_size
 from robotd.core.errors import RecordingError

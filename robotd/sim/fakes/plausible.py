@@ -4,8 +4,8 @@ import zlib
 from dataclasses import replace
 
 from firmware_proto.common import Ack, Arm, BoardState, Configure, ConfigureReply, Fault, Kill, Result
-from firmware_proto.pantilt import Aim, AimReport, Motion
-from firmware_proto.rangefinder import Shoot, Shot, ShotStatus
+from firmware_proto.pantilt_messages import Aim, AimReport, Motion
+from firmware_proto.rangefinder_messages import Shoot, Shot, ShotStatus
 from firmware_proto.schema import Message
 
 

@@ -27,9 +27,9 @@ from firmware_proto.common import (
     Stop,
 )
 from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START, answers_for, dictionary_for, requests_for
-from firmware_proto.drive import SetVelocity
+from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.framing import Deframer, RawFrame
-from firmware_proto.pantilt import Limits, ReadAim, ReadLimits
+from firmware_proto.pantilt_messages import Limits, ReadAim, ReadLimits
 from firmware_proto.schema import REPLY, Message, payload_size
 from robotd.hardware.link.tap import Direction
 from robotd.recording.entries import BytesEntry, Entry, LineEntry

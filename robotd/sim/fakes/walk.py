@@ -6,7 +6,7 @@ the walk comes to a request, it waits until the host makes it; when the host is 
 
 from dataclasses import dataclass
 
-from firmware_proto.drive import SetVelocity
+from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.schema import Message
 from robotd.sim.fakes.script import BOOKKEEPING, Asked, Said, Step, asked_ahead
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import ConfigError
 from robotd.sim.faults.cable import Cable
-from robotd.sim.faults.catalogue import FAULTS
+from robotd.sim.faults.fault_words import FAULTS
 from robotd.sim.faults.of_plugs import Reboot
 from robotd.sim.robot import DEVICES
 

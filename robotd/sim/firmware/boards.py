@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from firmware_proto.rangefinder import ShotStatus
-from robotd.sim.boards.drive import signed16, signed32
-from robotd.sim.boards.pantilt import PER_RAD, limits_of, tenth_mrad
+from firmware_proto.rangefinder_messages import ShotStatus
+from robotd.sim.boards.drive_board import signed16, signed32
+from robotd.sim.boards.pantilt_board import PER_RAD, limits_of, tenth_mrad
 from robotd.sim.firmware._native import ffi, lib
 from robotd.sim.firmware.hosted import FirmwareBoard, call_back
 from robotd.sim.physics.plant import DrivePlant, HeadPlant, LaserPlant, ShotAnswer

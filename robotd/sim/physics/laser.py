@@ -4,12 +4,12 @@ import math
 import random
 from dataclasses import dataclass
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.core.pose import Pose2
 from robotd.sim.physics.body import Body
-from robotd.sim.physics.head import Head
 from robotd.sim.physics.noise import NoiseSettings
 from robotd.sim.physics.plant import ShotAnswer
+from robotd.sim.physics.steppers import Head
 from robotd.sim.physics.walls import Walls, ray_cast
 
 _STRENGTH_AT_1_M = 20_000

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from firmware_proto.common import Fault
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 
 
 class DrivePlant(Protocol):

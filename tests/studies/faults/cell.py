@@ -14,7 +14,7 @@ from robotd.core.clock import NS_PER_S, now_ns, run_virtual
 from robotd.core.errors import RobotdError
 from robotd.recording.reader import read
 from robotd.sim.emulators.catalogue import OWN, Dialects
-from robotd.sim.faults.catalogue import FAULTS
+from robotd.sim.faults.fault_words import FAULTS
 from robotd.sim.hosting.host import OwnBoard
 from tests.support.bench import Bench, bench
 from tests.support.living import until_ready

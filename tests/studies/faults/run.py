@@ -5,7 +5,7 @@ import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 
-from robotd.sim.faults.catalogue import FAULTS
+from robotd.sim.faults.fault_words import FAULTS
 from robotd.sim.robot import DEVICES
 from tests.studies.faults.cell import Outcome, run_cell
 from tests.support.states import STATES

@@ -2,7 +2,7 @@
 
 import pytest
 
-from robotd.sim.faults.catalogue import FAULTS
+from robotd.sim.faults.fault_words import FAULTS
 from robotd.sim.robot import DEVICES
 from tests.studies.faults.cell import run_cell
 from tests.support.states import STATES

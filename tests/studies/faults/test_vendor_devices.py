@@ -3,7 +3,7 @@
 import pytest
 
 from robotd.sim.emulators.catalogue import Dialects
-from robotd.sim.faults.catalogue import FAULTS
+from robotd.sim.faults.fault_words import FAULTS
 from tests.studies.faults.cell import run_cell
 
 ROBOTS = {

@@ -9,11 +9,11 @@ from pathlib import Path
 
 from firmware_proto.c_devices import dictionary_in
 from firmware_proto.common import BoardKind, Fault
-from firmware_proto.rangefinder import ShotStatus
-from robotd.sim.boards.board import Board
-from robotd.sim.boards.drive import DriveBoard
-from robotd.sim.boards.pantilt import PanTiltBoard
-from robotd.sim.boards.rangefinder import RangefinderBoard
+from firmware_proto.rangefinder_messages import ShotStatus
+from robotd.sim.boards.drive_board import DriveBoard
+from robotd.sim.boards.emulated_board import Board
+from robotd.sim.boards.pantilt_board import PanTiltBoard
+from robotd.sim.boards.rangefinder_board import RangefinderBoard
 from robotd.sim.physics.plant import ShotAnswer
 from tests.studies.firmware.compiling import CODEC, C, build, run
 

@@ -17,10 +17,10 @@ from firmware_proto.common import (
     Ping,
     Stop,
 )
-from firmware_proto.drive import SetVelocity
+from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.framing import RawFrame, encode_frame
-from firmware_proto.pantilt import Aim, ReadAim, ReadLimits
-from firmware_proto.rangefinder import SetLaser, Shoot, ShotStatus
+from firmware_proto.pantilt_messages import Aim, ReadAim, ReadLimits
+from firmware_proto.rangefinder_messages import SetLaser, Shoot, ShotStatus
 from firmware_proto.schema import Message
 from tests.studies.firmware.streams import damaged, random_frame
 

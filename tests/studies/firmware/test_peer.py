@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from firmware_proto.common import Arm, BoardKind, BoardState, Clear, Configure, Fault, Hello
-from firmware_proto.drive import SetVelocity
+from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.framing import RawFrame, encode_frame
-from firmware_proto.pantilt import Aim
+from firmware_proto.pantilt_messages import Aim
 from firmware_proto.schema import Message
 from tests.studies.firmware.peer import Told, first_difference, told_by_c, told_by_python
 from tests.studies.firmware.scripts import random_script

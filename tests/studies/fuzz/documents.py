@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from robotd.children.framing import Unframer, header
+from robotd.children.message_framing import Unframer, header
 from robotd.cli.exact_inputs import read_beams, read_map
 from robotd.config import Config, effective_text, loads
 from robotd.contract.answers import Done
@@ -178,7 +178,7 @@ DOCUMENTS = (
         "channel",
         _of_front,
         lambda: [header(3) + b"abc" + header(0)],
-        ("robotd/children/framing.py",),
+        ("robotd/children/message_framing.py",),
         typed=(RemoteProtocolError,),
         size_max=512,
     ),
@@ -276,7 +276,7 @@ DOCUMENTS = (
         "beams",
         _in_file("a.txt", read_beams),
         lambda: [b"bearing_deg,range_m\n0,1.5\n90,2\n"],
-        ("robotd/exact/readings.py", "robotd/cli/exact_inputs.py"),
+        ("robotd/exact/readings_table.py", "robotd/cli/exact_inputs.py"),
         typed=(RobotdError,),
         size_max=256,
     ),

@@ -22,7 +22,7 @@ from robotd.mission.safety.hold import Stall
 from robotd.recording.encoding import HEADER_TOPIC, encode, encode_header
 from robotd.recording.reader import Recording, read
 from robotd.sim.emulators.catalogue import Dialects
-from robotd.sim.faults.catalogue import FAULTS
+from robotd.sim.faults.fault_words import FAULTS
 from tests.support.bench import Bench, bench
 
 _READINGS = 4

@@ -9,7 +9,7 @@ import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.cli.demo.room import brisk
 from robotd.config import Config
 from robotd.contract.events import SweepDone
@@ -26,10 +26,10 @@ from robotd.hardware.devices.rangefinder import Shot
 from robotd.localization.stop_poses import StopPoses
 from robotd.sim.buildings.world import World
 from robotd.sim.physics.body import Body, BodySettings
-from robotd.sim.physics.head import Head, HeadSettings
 from robotd.sim.physics.laser import Laser, LaserSettings
 from robotd.sim.physics.noise import NoiseSettings, stream
 from robotd.sim.physics.plant import ShotAnswer
+from robotd.sim.physics.steppers import Head, HeadSettings
 from robotd.sim.physics.walls import Point, ray_cast
 from robotd.sim.robot import SimulatedRobot
 from tests.support.living import living

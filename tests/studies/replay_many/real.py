@@ -23,7 +23,7 @@ from robotd.config import effective_text, loads
 from robotd.contract.missions import DriveTo, Legs, Localize, MapStart, Mission
 from robotd.core.errors import RobotdError
 from robotd.sim.buildings.world import load_world
-from robotd.sim.faults.catalogue import FAULTS
+from robotd.sim.faults.fault_words import FAULTS
 from robotd.sim.robot import DEVICES, SimulatedRobot
 from tests.studies.replay_many.outcome import Outcome, difference
 from tests.support.real_rig import DAEMON, STALLING_DAEMON, armed, child_of, program_of, until_ready

@@ -18,8 +18,8 @@ from robotd.core.clock import now_ns, run_virtual
 from robotd.core.errors import RobotdError
 from robotd.mission.safety.hold import Stall
 from robotd.sim.emulators.catalogue import Dialects
-from robotd.sim.faults.catalogue import FAULTS
 from robotd.sim.faults.fault import Fault
+from robotd.sim.faults.fault_words import FAULTS
 from robotd.sim.robot import DEVICES
 from tests.studies.replay_many.outcome import Outcome, difference
 from tests.studies.replay_many.weather import Rechunked, Slowly, block

@@ -14,7 +14,7 @@ from firmware_proto.common import BoardState
 from robotd.app import daemon as program
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import main, run
-from robotd.app.lock import lock_directory
+from robotd.app.daemon_lock import lock_directory
 from robotd.config import Config
 from robotd.contract.requests import Arm
 from robotd.core.errors import TransportError

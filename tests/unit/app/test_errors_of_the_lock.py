@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from robotd.app.lock import lock_directory
+from robotd.app.daemon_lock import lock_directory
 from robotd.core.errors import TransportError
 
 NUMBERS = [errno.EMFILE, errno.ENOSPC, errno.EACCES, errno.ENOLCK]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robotd.calibration.heads import Heads
 from robotd.calibration.matching import match
-from robotd.calibration.stops import along, round_about
+from robotd.calibration.two_way_stops import along, round_about
 from robotd.core.errors import CalibrationError
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.sim.buildings.world import load_world

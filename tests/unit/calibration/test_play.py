@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.calibration.head import combined, play
+from robotd.calibration.head_zero import combined, play
 from robotd.calibration.heads import Heads
 from robotd.core.errors import CalibrationError
 from robotd.sim.buildings.world import load_world

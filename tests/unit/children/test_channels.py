@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from robotd.children.channel import Channel
-from robotd.children.framing import header
-from robotd.children.memory import memory_channel
-from robotd.children.sockets import SocketChannel
+from robotd.children.memory_channel import memory_channel
+from robotd.children.message_framing import header
+from robotd.children.socket_channel import SocketChannel
 from robotd.core.errors import ChildError
 
 Make = Callable[[int], tuple[Channel, Channel]]

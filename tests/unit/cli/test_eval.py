@@ -13,8 +13,8 @@ from matplotlib.image import imread
 
 from robotd.cli.main import main
 from robotd.evaluation.division import Query
-from robotd.evaluation.job import Job
 from robotd.evaluation.result import Result
+from robotd.evaluation.seeking import Job
 from tests.support.recorded_room import drive_lines
 
 

@@ -17,8 +17,8 @@ import pytest
 
 from robotd import __version__
 from robotd.cli.main import WORDS, build_parser, main, verbs_of
-from robotd.cli.odometry import SOURCES
 from robotd.cli.verb import Verb
+from robotd.cli.wheels import SOURCES
 from robotd.core.errors import RequestTimeout, ServerError
 from robotd.sim.recorded_robot import OdometrySource
 
@@ -198,7 +198,7 @@ def test_an_error_without_a_file_is_one_line_too(
     def full(document: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("robotd.cli.verbs.control.print_json", full)
+    monkeypatch.setattr("robotd.cli.verbs.status_and_arming.print_json", full)
     assert main(["status", "--json"]) == 1
     assert capsys.readouterr().err == "robotctl: No space left on device\n"
 
@@ -210,7 +210,7 @@ def test_the_timeout_and_the_directory_reach_the_client(monkeypatch: pytest.Monk
         seen.append((str(arguments.runtime_dir), arguments.timeout))
         return client
 
-    monkeypatch.setattr("robotd.cli.verbs.control.connect", connect)
+    monkeypatch.setattr("robotd.cli.verbs.status_and_arming.connect", connect)
     assert main(["arm", "--runtime-dir", "there", "--timeout", "1.5"]) == 0
     assert main(["arm", "--runtime-dir", "there"]) == 0  # each request has its own time, saving a map a long one
     assert seen == [("there", 1.5), ("there", None)]

@@ -16,7 +16,7 @@ from robotd.recording.entries import BytesEntry, RecordingHeader
 from robotd.recording.recorder import Recorder
 from robotd.sim.buildings.building import load_recorded_building
 from robotd.sim.buildings.world import WORLDS_DIR, load_world
-from robotd.sim.faults.catalogue import FAULTS, meaning_of
+from robotd.sim.faults.fault_words import FAULTS, meaning_of
 from robotd.sim.faults.plan import PlannedFault
 from robotd.sim.load import load_robot
 from tests.support.carmen_room import flaser

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 from robotd.core.reading import ReadingStatus
 from robotd.evaluation.division import Query, elsewhere, halves, interleaved
-from robotd.evaluation.job import Job, JobSettings, run
 from robotd.evaluation.recorded import Reach, map_of, readings_of
 from robotd.evaluation.result import Result
+from robotd.evaluation.seeking import Job, JobSettings, run
 from robotd.evaluation.verdict import CaseVerdict
 from robotd.grid.settings import GridSettings
 from robotd.localization.judge.error_model import ErrorModel

@@ -16,7 +16,7 @@ from robotd.exact.outlines import outlines
 from robotd.exact.points import Point
 from robotd.exact.polygons import edge_count
 from robotd.exact.rationals import rational
-from robotd.exact.readings import beams_of
+from robotd.exact.readings_table import beams_of
 from robotd.exact.surds import sqrt
 from robotd.exact.sweep import arrange
 from robotd.sim.buildings.world import WORLDS_DIR, load_world, world_names

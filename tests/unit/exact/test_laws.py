@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from robotd.exact.beams import Beam
 from robotd.exact.casting import Outcome, cast, distance_square, rank_at
+from robotd.exact.error_bracket import smallest_error
 from robotd.exact.feasible import PolygonMap, best_rank, feasible_poses, of_rank, ranked
 from robotd.exact.locate import contains
 from robotd.exact.minkowski import grown
@@ -16,7 +17,6 @@ from robotd.exact.points import Point
 from robotd.exact.polygons import Polygon, Ring, edge_count, ring_of, solid
 from robotd.exact.rationals import DEFAULT, Arithmetic, Rational, rational
 from robotd.exact.regions import regions
-from robotd.exact.smallest_error import smallest_error
 from robotd.exact.surds import Number, Surd, arithmetic_of
 from robotd.exact.sweep import arrange
 from tests.unit.exact.arithmetics import arithmetics, rationals

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robotd.exact.arrangement import Arrangement, at_least
+from robotd.exact.closed_polylines import outline_loops, single_lines, single_points
 from robotd.exact.locate import contains
-from robotd.exact.loops import outline_loops, single_lines, single_points
 from robotd.exact.measure import face_areas
 from robotd.exact.minkowski import grown
 from robotd.exact.planar import PlanarSet, Spot, area_within, disk, segment

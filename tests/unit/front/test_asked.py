@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from robotd.children.channel import Channel
-from robotd.children.memory import memory_channel
+from robotd.children.memory_channel import memory_channel
 from robotd.contract.envelope import Reply, encode_request
 from robotd.contract.events import MapChanged, MissionPhase, MissionProgress
 from robotd.contract.missions import Localize

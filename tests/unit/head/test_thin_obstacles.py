@@ -14,9 +14,9 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings, UpdatePolicy
 from robotd.head.desk import Desk
 from robotd.head.held import Held
+from robotd.head.job_table import perform
 from robotd.head.jobs import MapRef, Plan
 from robotd.head.settings import HeadSettings
-from robotd.head.table import perform
 from robotd.planning.settings import PlanningSettings
 
 WALLS_M = 2.5

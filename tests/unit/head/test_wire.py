@@ -17,6 +17,7 @@ from robotd.grid.settings import GridSettings
 from robotd.head.answering import answer_to
 from robotd.head.desk import Desk
 from robotd.head.job import Done, Job
+from robotd.head.job_table import perform
 from robotd.head.jobs import (
     JOBS,
     BeginMap,
@@ -36,7 +37,6 @@ from robotd.head.jobs import (
     TakeReadings,
 )
 from robotd.head.settings import HeadSettings
-from robotd.head.table import perform
 from robotd.head.wire import JobFailed, pack_answer, pack_error, pack_job, unpack_answer, unpack_job
 
 GRID = GridSettings(rows=60, cols=80)

@@ -25,9 +25,9 @@ from robotd.head.compute import ThreadCompute
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.settings import MissionSettings
 from robotd.mission.news import News
-from robotd.mission.robot import Robot
-from robotd.mission.safety.modes import Occasion
+from robotd.mission.safety.mode_table import Occasion
 from robotd.mission.supervisor import Supervisor
+from robotd.mission.three_devices import Robot
 from robotd.mission.whereabouts.tie import Tie
 from tests.support.places import head_on, place
 

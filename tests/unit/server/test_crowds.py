@@ -17,7 +17,7 @@ from robotd.client import AsyncClient
 from robotd.contract.envelope import encode_request
 from robotd.contract.requests import GetStatus, MapShow, Stop
 from robotd.core.grid_spec import GridSpec
-from robotd.server.connection import Connection, Manners, process_of
+from robotd.server.client_connection import Connection, Manners, process_of
 from robotd.server.door import MOST, MOST_OF_A_PROCESS, Door
 from robotd.server.outlet import MOST_SUBSCRIPTIONS
 from robotd.server.zmtp import GREETING, message, ready
@@ -197,7 +197,7 @@ async def test_no_descriptor_for_another_client_is_no_end(
 async def test_who_says_nothing_is_cut_off_after_a_while(
     serving: Serving, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("robotd.server.connection._GREETS_WITHIN_S", 0.05)
+    monkeypatch.setattr("robotd.server.client_connection._GREETS_WITHIN_S", 0.05)
     async with serving(), raw(tmp_path / "state.sock") as (reader, writer):
         await is_cut_off(reader, writer, GREETING[:20])
 

@@ -15,7 +15,7 @@ from robotd.contract.requests import GetStatus, MapShow
 from robotd.contract.topics import Message, Topic, decode_frame
 from robotd.core.errors import LinkTimeout
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
-from robotd.server.connection import Process
+from robotd.server.client_connection import Process
 from robotd.server.publisher import Publisher
 from robotd.server.zmtp import GREETING, Reader, ready
 from robotd.server.zmtp import Message as Sent

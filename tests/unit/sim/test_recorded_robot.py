@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.logs.carmen import parse_carmen
 from robotd.sim.buildings.building import RecordedBuilding, Stop, encode_recorded_building, select_stops

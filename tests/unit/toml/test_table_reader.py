@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from robotd.core.errors import ConfigError
-from robotd.toml.reader import read_text
+from robotd.toml.settings_reader import read_text
 
 
 class Pace(enum.StrEnum):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.toml.reader import read_text
+from robotd.toml.settings_reader import read_text
 from robotd.toml.writer import write_table
 
 

@@ -6,7 +6,7 @@ import random
 from collections.abc import AsyncIterator
 from dataclasses import dataclass, field
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.hardware.devices.catalogue import RANGEFINDERS as DIALECTS
 from robotd.hardware.devices.catalogue import rangefinder

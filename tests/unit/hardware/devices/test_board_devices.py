@@ -10,7 +10,7 @@ from typing import TypeVar
 import pytest
 
 from firmware_proto.common import Arm, BoardState, Fault
-from firmware_proto.pantilt import Aim, AimReadback, AimReport, Motion, ReadAim
+from firmware_proto.pantilt_messages import Aim, AimReadback, AimReport, Motion, ReadAim
 from firmware_proto.schema import REPLY
 from robotd.contract.device_status import LinkState
 from robotd.core.broadcast import Broadcast
@@ -25,8 +25,8 @@ from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
-from robotd.sim.physics.head import HeadSettings
 from robotd.sim.physics.noise import NOISELESS
+from robotd.sim.physics.steppers import HeadSettings
 from robotd.sim.robot import SimSettings
 from tests.unit.hardware.conftest import lose
 from tests.unit.hardware.devices.conftest import nowhere, rig

@@ -4,9 +4,9 @@ import asyncio
 
 import pytest
 
-from firmware_proto import rangefinder as proto
+from firmware_proto import rangefinder_messages as proto
 from firmware_proto.common import BoardKind, Kill
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.core.clock import now_ns
 from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus

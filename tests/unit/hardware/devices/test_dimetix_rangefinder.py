@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
@@ -17,7 +17,7 @@ from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
-from robotd.sim.emulators.dimetix import DimetixEmulator
+from robotd.sim.emulators.emulated_dimetix import DimetixEmulator
 from robotd.sim.hosting.board_clock import BoardClock
 from robotd.sim.hosting.host import serve
 from robotd.sim.physics.plant import ShotAnswer

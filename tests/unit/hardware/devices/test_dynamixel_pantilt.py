@@ -17,7 +17,7 @@ from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.dynamixel import Instruction
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
-from robotd.sim.emulators.dynamixel import DynamixelEmulator
+from robotd.sim.emulators.emulated_dynamixel import DynamixelEmulator
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings, SimulatedRobot

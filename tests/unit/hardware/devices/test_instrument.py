@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.contract.device_status import LinkState
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot

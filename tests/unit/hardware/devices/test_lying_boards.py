@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from firmware_proto.common import BoardStatus, Pong
-from firmware_proto.drive import DriveReport, OdometryReport
+from firmware_proto.drive_messages import DriveReport, OdometryReport
 from firmware_proto.framing import RawFrame
-from firmware_proto.pantilt import AimReport, Limits
-from firmware_proto.rangefinder import Shot
+from firmware_proto.pantilt_messages import AimReport, Limits
+from firmware_proto.rangefinder_messages import Shot
 from firmware_proto.schema import Message
 from robotd.contract.device_status import LinkState
 from robotd.core.clock import NS_PER_S, now_ns

@@ -19,8 +19,8 @@ from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Transport
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
+from robotd.sim.emulators.emulated_ptu import PtuEmulator
 from robotd.sim.emulators.paced import Paced
-from robotd.sim.emulators.ptu import PtuEmulator
 from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors

@@ -20,15 +20,15 @@ from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.rflex import OtherFrame, RflexWire
 from robotd.sim.buildings.world import load_world
-from robotd.sim.emulators import rflex
+from robotd.sim.emulators import emulated_rflex
 from robotd.sim.emulators.catalogue import Dialects
+from robotd.sim.emulators.emulated_rflex import RflexEmulator
 from robotd.sim.emulators.paced import Paced
-from robotd.sim.emulators.rflex import RflexEmulator
 from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
 
-SETTINGS = RflexSettings(counts_per_m=rflex.COUNTS_PER_M, counts_per_rad=rflex.COUNTS_PER_RAD)
+SETTINGS = RflexSettings(counts_per_m=emulated_rflex.COUNTS_PER_M, counts_per_rad=emulated_rflex.COUNTS_PER_RAD)
 TTL_S = 0.4
 
 

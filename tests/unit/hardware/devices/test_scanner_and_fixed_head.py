@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError, TransportError
 from robotd.core.reading import ReadingStatus
@@ -22,8 +22,8 @@ from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
+from robotd.sim.emulators.emulated_scip import ScipEmulator
 from robotd.sim.emulators.paced import Paced
-from robotd.sim.emulators.scip import ScipEmulator
 from robotd.sim.hosting.board_clock import BoardClock
 from robotd.sim.hosting.host import serve
 from robotd.sim.physics.plant import ShotAnswer

@@ -4,15 +4,15 @@ import asyncio
 
 import pytest
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.contract.device_status import LinkState
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
-from robotd.sim.emulators import lw20, lwnx
+from robotd.sim.emulators import emulated_lw20, emulated_lwnx
 from robotd.sim.emulators.catalogue import RANGEFINDERS
+from robotd.sim.emulators.emulated_tfmini import TfminiEmulator
 from robotd.sim.emulators.paced import Paced
-from robotd.sim.emulators.tfmini import TfminiEmulator
 from robotd.sim.physics.plant import ShotAnswer
 from tests.unit.hardware.devices.sensing import sensor
 
@@ -66,7 +66,9 @@ async def test_flat_distances_beyond_its_reach_are_lost_signals(dialect: str, di
         assert (shot.status, shot.range_m) == (ReadingStatus.WEAK, None)
 
 
-@pytest.mark.parametrize(("dialect", "attribute"), [("lw20", (lw20, "_PRODUCT")), ("lwnx", (lwnx, "_NAME"))])
+@pytest.mark.parametrize(
+    ("dialect", "attribute"), [("lw20", (emulated_lw20, "_PRODUCT")), ("lwnx", (emulated_lwnx, "_NAME"))]
+)
 async def test_another_device_is_not_used(
     monkeypatch: pytest.MonkeyPatch, dialect: str, attribute: tuple[object, str]
 ) -> None:

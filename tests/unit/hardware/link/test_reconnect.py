@@ -32,7 +32,7 @@ from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES, BoardWire
-from robotd.sim.boards.board import Board
+from robotd.sim.boards.emulated_board import Board
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot, own_board
 from robotd.sim.runtime import connectors

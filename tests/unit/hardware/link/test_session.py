@@ -8,10 +8,10 @@ from contextlib import asynccontextmanager, suppress
 import pytest
 
 from firmware_proto.common import Ack, Arm, BoardKind, BoardState, BoardStatus, Disarm, Ping, Pong
-from firmware_proto.drive import SetVelocity
+from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.framing import RawFrame, encode_frame
-from firmware_proto.pantilt import Aim, Limits, ReadLimits
-from firmware_proto.rangefinder import SetLaser, Shoot, Shot
+from firmware_proto.pantilt_messages import Aim, Limits, ReadLimits
+from firmware_proto.rangefinder_messages import SetLaser, Shoot, Shot
 from firmware_proto.schema import REPLY, Message
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError, TransportError
@@ -23,7 +23,7 @@ from robotd.hardware.link.tap import NoTap
 from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.wire.board import STOP_BYTES, BoardWire, Received
-from robotd.sim.boards.board import Board, Outcome
+from robotd.sim.boards.emulated_board import Board, Outcome
 from robotd.sim.buildings.world import load_world
 from robotd.sim.physics.laser import LaserSettings
 from robotd.sim.robot import SimSettings, SimulatedRobot, own_board

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from firmware_proto.common import Ack, Arm, BoardKind, BoardStatus, HelloReply, Kill, Nack, Ping, Pong, Result, Stop
-from firmware_proto.drive import DriveReport, OdometryReport, SetVelocity
+from firmware_proto.drive_messages import DriveReport, OdometryReport, SetVelocity
 from firmware_proto.framing import Deframer, RawFrame, encode_frame
-from firmware_proto.rangefinder import Shot, ShotStatus
+from firmware_proto.rangefinder_messages import Shot, ShotStatus
 from firmware_proto.schema import Message
 from robotd.core.errors import LocalProtocolError
 from robotd.hardware.wire.board import EMERGENCY_SEQ, KILL_BYTES, STOP_BYTES, BoardWire, Received, WireCounters

@@ -3,9 +3,9 @@
 import pytest
 
 from firmware_proto.common import Arm, BoardKind, Ping, Stop
-from firmware_proto.drive import SetVelocity
+from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.framing import RawFrame, encode_frame
-from firmware_proto.rangefinder import Shoot
+from firmware_proto.rangefinder_messages import Shoot
 from robotd.hardware.wire import dimetix, disto, dynamixel, lw20, lwnx, ptu, rflex, rwi_ascii, scip, tfmini
 from robotd.hardware.wire.board import KILL_BYTES, STOP_BYTES, requests_to
 from robotd.hardware.wire.word import Repeat, Word, Words

@@ -8,8 +8,8 @@ from robotd.core.pose import IDENTITY
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.head.desk import Desk
-from robotd.head.in_process import InProcess
 from robotd.head.jobs import Prepare
+from robotd.head.near import InProcess
 from robotd.head.settings import HeadSettings
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.localizing import Narrowing

@@ -8,7 +8,7 @@ import pytest
 from robotd.contract.modes import Mode
 from robotd.core.errors import MissionError
 from robotd.mission.safety.current_mode import CurrentMode
-from robotd.mission.safety.modes import TRANSITIONS, Occasion
+from robotd.mission.safety.mode_table import TRANSITIONS, Occasion
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -13,7 +13,7 @@ from robotd.core.broadcast import Broadcast
 from robotd.hardware.devices.credible import IMPLAUSIBLE
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.mission.safety.device_watch import DeviceWatch
-from robotd.mission.safety.modes import Occasion
+from robotd.mission.safety.mode_table import Occasion
 
 READY, ABSENT, CONNECTING = LinkState.READY, LinkState.ABSENT, LinkState.CONNECTING
 

@@ -3,7 +3,7 @@
 from firmware_proto.common import Arm, BoardKind, BoardState, Configure, Hello
 from firmware_proto.schema import Message
 from robotd.hardware.wire.board import BoardWire, Received
-from robotd.sim.boards.board import Board
+from robotd.sim.boards.emulated_board import Board
 
 START_US = 1_000_000
 

@@ -31,17 +31,17 @@ from firmware_proto.common import (
     Stop,
 )
 from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START, dictionary_for, requests_for
-from firmware_proto.drive import SetVelocity
+from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.framing import RawFrame, encode_frame
-from firmware_proto.pantilt import Aim, ReadAim, ReadLimits
-from firmware_proto.rangefinder import SetLaser, Shoot, ShotStatus
+from firmware_proto.pantilt_messages import Aim, ReadAim, ReadLimits
+from firmware_proto.rangefinder_messages import SetLaser, Shoot, ShotStatus
 from firmware_proto.rules import RULES
 from firmware_proto.schema import Message
 from robotd.hardware.wire.board import KILL_BYTES, STOP_BYTES, BoardWire, Received
-from robotd.sim.boards.board import Board
-from robotd.sim.boards.drive import DriveBoard
-from robotd.sim.boards.pantilt import PanTiltBoard
-from robotd.sim.boards.rangefinder import RangefinderBoard
+from robotd.sim.boards.drive_board import DriveBoard
+from robotd.sim.boards.emulated_board import Board
+from robotd.sim.boards.pantilt_board import PanTiltBoard
+from robotd.sim.boards.rangefinder_board import RangefinderBoard
 from robotd.sim.physics.plant import ShotAnswer
 
 

@@ -13,10 +13,10 @@ from firmware_proto.common import (
     Ping,
     Pong,
 )
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from firmware_proto.schema import Message
 from robotd.hardware.wire.board import KILL_BYTES, BoardWire, Received
-from robotd.sim.boards.rangefinder import RangefinderBoard
+from robotd.sim.boards.rangefinder_board import RangefinderBoard
 from robotd.sim.physics.plant import ShotAnswer
 
 START_US = 1_000_000

@@ -20,9 +20,9 @@ from firmware_proto.common import (
     Result,
     Stop,
 )
-from firmware_proto.drive import DriveReport, OdometryReport, SetVelocity
+from firmware_proto.drive_messages import DriveReport, OdometryReport, SetVelocity
 from firmware_proto.schema import Message
-from robotd.sim.boards.drive import DriveBoard
+from robotd.sim.boards.drive_board import DriveBoard
 from tests.unit.sim.boards.conftest import START_US, Host
 
 

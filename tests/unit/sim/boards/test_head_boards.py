@@ -21,12 +21,12 @@ from firmware_proto.common import (
     Result,
     Stop,
 )
-from firmware_proto.pantilt import Aim, AimReadback, AimReport, Limits, Motion, ReadAim, ReadLimits
-from firmware_proto.rangefinder import SetLaser, Shoot, Shot, ShotStatus
+from firmware_proto.pantilt_messages import Aim, AimReadback, AimReport, Limits, Motion, ReadAim, ReadLimits
+from firmware_proto.rangefinder_messages import SetLaser, Shoot, Shot, ShotStatus
 from firmware_proto.schema import Message
 from robotd.hardware.wire.board import Received
-from robotd.sim.boards.pantilt import PanTiltBoard
-from robotd.sim.boards.rangefinder import RangefinderBoard
+from robotd.sim.boards.pantilt_board import PanTiltBoard
+from robotd.sim.boards.rangefinder_board import RangefinderBoard
 from robotd.sim.physics.plant import ShotAnswer
 from tests.unit.sim.boards.conftest import START_US, Host
 

@@ -27,10 +27,10 @@ from firmware_proto.common import (
     Stop,
 )
 from firmware_proto.dictionary import answers_for, dictionary_for
-from firmware_proto.drive import DriveReport, OdometryReport, SetVelocity
+from firmware_proto.drive_messages import DriveReport, OdometryReport, SetVelocity
 from firmware_proto.framing import Deframer, RawFrame, encode_frame
-from firmware_proto.pantilt import Aim, AimReadback, AimReport, Limits, Motion, ReadAim, ReadLimits
-from firmware_proto.rangefinder import SetLaser, Shoot, Shot, ShotStatus
+from firmware_proto.pantilt_messages import Aim, AimReadback, AimReport, Limits, Motion, ReadAim, ReadLimits
+from firmware_proto.rangefinder_messages import SetLaser, Shoot, Shot, ShotStatus
 from firmware_proto.schema import REPLY, Message
 from robotd.core.errors import RecordingError
 from robotd.hardware.link.tap import Direction

@@ -12,8 +12,8 @@ from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
 from robotd.sim.faults.cable import Cable
-from robotd.sim.faults.catalogue import FAULTS, meaning_of
 from robotd.sim.faults.fault import Fault
+from robotd.sim.faults.fault_words import FAULTS, meaning_of
 
 SENT = bytes(range(1, 200)) + b"\0" + b"frame two\0" + b"frame three\0"
 

@@ -1,10 +1,10 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.sim.hosting.board_clock import BoardClock, HeadOnClock, LaserOnClock
-from robotd.sim.physics.head import Head, HeadSettings
 from robotd.sim.physics.plant import ShotAnswer
+from robotd.sim.physics.steppers import Head, HeadSettings
 
 CLOCKS = st.builds(BoardClock, st.integers(0, 10**9), st.integers(-200_000, 200_000))
 TIMES = st.integers(0, 10**15)

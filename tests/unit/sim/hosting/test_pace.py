@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from firmware_proto.common import Arm, BoardKind, BoardState, Configure, Fault, Hello, Stop
-from firmware_proto.drive import OdometryReport, SetVelocity
+from firmware_proto.drive_messages import OdometryReport, SetVelocity
 from firmware_proto.framing import RawFrame, encode_frame
 from firmware_proto.schema import Message
 from robotd.core.clock import NS_PER_S
@@ -16,7 +16,7 @@ from robotd.hardware.devices.credible import LATE_FOR_S, LATE_S
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.board import BoardWire
-from robotd.sim.boards.drive import DriveBoard
+from robotd.sim.boards.drive_board import DriveBoard
 from robotd.sim.buildings.world import load_world
 from robotd.sim.hosting import pace
 from robotd.sim.hosting.board_clock import BoardClock

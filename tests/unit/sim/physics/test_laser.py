@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.core.pose import Pose2
 from robotd.sim.physics.body import Body, BodySettings
-from robotd.sim.physics.head import Head, HeadSettings
 from robotd.sim.physics.laser import Laser, LaserSettings
 from robotd.sim.physics.noise import NOISELESS, NoiseSettings, stream
 from robotd.sim.physics.plant import ShotAnswer
+from robotd.sim.physics.steppers import Head, HeadSettings
 from robotd.sim.physics.walls import Walls
 
 WALL_AT_3_M = Walls.of([((3.0, -20.0), (3.0, 20.0), math.inf)])

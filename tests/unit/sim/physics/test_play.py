@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from robotd.sim.physics.head import Head, HeadSettings
+from robotd.sim.physics.steppers import Head, HeadSettings
 
 PLAY_RAD = 0.1
 

@@ -1,6 +1,6 @@
 """An emulated Leica DISTO or Dimetix DLS-A: the older single letters on top of a laser's physics."""
 
-from robotd.sim.emulators.dimetix import DimetixEmulator
+from robotd.sim.emulators.emulated_dimetix import DimetixEmulator
 
 _LETTERS = {b"g": "g", b"o": "o", b"p": "c"}
 _TEMPERATURE = "40..06+00000253"

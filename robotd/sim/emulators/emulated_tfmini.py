@@ -3,7 +3,7 @@
 But for the first generation, which streams and hears nothing.
 """
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.hardware.wire.tfmini import FORMAT_CM, OUTPUT_OFF, OUTPUT_ON, RATE_0, TRIGGER, VERSION, Model, command
 from robotd.sim.emulators.speaking import Speaking
 from robotd.sim.physics.plant import LaserPlant, ShotAnswer

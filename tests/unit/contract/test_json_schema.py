@@ -8,8 +8,8 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from robotd.cli.main import main
+from robotd.contract.json_schema import wire_schema
 from robotd.contract.requests import REQUESTS
-from robotd.contract.schema import wire_schema
 from robotd.contract.topics import EVENTS
 from tests.unit.contract.messages import message, names
 

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator
 
 from firmware_proto.common import BoardKind, Result
-from firmware_proto.pantilt import Aim, AimReadback, AimReport, Limits, Motion, ReadAim, ReadLimits
+from firmware_proto.pantilt_messages import Aim, AimReadback, AimReport, Limits, Motion, ReadAim, ReadLimits
 from firmware_proto.schema import Message
-from robotd.sim.boards.board import Board, Handler, Outcome
+from robotd.sim.boards.emulated_board import Board, Handler, Outcome
 from robotd.sim.physics.plant import HeadPlant
 
 PER_RAD = 10_000

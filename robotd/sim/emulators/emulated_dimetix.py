@@ -2,7 +2,7 @@
 
 import re
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.sim.emulators.speaking import Speaking
 from robotd.sim.physics.plant import LaserPlant, ShotAnswer
 

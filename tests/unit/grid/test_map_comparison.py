@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robotd.core.grid_spec import GridSpec
-from robotd.grid.comparison import compare_maps
+from robotd.grid.map_comparison import compare_maps
 from robotd.grid.occupancy import OccupancyGrid
 
 specs = st.builds(

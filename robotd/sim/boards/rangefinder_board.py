@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from firmware_proto.common import BoardKind, Result
-from firmware_proto.rangefinder import SetLaser, Shoot, Shot, ShotStatus
+from firmware_proto.rangefinder_messages import SetLaser, Shoot, Shot, ShotStatus
 from firmware_proto.schema import Message
-from robotd.sim.boards.board import Board, Handler, Outcome
+from robotd.sim.boards.emulated_board import Board, Handler, Outcome
 from robotd.sim.physics.plant import LaserPlant, ShotAnswer
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from robotd.calibration.found import Calibration, Constants, Found, Procedure, Residuals, Step
 from robotd.calibration.heads import Heads
 from robotd.calibration.matching import match
-from robotd.calibration.stops import Stop, along, round_about, stop, way
+from robotd.calibration.two_way_stops import Stop, along, round_about, stop, way
 from robotd.contract.missions import DriveStraight
 
 _PLAY_MAX_RAD = 0.3

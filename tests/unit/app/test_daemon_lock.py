@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from robotd.app.lock import lock_directory
+from robotd.app.daemon_lock import lock_directory
 from robotd.core.errors import TransportError
 
 READER = """

@@ -3,7 +3,7 @@
 import itertools
 
 from robotd.contract.modes import Mode
-from robotd.mission.safety.modes import TRANSITIONS, Occasion, next_mode
+from robotd.mission.safety.mode_table import TRANSITIONS, Occasion, next_mode
 
 
 def test_stop_and_device_loss_are_never_refused_and_always_disarm() -> None:

@@ -1,6 +1,6 @@
 """An emulated LightWare LW20 on its ASCII line: it measures all the time, and answers with the newest."""
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.sim.emulators.speaking import SpeakingWhenAsked
 from robotd.sim.physics.plant import LaserPlant
 

@@ -14,9 +14,9 @@ from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
 from robotd.grid.settings import GridSettings
+from robotd.head.decided import stop_laid
 from robotd.head.held import Held
-from robotd.head.placing import MapWithStop, with_stop
-from robotd.head.telling import stop_laid
+from robotd.head.stop_placing import MapWithStop, with_stop
 from robotd.localization.settings import LocalizationSettings
 from robotd.slam.local_map import LocalMaps
 from robotd.slam.survey import Decision, Reconciled, Survey

@@ -2,7 +2,7 @@
 
 import math
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.hardware.wire.scip import OK, sum_of
 from robotd.sim.emulators.speaking import Speaking
 from robotd.sim.physics.plant import ScannerPlant

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from robotd.app.health import Notifier, feed_watchdog, watchdog_s
+from robotd.app.watchdog import Notifier, feed_watchdog, watchdog_s
 from robotd.core.clock import VirtualClockLoop
 
 

@@ -5,7 +5,7 @@ import argparse
 from robotd.cli.exit_codes import OK
 from robotd.cli.show.terminal import print_json
 from robotd.cli.verb import Verb
-from robotd.contract.schema import wire_schema
+from robotd.contract.json_schema import wire_schema
 
 
 def _schema(_: argparse.Namespace) -> int:

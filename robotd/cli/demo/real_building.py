@@ -12,11 +12,11 @@ from robotd.cli.demo.room import fresh
 from robotd.cli.demo.true_pose import true_pose
 from robotd.cli.exit_codes import OK
 from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
-from robotd.cli.odometry import odometry_argument
 from robotd.cli.outputs import DEMO, output_argument, write
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import positive, whole
 from robotd.cli.show.terminal import bold
+from robotd.cli.wheels import odometry_argument
 from robotd.config import Config
 from robotd.contract.estimate import PoseState
 from robotd.contract.events import MapChanged

@@ -2,7 +2,7 @@
 
 import struct
 
-from firmware_proto.rangefinder import ShotStatus
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.hardware.wire.lwnx import DISTANCE, LASER_FIRING, NAME, LwnxWire, Packet, encoded
 from robotd.sim.emulators.speaking import SpeakingWhenAsked
 from robotd.sim.physics.plant import LaserPlant

@@ -4,7 +4,7 @@ import asyncio
 import socket
 
 from robotd.children.channel import ROOM_BYTES, HungUp, Inbox, Outgoing, Part
-from robotd.children.framing import LONGEST, Unframer, header
+from robotd.children.message_framing import LONGEST, Unframer, header
 from robotd.core.errors import ChildError, ProtocolError
 
 _READ_BYTES = 2**18

@@ -4,7 +4,7 @@ from typing import TypeVar
 
 from robotd.contract import events
 from robotd.head.jobs import StopLaid
-from robotd.head.placing import MapWithStop
+from robotd.head.stop_placing import MapWithStop
 from robotd.localization.outcome import Outcome
 from robotd.slam.loops import Loop
 from robotd.slam.survey import LoopClosed, LoopHeld, Reconciled, StopPlaced

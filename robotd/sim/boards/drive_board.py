@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from firmware_proto.common import BoardKind, Fault, Result
-from firmware_proto.drive import TTL_LIMIT_MS, DriveReport, OdometryReport, SetVelocity
+from firmware_proto.drive_messages import TTL_LIMIT_MS, DriveReport, OdometryReport, SetVelocity
 from firmware_proto.schema import Message
-from robotd.sim.boards.board import Board, Outcome
+from robotd.sim.boards.emulated_board import Board, Outcome
 from robotd.sim.physics.plant import DrivePlant
 
 WATCH_US = 10_000

@@ -7,7 +7,7 @@ import pytest
 
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.interop.carmen import PlacedSweep, encode_carmen
+from robotd.interop.carmen_writer import PlacedSweep, encode_carmen
 from robotd.logs.carmen import parse_carmen
 
 POSE = Pose2(1.25, -2.5, 0.75)

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robotd.sim.physics.head import Head, HeadSettings
+from robotd.sim.physics.steppers import Head, HeadSettings
 
 STEP_RAD = HeadSettings().step_rad
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from robotd.calibration.found import Calibration, Constants, Found, Procedure, Residuals, Seen, Step
 from robotd.calibration.scale import Scale, fit_scale
-from robotd.calibration.stops import Stop, Way, along, round_about, stop, way
+from robotd.calibration.two_way_stops import Stop, Way, along, round_about, stop, way
 from robotd.contract.missions import DriveStraight, Turn
 from robotd.core.pose import Pose2
 

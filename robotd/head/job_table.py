@@ -8,6 +8,7 @@ from robotd.core.grid_bytes import unpacked_cells
 from robotd.grid.latest import HIT
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
+from robotd.head.decided import stop_laid
 from robotd.head.desk import Desk
 from robotd.head.held import Held
 from robotd.head.job import A, Done, Job
@@ -32,8 +33,7 @@ from robotd.head.jobs import (
     TakeMap,
     TakeReadings,
 )
-from robotd.head.placing import with_stop
-from robotd.head.telling import stop_laid
+from robotd.head.stop_placing import with_stop
 from robotd.maps.grid_files import content_of, map_of
 from robotd.maps.packed_content import PackedContent
 from robotd.maps.stops_file import decode_stops

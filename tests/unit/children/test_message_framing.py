@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robotd.children.framing import Unframer, header
+from robotd.children.message_framing import Unframer, header
 from robotd.core.errors import RemoteProtocolError
 
 
