@@ -19,7 +19,7 @@ from robotd.core.text import printable
 from robotd.hardware.devices.catalogue import request_words
 from robotd.head.cores import cores
 from robotd.head.desk import Desk
-from robotd.head.near import InProcess
+from robotd.head.near import HeadAtHand
 from robotd.mission.noted import check_noted
 from robotd.mission.safety.causes import check_cause
 from robotd.recording.comparison import Difference, compare, results_digest
@@ -163,7 +163,7 @@ async def _play(
     # Before the daemon is made: a silence asks when it begins whether it is led.
     attention().are_led = recording.notes_silences
     connects = {device: playback.line(device).connect for device in DEVICES}
-    head = InProcess(Desk(head_settings(config), threads=cores()), playback.compute)
+    head = HeadAtHand(Desk(head_settings(config), threads=cores()), playback.compute)
     # The store is asked by nobody: what clients only look at was not noted.
     daemon = compose(config, connects, head, playback.compute, journal, leases_end_by_causes=recording.notes_causes)
     async with asyncio.TaskGroup() as group:

@@ -9,9 +9,9 @@ import math
 import numpy as np
 
 from robotd.calibration.found import Calibration, Constants, Found, Procedure, Residuals, Step
-from robotd.calibration.heads import Heads
+from robotd.calibration.heads import SweepHeads
 from robotd.calibration.matching import match
-from robotd.calibration.two_way_stops import Stop, along, round_about, stop, way
+from robotd.calibration.two_way_stops import TwoWayStop, along, round_about, stop, way
 from robotd.contract.missions import DriveStraight
 
 _PLAY_MAX_RAD = 0.3
@@ -44,7 +44,7 @@ def calibrate_head(now: Constants, distance_m: float) -> Procedure:
     )
 
 
-def play(counter_clockwise: Heads, clockwise: Heads) -> tuple[float, float]:
+def play(counter_clockwise: SweepHeads, clockwise: SweepHeads) -> tuple[float, float]:
     """Return how far the head lags behind its motor from one sense to the other [rad], and its error.
 
     A sweep that goes counter-clockwise tells bearings too large by half of the play, the other as much too small.
@@ -65,7 +65,7 @@ def combined(angles: list[tuple[float, float]]) -> tuple[float, float]:
     return mean, math.sqrt(max(1.0, disagreement) / float(weights.sum()))
 
 
-def _ahead(before: Stop, after: Stop, leg_m: float) -> tuple[float, float]:
+def _ahead(before: TwoWayStop, after: TwoWayStop, leg_m: float) -> tuple[float, float]:
     """Return in which direction a leg led, as the head sees it, and its error [rad]."""
     led = way(before, after, along(leg_m))
     x_m, y_m = math.copysign(1.0, leg_m) * led.pose.x_m, math.copysign(1.0, leg_m) * led.pose.y_m

@@ -19,7 +19,7 @@ FEWEST_HEADS = 30
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Heads:
+class SweepHeads:
     """Where the readings of a sweep met something, in the robot frame of that sweep."""
 
     at_m: NDArray[np.float64]
@@ -36,7 +36,7 @@ class Heads:
     @classmethod
     def of(
         cls, bearings_rad: NDArray[np.float64], ranges_m: NDArray[np.float64], origins_m: NDArray[np.float64]
-    ) -> "Heads":
+    ) -> "SweepHeads":
         """Take hits: ``float64[n]`` bearings from the heading, ranges, and where the beams start, ``float64[n, 2]``.
 
         Raises:
@@ -50,7 +50,7 @@ class Heads:
         return cls(at_m, ahead, *_walls(at_m))
 
     @classmethod
-    def of_sweep(cls, sweep: Sweep) -> "Heads":
+    def of_sweep(cls, sweep: Sweep) -> "SweepHeads":
         """Take the hits of a sweep; CalibrationError if there are too few."""
         hits = [reading for reading in sweep.readings if reading.status is ReadingStatus.OK]
         return cls.of(

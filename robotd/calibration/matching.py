@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.calibration.heads import FEWEST_HEADS, Heads
+from robotd.calibration.heads import FEWEST_HEADS, SweepHeads
 from robotd.core.errors import CalibrationError
 from robotd.core.pose import Pose2
 
@@ -58,7 +58,7 @@ class Match:
         return float(np.sqrt((self.residuals_m**2).mean()))
 
 
-def match(reference: Heads, moved: Heads, starts: Sequence[Pose2], *, at_one_place: bool = False) -> Match:
+def match(reference: SweepHeads, moved: SweepHeads, starts: Sequence[Pose2], *, at_one_place: bool = False) -> Match:
     """Return where ``moved`` was taken in the frame of ``reference``, begun from the best of some starts.
 
     From two sweeps ``at_one_place`` no bias can be told, and none is sought.
@@ -82,19 +82,21 @@ def _laid(at_m: NDArray[np.float64], pose: NDArray[np.float64]) -> NDArray[np.fl
     return laid
 
 
-def _nearest(reference: Heads, laid: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+def _nearest(reference: SweepHeads, laid: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
     # The squares of the distances, less that of each of ``laid``: which is nearest does not depend on it.
     nearest = ((reference.at_m**2).sum(axis=1) - 2.0 * laid @ reference.at_m.T).argmin(axis=1)
     return nearest, np.linalg.norm(laid - reference.at_m[nearest], axis=1)
 
 
-def _misfit(reference: Heads, moved: Heads, pose: NDArray[np.float64]) -> float:
+def _misfit(reference: SweepHeads, moved: SweepHeads, pose: NDArray[np.float64]) -> float:
     """Return how badly a pose fits: mean distance of the heads, of which none counts for more than the widest gate."""
     _, apart_m = _nearest(reference, _laid(moved.at_m[::_SKIPPED], pose))
     return float(np.minimum(apart_m, _GATES_M[0]).mean())
 
 
-def _descend(reference: Heads, moved: Heads, pose: NDArray[np.float64], bias_weight: float) -> NDArray[np.float64]:
+def _descend(
+    reference: SweepHeads, moved: SweepHeads, pose: NDArray[np.float64], bias_weight: float
+) -> NDArray[np.float64]:
     """Return x, y, heading and bias that fit best near a pose."""
     unknown = np.array((*pose, 0.0))
     for gate_m in _GATES_M:
@@ -108,7 +110,7 @@ def _descend(reference: Heads, moved: Heads, pose: NDArray[np.float64], bias_wei
 
 
 def _system(
-    reference: Heads, moved: Heads, unknown: NDArray[np.float64], gate_m: float
+    reference: SweepHeads, moved: SweepHeads, unknown: NDArray[np.float64], gate_m: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the distances from the walls within the gate, and how they change with the unknown: ``float64[k, 4]``.
 
@@ -144,7 +146,7 @@ class _Pairs(NamedTuple):
 
 
 def _held_against(
-    walls: Heads, laid: NDArray[np.float64], ahead: NDArray[np.float64], *, bias_m: float, gate_m: float
+    walls: SweepHeads, laid: NDArray[np.float64], ahead: NDArray[np.float64], *, bias_m: float, gate_m: float
 ) -> tuple[_Pairs, NDArray[np.float64]]:
     """Return which heads lie on which walls, and how far off; what lies off farther than the gate is left out."""
     nearest, apart_m = _nearest(walls, laid)
@@ -154,7 +156,7 @@ def _held_against(
     return _Pairs(used, nearest[used]), off_m[used]
 
 
-def _judged(reference: Heads, moved: Heads, unknown: NDArray[np.float64], bias_weight: float) -> Match:
+def _judged(reference: SweepHeads, moved: SweepHeads, unknown: NDArray[np.float64], bias_weight: float) -> Match:
     jacobian, off_m = _system(reference, moved, unknown, _GATES_M[-1])
     _, near_m = _system(reference, moved, unknown, _GATES_M[0])
     share = len(off_m) / max(1, len(near_m))

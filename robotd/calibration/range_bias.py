@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from robotd.calibration.found import Calibration, Constants, Found, Procedure, Residuals, Step
-from robotd.calibration.two_way_stops import Stop, along, stop, way
+from robotd.calibration.two_way_stops import TwoWayStop, along, stop, way
 from robotd.calibration.wall_bias import WallSeen, fit_wall, fit_wall_bias
 from robotd.contract.missions import DriveStraight
 from robotd.core.reading import ReadingStatus, Sweep
@@ -43,7 +43,7 @@ def leg_for(wall_m: float) -> float:
     return nearer_m if nearer_m >= _LEAST_LEG_M else -_NEAREST_M
 
 
-def _walls(here: Stop, away_m: float, error_m: float) -> list[WallSeen]:
+def _walls(here: TwoWayStop, away_m: float, error_m: float) -> list[WallSeen]:
     return [_seen(sweep, away_m, error_m) for sweep in here.sweeps]
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robotd.calibration.found import Seen, Step, counted, swept
-from robotd.calibration.heads import Heads
+from robotd.calibration.heads import SweepHeads
 from robotd.calibration.matching import Match, match
 from robotd.contract.missions import Scan
 from robotd.core.errors import CalibrationError
@@ -19,12 +19,12 @@ _TRIES = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class TwoWayStop:
     """What was seen where the robot stands."""
 
     counts: tuple[int, int]
-    counter_clockwise: Heads
-    clockwise: Heads
+    counter_clockwise: SweepHeads
+    clockwise: SweepHeads
     sweeps: tuple[Sweep, ...]
     """The same as they were taken."""
 
@@ -40,7 +40,7 @@ class Way:
     matches: tuple[Match, ...]
 
 
-def stop(words: str) -> Generator[Step, Seen, Stop]:
+def stop(words: str) -> Generator[Step, Seen, TwoWayStop]:
     """Look round once each way; the base stands still."""
     sweeps: dict[bool, Sweep] = {}
     for _ in range(_TRIES):
@@ -48,12 +48,12 @@ def stop(words: str) -> Generator[Step, Seen, Stop]:
         sweep = swept(seen)
         sweeps[sweep.is_clockwise] = sweep
         if len(sweeps) == 2:
-            heads = Heads.of_sweep(sweeps[False]), Heads.of_sweep(sweeps[True])
-            return Stop(counted(seen), *heads, tuple(sweeps.values()))
+            heads = SweepHeads.of_sweep(sweeps[False]), SweepHeads.of_sweep(sweeps[True])
+            return TwoWayStop(counted(seen), *heads, tuple(sweeps.values()))
     raise CalibrationError("the head swept only one way round")
 
 
-def way(before: Stop, after: Stop, starts: Sequence[Pose2]) -> Way:
+def way(before: TwoWayStop, after: TwoWayStop, starts: Sequence[Pose2]) -> Way:
     """Match each sweep with the one that went the same way round, and take the middle."""
     matches = (
         match(before.counter_clockwise, after.counter_clockwise, starts),

@@ -7,7 +7,7 @@ import numpy as np
 
 from robotd.calibration.found import Calibration, Constants, Found, Procedure, Residuals, Seen, Step
 from robotd.calibration.scale import Scale, fit_scale
-from robotd.calibration.two_way_stops import Stop, Way, along, round_about, stop, way
+from robotd.calibration.two_way_stops import TwoWayStop, Way, along, round_about, stop, way
 from robotd.contract.missions import DriveStraight, Turn
 from robotd.core.pose import Pose2
 
@@ -55,19 +55,19 @@ def calibrate_heading(now: Constants) -> Procedure:
 class _Led:
     """A leg: what was counted, and where it led."""
 
-    def __init__(self, before: Stop, after: Stop, led: Way) -> None:
+    def __init__(self, before: TwoWayStop, after: TwoWayStop, led: Way) -> None:
         self.counts = (after.counts[0] - before.counts[0], after.counts[1] - before.counts[1])
         self.way = led
         self.pose = led.pose
 
 
-def _leg(here: Stop, leg_m: float) -> Generator[Step, Seen, tuple[_Led, Stop]]:
+def _leg(here: TwoWayStop, leg_m: float) -> Generator[Step, Seen, tuple[_Led, TwoWayStop]]:
     yield Step(DriveStraight(leg_m), f"drive {abs(leg_m):g} m {'ahead' if leg_m > 0.0 else 'back'}")
     there = yield from stop("look round")
     return _Led(here, there, way(here, there, along(leg_m))), there
 
 
-def _turn(here: Stop, angle_rad: float, starts: list[Pose2]) -> Generator[Step, Seen, tuple[_Led, Stop]]:
+def _turn(here: TwoWayStop, angle_rad: float, starts: list[Pose2]) -> Generator[Step, Seen, tuple[_Led, TwoWayStop]]:
     sense = "to the left" if angle_rad > 0.0 else "to the right"
     yield Step(Turn(angle_rad), f"turn {abs(math.degrees(angle_rad)):.0f} degrees {sense}")
     there = yield from stop("look round")

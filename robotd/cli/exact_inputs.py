@@ -19,7 +19,7 @@ from robotd.maps.version_files import MANIFEST
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class ExactQuestion:
     """A map, and the readings as they are for each heading."""
 
     obstacles: PlanarSet
@@ -28,11 +28,11 @@ class Question:
     arithmetic: Arithmetic
 
 
-def question(arguments: argparse.Namespace, arithmetic: Arithmetic) -> Question:
+def question(arguments: argparse.Namespace, arithmetic: Arithmetic) -> ExactQuestion:
     """Read what the command line names."""
     obstacles, beams = read_map(arguments.map, arithmetic), read_beams(arguments.readings, arithmetic)
     headings_deg = headings(arguments.heading_deg, arguments.headings, arguments.within_deg)
-    return Question(obstacles, headings_deg, theta_slices(beams, map(math.radians, headings_deg)), arithmetic)
+    return ExactQuestion(obstacles, headings_deg, theta_slices(beams, map(math.radians, headings_deg)), arithmetic)
 
 
 def headings(prior_deg: float, count: int, within_deg: float | None) -> list[float]:

@@ -20,7 +20,7 @@ from robotd.core.errors import RobotdError
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class MissionOutcome:
     """What came of a mission that was done."""
 
     document: Any
@@ -30,14 +30,14 @@ class Outcome:
     code: int = OK
 
 
-Conclude = Callable[[list[MissionEvent]], Outcome]
+Conclude = Callable[[list[MissionEvent]], MissionOutcome]
 """Tells from all that happened what came of it; progress within sweeps is left out."""
 
 
-def last_word(events: list[MissionEvent]) -> Outcome:
+def last_word(events: list[MissionEvent]) -> MissionOutcome:
     """Conclude with what the mission said at its end."""
     last = next(event for event in reversed(events) if isinstance(event, MissionProgress))
-    return Outcome(as_json(last), last.message)
+    return MissionOutcome(as_json(last), last.message)
 
 
 def carry_out(arguments: argparse.Namespace, mission: Mission, conclude: Conclude = last_word) -> int:

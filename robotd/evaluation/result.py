@@ -28,7 +28,7 @@ class CaseKey:
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class CaseResult:
     """One case, answered."""
 
     key: CaseKey
@@ -54,7 +54,7 @@ class Result:
     """Time until the answer was there."""
 
     @classmethod
-    def of(cls, key: CaseKey, query: Query, estimate: PoseEstimate, *, cpu_s: float, wall_s: float) -> "Result":
+    def of(cls, key: CaseKey, query: Query, estimate: PoseEstimate, *, cpu_s: float, wall_s: float) -> "CaseResult":
         """Judge an estimate."""
         truth, first = query.truth, estimate.regions[0] if estimate.regions else None
         return cls(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from robotd.evaluation.division import Query
 from robotd.evaluation.recorded import Reach, readings_of
-from robotd.evaluation.result import CaseKey, Result
+from robotd.evaluation.result import CaseKey, CaseResult
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement
@@ -20,12 +20,12 @@ from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 
-Map = Callable[["Job", Iterable[Query]], Iterable[Result]]
+Map = Callable[["Seeking", Iterable[Query]], Iterable[CaseResult]]
 """What a scheduler offers; in the order of the queries or in any other."""
 
 
 @dataclass(frozen=True, slots=True)
-class JobSettings:
+class SeekingSettings:
     """Everything that an answer depends on but the log and its map."""
 
     reach: Reach
@@ -36,12 +36,12 @@ class JobSettings:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Job:
+class Seeking:
     """All cases of one log: a query in, a result out."""
 
     log: str
     grid: OccupancyGrid
-    settings: JobSettings
+    settings: SeekingSettings
     seed: int
     commit: str
     protocol: str
@@ -50,14 +50,14 @@ class Job:
 
     @classmethod
     def of(
-        cls, log: str, grid: OccupancyGrid, settings: JobSettings, *, seed: int, commit: str, protocol: str
-    ) -> "Job":
+        cls, log: str, grid: OccupancyGrid, settings: SeekingSettings, *, seed: int, commit: str, protocol: str
+    ) -> "Seeking":
         """Return the job of a log."""
         # How many threads share the work changes no answer.
         told = f"{settings.reach} {settings.localization} {settings.judgement} {settings.error_model} {grid.digest()}"
         return cls(log, grid, settings, seed, commit, protocol, hashlib.sha256(told.encode()).hexdigest()[:16])
 
-    def __call__(self, query: Query) -> Result:
+    def __call__(self, query: Query) -> CaseResult:
         """Seek a scan, nothing known."""
         ready_map, settings = _ready_map_of(self), self.settings
         readings = readings_of(query.scan, settings.reach)
@@ -71,10 +71,10 @@ class Job:
         estimate = localizer.estimate(0, final=True)
         cpu_s, wall_s = time.process_time() - cpu_s, time.perf_counter() - wall_s
         key = CaseKey(self.log, query.number, self.seed, self.digest, self.commit, self.protocol)
-        return Result.of(key, query, estimate, cpu_s=cpu_s, wall_s=wall_s)
+        return CaseResult.of(key, query, estimate, cpu_s=cpu_s, wall_s=wall_s)
 
 
-def run(job: Job, queries: Iterable[Query], map_: Map = map) -> Iterator[Result]:
+def run(job: Seeking, queries: Iterable[Query], map_: Map = map) -> Iterator[CaseResult]:
     """Yield the results as the scheduler hands them over; nothing of them is kept."""
     yield from map_(job, queries)
 
@@ -83,7 +83,7 @@ _ready: dict[str, ReadyMap] = {}
 """The latest job's map by the job's digest: a map is made ready once a process, not once a batch."""
 
 
-def _ready_map_of(job: Job) -> ReadyMap:
+def _ready_map_of(job: Seeking) -> ReadyMap:
     if job.digest not in _ready:
         settings = job.settings
         _ready.clear()  # a process that works through a thousand logs keeps one map

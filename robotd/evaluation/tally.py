@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from robotd.evaluation.quantiles import Quantiles
-from robotd.evaluation.result import Result
+from robotd.evaluation.result import CaseResult
 from robotd.evaluation.verdict import CaseVerdict
 
 
@@ -50,7 +50,7 @@ class Tally:
         """How many there are."""
         return self.verdicts.total()
 
-    def add(self, result: Result) -> None:
+    def add(self, result: CaseResult) -> None:
         """Count one more."""
         self.verdicts[result.verdict] += 1
         self.ambiguous_with_truth += result.verdict is CaseVerdict.AMBIGUOUS and result.has_truth

@@ -35,7 +35,7 @@ class Vertex:
 
 
 @dataclass(slots=True, eq=False)  # not frozen: a sweep learns the end, and which faces are one, only later
-class Edge:
+class BorderEdge:
     """A piece of a support between two vertices that nothing else meets."""
 
     support: Support
@@ -53,7 +53,7 @@ class Arrangement:
     """Vertices in the order of the sweep, edges, faces; face 0 reaches to infinity."""
 
     vertices: tuple[Vertex, ...]
-    edges: tuple[Edge, ...]
+    edges: tuple[BorderEdge, ...]
     faces: tuple[Mask, ...]
 
     @property
@@ -74,7 +74,7 @@ class Arrangement:
         return _joined(self, kept, [belongs(vertex.mask) for vertex in self.vertices], of_face)
 
 
-def _border(arrangement: Arrangement, edge: Edge, of_face: list[bool], *, on: bool) -> Border:
+def _border(arrangement: Arrangement, edge: BorderEdge, of_face: list[bool], *, on: bool) -> Border:
     start, end = arrangement.vertices[edge.start].point, arrangement.vertices[edge.end].point
     return Border(edge.support, start, end, of_face[edge.right], on, of_face[edge.left])
 

@@ -19,7 +19,7 @@ from robotd.exact.rationals import Rational
 from robotd.exact.surds import Number, arithmetic_of, compare, sign, sqrt
 
 
-class Outcome(enum.StrEnum):
+class CastOutcome(enum.StrEnum):
     """What becomes of a beam."""
 
     HOLDS = "holds"
@@ -33,7 +33,7 @@ class Outcome(enum.StrEnum):
 class CastVerdict:
     """Whether a reading holds at a point, and how far it is from holding if not."""
 
-    outcome: Outcome
+    outcome: CastOutcome
     free_length: Number | None = None
     """For a blocked beam: how far it runs before it enters an obstacle."""
     nearest: Number | None = None
@@ -45,20 +45,20 @@ def cast(obstacles: PlanarSet, beam: Beam, eps: Rational, pose: Point) -> CastVe
     entry = _entry(obstacles, beam, pose)
     # Less, not equal: a body does not hold its end, so it may touch an obstacle there (E is open).
     if entry is not None and compare(entry, beam.body_share(eps)) < 0:
-        return CastVerdict(Outcome.BLOCKED, free_length=entry * beam.length)
+        return CastVerdict(CastOutcome.BLOCKED, free_length=entry * beam.length)
     if contains(interior(obstacles), pose):  # a beam without body begins somewhere all the same
-        return CastVerdict(Outcome.BLOCKED, free_length=arithmetic_of(beam.dx)(0))
+        return CastVerdict(CastOutcome.BLOCKED, free_length=arithmetic_of(beam.dx)(0))
     if beam.is_hit:
         end = pose.moved(beam.dx, beam.dy)
         square = distance_square(obstacles, end)
         if compare(square, eps * eps) > 0:
-            return CastVerdict(Outcome.ENDS_IN_THE_OPEN, nearest=sqrt(square))
-    return CastVerdict(Outcome.HOLDS)
+            return CastVerdict(CastOutcome.ENDS_IN_THE_OPEN, nearest=sqrt(square))
+    return CastVerdict(CastOutcome.HOLDS)
 
 
 def rank_at(obstacles: PlanarSet, beams: Iterable[Beam], eps: Rational, pose: Point) -> int:
     """Return rnk(M, Z, p) of one point."""
-    return sum(cast(obstacles, beam, eps, pose).outcome is Outcome.HOLDS for beam in beams)
+    return sum(cast(obstacles, beam, eps, pose).outcome is CastOutcome.HOLDS for beam in beams)
 
 
 def distance_square(obstacles: PlanarSet, point: Point) -> Number:

@@ -6,7 +6,7 @@ from functools import cmp_to_key
 from robotd.exact.planar import Border, PlanarSet
 from robotd.exact.points import Point
 from robotd.exact.rationals import rational
-from robotd.exact.supports import Line, order_after
+from robotd.exact.supports import SupportLine, order_after
 from robotd.exact.surds import Number, arithmetic_of, compare
 
 
@@ -33,7 +33,7 @@ def below(planar: PlanarSet, point: Point) -> bool:
 def middle(border: Border) -> Point:
     """Return a point in the middle of a border, or near it and written more simply."""
     start, end = border.start, border.end
-    if isinstance(border.support, Line) and border.support.b == 0:
+    if isinstance(border.support, SupportLine) and border.support.b == 0:
         return Point(start.x, _between(start.y, end.y))
     x = _between(start.x, end.x)
     return Point(x, border.support.height(x))
@@ -66,5 +66,5 @@ def _order_at(x: Number) -> Callable[[Border, Border], int]:
 
 def _height(border: Border, x: Number) -> Number:
     """Return where a border meets a vertical line: at its end there, if it is vertical itself."""
-    vertical = isinstance(border.support, Line) and border.support.b == 0
+    vertical = isinstance(border.support, SupportLine) and border.support.b == 0
     return border.end.y if vertical else border.support.height(x)

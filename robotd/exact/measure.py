@@ -3,7 +3,7 @@
 import math
 
 from robotd.core.rectangle import Rectangle
-from robotd.exact.arrangement import Arrangement, Edge
+from robotd.exact.arrangement import Arrangement, BorderEdge
 from robotd.exact.points import Point
 from robotd.exact.supports import HalfCircle, Support
 
@@ -32,7 +32,7 @@ def extent(support: Support, start: Place, end: Place) -> Rectangle:
     return Rectangle(min(x, end_x), south, max(x, end_x), north)
 
 
-def edge_length(arrangement: Arrangement, edge: Edge) -> float:
+def edge_length(arrangement: Arrangement, edge: BorderEdge) -> float:
     """Return the length of an edge."""
     (x, y), (end_x, end_y) = ends_of(arrangement, edge)
     if isinstance(edge.support, HalfCircle):
@@ -59,7 +59,7 @@ def angle_at(half: HalfCircle, x: float, y: float) -> float:
     return angle if half.upper else -angle
 
 
-def ends_of(arrangement: Arrangement, edge: Edge) -> tuple[Place, Place]:
+def ends_of(arrangement: Arrangement, edge: BorderEdge) -> tuple[Place, Place]:
     """Return the ends of an edge, nearly."""
     return arrangement.vertices[edge.start].point.floats, arrangement.vertices[edge.end].point.floats
 

@@ -15,7 +15,7 @@ from robotd.exact.planar import Border, PlanarSet, Spot, disk, edge_along, line_
 from robotd.exact.points import Point
 from robotd.exact.polygons import interior
 from robotd.exact.rationals import Rational
-from robotd.exact.supports import Line
+from robotd.exact.supports import SupportLine
 from robotd.exact.surds import Number, sign, sqrt
 from robotd.exact.sweep import arrange
 
@@ -131,13 +131,13 @@ def _parallelogram(near: Border, offset: Vector, way: Way, *, closed: bool) -> P
     # Sides run along known rational directions: drawn through computed ends, a slope could be irrational (decision 14).
     line, one, two = line_of(near), near.start, near.end
     three, four = two.moved(*offset), one.moved(*offset)
-    far = Line(line.a, line.b, line.c + (line.a * offset[0] + line.b * offset[1]))
+    far = SupportLine(line.a, line.b, line.c + (line.a * offset[0] + line.b * offset[1]))
     left = sign(_cross(line.direction(one), offset)) > 0
     sides = (
         edge_along(line, one, two, on=True, left=left, right=not left),
-        edge_along(Line.through(two, *way), two, three, on=closed, left=left, right=not left),
+        edge_along(SupportLine.through(two, *way), two, three, on=closed, left=left, right=not left),
         edge_along(far, three, four, on=closed, left=left, right=not left),
-        edge_along(Line.through(one, *way), four, one, on=closed, left=left, right=not left),
+        edge_along(SupportLine.through(one, *way), four, one, on=closed, left=left, right=not left),
     )
     return PlanarSet(sides)
 
@@ -145,5 +145,5 @@ def _parallelogram(near: Border, offset: Vector, way: Way, *, closed: bool) -> P
 def _swept_corner(at: Point, beam: Way, body: Vector) -> PlanarSet:
     """Return the segment that a corner sweeps back along a body, without its far end."""
     end = at.moved(-body[0], -body[1])
-    side = edge_along(Line.through(at, *beam), at, end, on=True, left=False, right=False)
+    side = edge_along(SupportLine.through(at, *beam), at, end, on=True, left=False, right=False)
     return PlanarSet((side,), (Spot(end, on=False),))

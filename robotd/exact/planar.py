@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from robotd.exact.points import Point
 from robotd.exact.rationals import Rational
-from robotd.exact.supports import HalfCircle, Line, Support
+from robotd.exact.supports import HalfCircle, Support, SupportLine
 from robotd.exact.surds import Number, Surd, sqrt
 
 
@@ -70,20 +70,20 @@ def segment(start: Point, end: Point, *, on: bool, left: bool, right: bool) -> B
     return Border(_line_through(start, end), start, end, right, on, left)
 
 
-def edge_along(line: Line, start: Point, end: Point, *, on: bool, left: bool, right: bool) -> Border:
+def edge_along(line: SupportLine, start: Point, end: Point, *, on: bool, left: bool, right: bool) -> Border:
     """Return a border on a known line, from a point of it to another."""
     if end < start:
         start, end, left, right = end, start, right, left
     return Border(line, start, end, right, on, left)
 
 
-def line_of(border: Border) -> Line:
+def line_of(border: Border) -> SupportLine:
     """Return the line of a straight border.
 
     Raises:
         ValueError: it is an arc.
     """
-    if isinstance(border.support, Line):
+    if isinstance(border.support, SupportLine):
         return border.support
     raise ValueError("an arc has no line")
 
@@ -118,11 +118,11 @@ def length(dx: Number, dy: Number) -> Number:
     return sqrt(dx * dx + dy * dy)
 
 
-def _line_through(start: Point, end: Point) -> Line:
+def _line_through(start: Point, end: Point) -> SupportLine:
     dx, dy = _rational(end.x - start.x), _rational(end.y - start.y)
     if dx == dy == 0:
         raise ValueError(f"a border needs two ends, got {start} twice")
-    return Line.through(start, dx, dy)
+    return SupportLine.through(start, dx, dy)
 
 
 def _rational(number: Number) -> Rational:

@@ -15,7 +15,7 @@ from robotd.exact.measure import edge_length, ends_of, extent, face_areas
 
 
 @dataclass(frozen=True, slots=True)
-class Region:
+class ExactRegion:
     """A connected set of poses."""
 
     best_rank: int
@@ -38,7 +38,7 @@ class Region:
         return (west + east) / 2.0, (south + north) / 2.0
 
 
-def regions(arrangement: Arrangement, belongs: Callable[[Mask], bool]) -> list[Region]:
+def regions(arrangement: Arrangement, belongs: Callable[[Mask], bool]) -> list[ExactRegion]:
     """Return the connected regions of all cells whose masks belong: best rank first, then largest, then from the west.
 
     Two cells are connected where one lies on the border of the other and both belong. Time is nearly linear in the
@@ -110,14 +110,14 @@ def _borders_of_faces(arrangement: Arrangement) -> list[list[int]]:
     return around
 
 
-def _region(arrangement: Arrangement, areas: list[float], around: list[list[int]], cells: _Cells) -> Region:
+def _region(arrangement: Arrangement, areas: list[float], around: list[list[int]], cells: _Cells) -> ExactRegion:
     faces = set(cells.faces)
     edges = [arrangement.edges[number] for number in cells.edges]
     lines = [edge for edge in edges if edge.left not in faces and edge.right not in faces]
     masks = [arrangement.faces[face] for face in cells.faces] + [edge.mask for edge in edges]
     masks += [arrangement.vertices[number].mask for number in cells.vertices]
     best = max(masks, key=int.bit_count)
-    return Region(
+    return ExactRegion(
         best.bit_count(),
         "area" if faces else "segment" if lines else "point",
         sum(areas[face] for face in cells.faces),

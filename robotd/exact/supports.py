@@ -12,7 +12,7 @@ _ROUNDING = 2.0**-49
 """More than the relative error of the few float operations of one predicate."""
 
 
-class Line:
+class SupportLine:
     """``a x + b y = c`` with b = 1, or with a = -1 and b = 0 if it is vertical; a is rational, c may have roots."""
 
     __slots__ = ("_floats", "a", "b", "c")
@@ -22,13 +22,13 @@ class Line:
         self._floats = (*approximation(a), *approximation(c))
 
     @classmethod
-    def normalized(cls, a: Rational, b: Rational, c: Number) -> "Line":
+    def normalized(cls, a: Rational, b: Rational, c: Number) -> "SupportLine":
         """Return the line ``a x + b y = c``."""
         # b / b, not 1: a one of the same arithmetic as all the rest.
         return cls(a / b, b / b, c / b) if b != 0 else cls(-a / a, b, -c / a)
 
     @classmethod
-    def through(cls, point: Point, dx: Rational, dy: Rational) -> "Line":
+    def through(cls, point: Point, dx: Rational, dy: Rational) -> "SupportLine":
         """Return the line through a point in a direction."""
         return cls.normalized(-dy, dx, point.y * dx - point.x * dy)
 
@@ -56,9 +56,9 @@ class Line:
         """Return y at an x; the line must not be vertical."""
         return self.c - self.a * x
 
-    def moved(self, dx: Rational, dy: Rational) -> "Line":
+    def moved(self, dx: Rational, dy: Rational) -> "SupportLine":
         """Return the line this far away."""
-        return Line(self.a, self.b, self.c + (self.a * dx + self.b * dy))
+        return SupportLine(self.a, self.b, self.c + (self.a * dx + self.b * dy))
 
 
 class HalfCircle:
@@ -116,7 +116,7 @@ class HalfCircle:
         return compare(point.y, self.y) != (-1 if self.upper else 1)
 
 
-Support = Line | HalfCircle
+Support = SupportLine | HalfCircle
 
 
 def order_after(one: Support, other: Support, point: Point) -> int:
@@ -138,14 +138,14 @@ def order_after(one: Support, other: Support, point: Point) -> int:
 
 def crossings(one: Support, other: Support) -> tuple[Point, ...]:
     """Return the points that two supports share, left to right; none if they are parallel, concentric or the same."""
-    if isinstance(one, Line):
-        return _two_lines(one, other) if isinstance(other, Line) else _line_and_half(one, other)
-    if isinstance(other, Line):
+    if isinstance(one, SupportLine):
+        return _two_lines(one, other) if isinstance(other, SupportLine) else _line_and_half(one, other)
+    if isinstance(other, SupportLine):
         return _line_and_half(other, one)
     return _two_halves(one, other)
 
 
-def _two_lines(one: Line, other: Line) -> tuple[Point, ...]:
+def _two_lines(one: SupportLine, other: SupportLine) -> tuple[Point, ...]:
     determinant = one.a * other.b - other.a * one.b
     if determinant == 0:
         return ()
@@ -153,7 +153,7 @@ def _two_lines(one: Line, other: Line) -> tuple[Point, ...]:
     return (Point(x, (other.c * one.a - one.c * other.a) / determinant),)
 
 
-def _line_and_half(line: Line, half: HalfCircle) -> tuple[Point, ...]:
+def _line_and_half(line: SupportLine, half: HalfCircle) -> tuple[Point, ...]:
     return tuple(point for point in _line_and_circle(line.a, line.b, line.c, half) if half.has(point))
 
 

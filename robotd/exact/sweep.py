@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 from functools import cmp_to_key
 from heapq import heapify, heappop, heappush
 
-from robotd.exact.arrangement import Arrangement, Edge, Mask, Vertex
+from robotd.exact.arrangement import Arrangement, BorderEdge, Mask, Vertex
 from robotd.exact.planar import PlanarSet
 from robotd.exact.points import Point
-from robotd.exact.supports import Line, crossings, order_after
+from robotd.exact.supports import SupportLine, crossings, order_after
 from robotd.exact.sweep_events import Event, Piece, events_of
 
 
@@ -37,7 +37,7 @@ class _Strand:
     """An edge that the sweep line meets, and the pieces of borders that lie on it."""
 
     pieces: tuple[Piece, ...]
-    edge: Edge
+    edge: BorderEdge
     number: int
     last: Point
     """Where the last of its pieces ends."""
@@ -45,7 +45,7 @@ class _Strand:
     high: float
 
     @classmethod
-    def of(cls, pieces: Sequence[Piece], edge: Edge, number: int) -> "_Strand":
+    def of(cls, pieces: Sequence[Piece], edge: BorderEdge, number: int) -> "_Strand":
         last = max(piece.border.end for piece in pieces) if len(pieces) > 1 else pieces[0].border.end
         low, high = min(piece.low for piece in pieces), max(piece.high for piece in pieces)
         return cls(tuple(pieces), edge, number, last, low, high)
@@ -59,7 +59,7 @@ class _Sweep:
         # A list, not a tree: it is searched by halves, and moving pointers is cheap beside an exact predicate.
         self.status: list[_Strand] = []
         self.vertices: list[Vertex] = []
-        self.edges: list[Edge] = []
+        self.edges: list[BorderEdge] = []
         self.faces = _Faces([far], [0])
         self.crossings: dict[tuple[int, int], list[Point]] = {}
         """Crossings of two supports, by their identity, that are not in the queue yet."""
@@ -121,7 +121,7 @@ class _Sweep:
             left = above if number == len(bundles) - 1 else self.faces.add(mask | left_mask)
             if self.faces.masks[left] != mask | left_mask:
                 raise ValueError(f"the borders at {pieces[0].border.start} do not close around an area")
-            edge = Edge(pieces[0].border.support, here, -1, mask | on, right, left)
+            edge = BorderEdge(pieces[0].border.support, here, -1, mask | on, right, left)
             strands.append(_Strand.of(pieces, edge, len(self.edges)))
             self.edges.append(edge)
             right = left
@@ -152,7 +152,7 @@ class _Sweep:
 def _stay_apart(lower: _Strand, upper: _Strand) -> bool:
     """Return whether two straight edges do not meet: the one that ends first does so on its own side."""
     one, other = lower.edge.support, upper.edge.support
-    if not (isinstance(one, Line) and isinstance(other, Line)):
+    if not (isinstance(one, SupportLine) and isinstance(other, SupportLine)):
         return False
     return other.side(lower.last) < 0 if lower.last < upper.last else one.side(upper.last) > 0
 

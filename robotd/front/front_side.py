@@ -21,7 +21,7 @@ _STUCK = ServerError(ErrorCode.BUSY, "what moves the robot takes no requests now
 
 
 class FrontSide:
-    """The mission, as the server needs it (:class:`robotd.server.mission_port.Control`)."""
+    """The mission, as the server needs it (:class:`robotd.server.mission_port.MissionPort`)."""
 
     def __init__(self, stops: Channel, requests: Channel) -> None:
         self.events: Broadcast[Published] = Broadcast()

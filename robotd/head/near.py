@@ -9,7 +9,7 @@ from robotd.head.job import A, Job
 from robotd.head.wire import pack_job, unpack_answer
 
 
-class InProcess:
+class HeadAtHand:
     """Hands jobs to somebody who computes."""
 
     def __init__(self, desk: Desk, compute: Compute) -> None:

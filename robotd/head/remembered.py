@@ -21,7 +21,7 @@ _PACKED_ALREADY = 2**18
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class RememberedStep:
     """A job to be done again. Kept as bytes: a thousand sweeps would be some hundred thousand objects."""
 
     kind: type[Job[Any]]
@@ -31,7 +31,7 @@ class Step:
     _is_packed: bool
 
     @classmethod
-    def of(cls, job: Job[Any], answer: object) -> "Step":
+    def of(cls, job: Job[Any], answer: object) -> "RememberedStep":
         """Return what leads to the same as a job that was answered."""
         again = job.again(answer)
         digest = answer.digest if isinstance(answer, HeldMap | Inserted) else None
@@ -55,7 +55,7 @@ class Memory:
     """The steps that lead to everything that is held, by its number."""
 
     def __init__(self) -> None:
-        self._steps: dict[int, list[Step]] = {}
+        self._steps: dict[int, list[RememberedStep]] = {}
 
     def note(self, job: Job[Any], answer: object) -> None:
         """Take note that a job was answered."""
@@ -65,7 +65,7 @@ class Memory:
         steps = self._steps.setdefault(made.number, [])
         # An insertion into a generation that others followed: those were given up, with the mission that made them.
         del steps[len(steps) if made.after is None else made.after :]
-        steps.append(Step.of(job, answer))
+        steps.append(RememberedStep.of(job, answer))
 
     def forget(self, number: int) -> None:
         """Hold what has this number no longer."""
@@ -75,6 +75,6 @@ class Memory:
         """Whether something of this number is held."""
         return number in self._steps
 
-    def __iter__(self) -> Iterator[Step]:
+    def __iter__(self) -> Iterator[RememberedStep]:
         """Return the steps in the order in which they must be done: a stop comes after the map that it is on."""
         return (step for number in sorted(self._steps) for step in self._steps[number])

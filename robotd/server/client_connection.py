@@ -21,7 +21,7 @@ _CREDENTIALS = struct.Struct("3i")
 
 
 @dataclass(frozen=True, slots=True)
-class Process:
+class PeerProcess:
     """Who is at the other end, as the kernel knows it."""
 
     pid: int
@@ -231,7 +231,7 @@ class Connection:
             self._outgoing.popleft()
 
 
-def process_of(end: socket.socket) -> Process:
+def process_of(end: socket.socket) -> PeerProcess:
     """Return which process is at the other end of a Unix socket."""
     pid, uid, _ = _CREDENTIALS.unpack(end.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size))
-    return Process(pid, uid)
+    return PeerProcess(pid, uid)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from robotd.core.errors import TransportError
 from robotd.core.log_limit import LogLimit
-from robotd.server.client_connection import Connection, Manners, Owner, Process
+from robotd.server.client_connection import Connection, Manners, Owner, PeerProcess
 
 MOST = 384
 """Connections altogether, a client has up to three; far below what the process may open."""
@@ -113,7 +113,7 @@ class Door:
             victim = newest if count == 1 else self._oldest_of(process)
             victim.close(f"there are more than {self._most} connections")
 
-    def _oldest_of(self, process: Process) -> Connection:
+    def _oldest_of(self, process: PeerProcess) -> Connection:
         return next(connection for connection in self._inside if connection.process == process)
 
     def _look_who_takes_nothing(self) -> None:

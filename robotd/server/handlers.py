@@ -9,13 +9,13 @@ from robotd.contract.plain import VERSION
 from robotd.contract.request import Request
 from robotd.contract.requests import Disarm, Hello, Stop
 from robotd.core.clock import now_ns, wall_offset_ns
-from robotd.server.mission_port import Control
+from robotd.server.mission_port import MissionPort
 
 
 class Handlers:
     """Has requests carried out."""
 
-    def __init__(self, control: Control, session: str, lease_s: float) -> None:
+    def __init__(self, control: MissionPort, session: str, lease_s: float) -> None:
         self._control = control
         self._session = session
         self._lease_s = lease_s

@@ -13,7 +13,7 @@ from robotd.core.broadcast import Broadcast
 R = TypeVar("R")
 
 
-class Control(Protocol):
+class MissionPort(Protocol):
     """The mission, as far as clients may reach."""
 
     @property

@@ -11,7 +11,7 @@ from robotd.core.broadcast import Subscription
 from robotd.core.errors import RobotdError, ServerError
 from robotd.core.log_limit import LogLimit
 from robotd.server.map_queue import MapQueue
-from robotd.server.mission_port import Control
+from robotd.server.mission_port import MissionPort
 from robotd.server.outlet import Outlet
 
 DEPTH = 4096
@@ -23,7 +23,7 @@ log = logging.getLogger(__name__)
 class Publisher:
     """Publishes the events of the mission, and the lines of its log."""
 
-    def __init__(self, control: Control, events: Subscription[Published], session: str) -> None:
+    def __init__(self, control: MissionPort, events: Subscription[Published], session: str) -> None:
         """Take the events of ``control`` by a subscription that is open already, so that the very first are there."""
         self.state = Outlet(session)
         """Everything small."""

@@ -12,7 +12,7 @@ from robotd.server.commands import Commands
 from robotd.server.door import Door
 from robotd.server.handlers import Handlers
 from robotd.server.letters import Letters
-from robotd.server.mission_port import Control
+from robotd.server.mission_port import MissionPort
 from robotd.server.publisher import DEPTH, Publisher
 from robotd.server.settings import ServerSettings
 
@@ -34,7 +34,7 @@ _LAST_REPLIES_S = 0.02
 class Server:
     """Serves one daemon to its clients."""
 
-    def __init__(self, settings: ServerSettings, control: Control) -> None:
+    def __init__(self, settings: ServerSettings, control: MissionPort) -> None:
         """Prepare; nothing is opened yet.
 
         Raises:

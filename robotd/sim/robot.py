@@ -15,7 +15,7 @@ from robotd.sim.physics.body import Body, BodySettings
 from robotd.sim.physics.laser import Laser, LaserSettings
 from robotd.sim.physics.noise import NoiseSettings, stream
 from robotd.sim.physics.plant import DrivePlant, HeadPlant, ScannerPlant
-from robotd.sim.physics.steppers import Head, HeadSettings
+from robotd.sim.physics.steppers import StepperHead, StepperSettings
 from robotd.sim.physics.walls import Point, clearance_m
 
 DEVICES = ("drive", "pantilt", "rangefinder")
@@ -54,7 +54,7 @@ class SimSettings:
 
     noise: NoiseSettings = field(default_factory=NoiseSettings)
     body: BodySettings = field(default_factory=BodySettings)
-    head: HeadSettings = field(default_factory=HeadSettings)
+    head: StepperSettings = field(default_factory=StepperSettings)
     laser: LaserSettings = field(default_factory=LaserSettings)
 
 
@@ -83,7 +83,7 @@ class SimulatedRobot:
         if clearance_m(world.walls, (self.start.x_m, self.start.y_m)) < settings.body.radius_m:
             raise ConfigError(f"a robot of radius {settings.body.radius_m} m does not fit there", key="start")
         self._body = Body(world.walls, self.start, settings.body, noise, stream(seed, "drive"))
-        self._head = Head(settings.head)
+        self._head = StepperHead(settings.head)
         self._laser = Laser(
             world.walls,
             self._body,

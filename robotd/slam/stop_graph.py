@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
 from robotd.slam.graph import Edge
-from robotd.slam.stops import Poses, Stop
+from robotd.slam.stops import PlacedStop, Poses
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StopGraph:
     """Stops in their order, their poses on the map, and the edges between them."""
 
-    stops: tuple[Stop, ...] = ()
+    stops: tuple[PlacedStop, ...] = ()
     poses: Poses = field(default_factory=lambda: np.empty((0, 3)))
     edges: tuple[Edge, ...] = ()
 
@@ -29,7 +29,7 @@ class StopGraph:
         """The stops that maps are made of, ascending."""
         return np.flatnonzero([stop.is_laid for stop in self.stops])
 
-    def with_stop(self, stop: Stop, pose: Pose2, *edges: Edge) -> "StopGraph":
+    def with_stop(self, stop: PlacedStop, pose: Pose2, *edges: Edge) -> "StopGraph":
         """Return it with one more stop, and what ties it to others."""
         poses = np.concatenate((self.poses, [(pose.x_m, pose.y_m, pose.heading_rad)]))
         return StopGraph((*self.stops, stop), poses, (*self.edges, *edges))

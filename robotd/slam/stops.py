@@ -11,7 +11,7 @@ from robotd.localization.outcome import Outcome
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Stop:
+class PlacedStop:
     """One stop; where it lies on the map is another matter, and may change as long as the map is made."""
 
     readings: Readings

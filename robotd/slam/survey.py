@@ -19,7 +19,7 @@ from robotd.slam.local_map import LocalMaps
 from robotd.slam.loops import Loop, LoopSettings, edge_to, seek
 from robotd.slam.solve import solve
 from robotd.slam.stop_graph import StopGraph
-from robotd.slam.stops import Poses, Stop
+from robotd.slam.stops import PlacedStop, Poses
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,7 @@ class Survey:
     @classmethod
     def begun(cls, readings: Readings, at: Pose2 = IDENTITY, settings: SurveySettings | None = None) -> "Survey":
         """Return the survey of a first stop, whose place is where the map begins."""
-        graph = StopGraph().with_stop(Stop(readings, Travel(), Outcome.PLACED), at)
+        graph = StopGraph().with_stop(PlacedStop(readings, Travel(), Outcome.PLACED), at)
         return cls(settings or SurveySettings(), graph)
 
     def stepped(self, readings: Readings, travel: Travel) -> tuple["Survey", tuple[Decision, ...]]:
@@ -135,7 +135,7 @@ def _placed(survey: Survey, readings: Readings, travel: Travel) -> tuple[Survey,
     held = survey.held + 1 if is_against else 0
     opens = held >= settings.held_max
     is_laid = opens or not is_against
-    stop = Stop(readings, travel, placed.outcome, graph.stops[-1].segment + opens, is_laid=is_laid)
+    stop = PlacedStop(readings, travel, placed.outcome, graph.stops[-1].segment + opens, is_laid=is_laid)
     kind = EdgeKind.STEP if placed.outcome.is_found else EdgeKind.ODOMETRY
     found = placed.believed.no_surer(settings.floor_m, settings.floor_rad)
     edge = edge_to(graph, last, len(graph.stops), found, kind)

@@ -13,7 +13,7 @@ from robotd.contract.missions import Look, Turn
 from robotd.sim.buildings.world import load_world
 from robotd.sim.physics.laser import LaserSettings
 from robotd.sim.physics.noise import NoiseSettings
-from robotd.sim.physics.steppers import HeadSettings
+from robotd.sim.physics.steppers import StepperSettings
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.calibrating import by_key, carried_out, constants
@@ -32,7 +32,7 @@ PAN_ZERO_RAD, RANGE_BIAS_M = 0.06, -0.05
 def robot_and_config(world: str = "laboratory", seed: int = 3) -> tuple[SimulatedRobot, Config]:
     """A robot whose constants are not those that the daemon is told."""
     settings = SimSettings(
-        head=HeadSettings(backlash_rad=PLAY_RAD), laser=LaserSettings(pan_zero_rad=PAN_ZERO_RAD, range_bias_m=0.05)
+        head=StepperSettings(backlash_rad=PLAY_RAD), laser=LaserSettings(pan_zero_rad=PAN_ZERO_RAD, range_bias_m=0.05)
     )
     config = Config()
     wrong = replace(

@@ -44,7 +44,7 @@ from robotd.recording.preroll import PrerollJournal
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects, Firmware
 from robotd.sim.physics.body import Body
-from robotd.sim.physics.steppers import Head
+from robotd.sim.physics.steppers import StepperHead
 from robotd.sim.robot import DEVICES, SimulatedRobot, board_of, own_board
 from robotd.sim.runtime import connectors
 from tests.support.living import in_directory, until_ready
@@ -315,7 +315,7 @@ async def bumped(rig: Rig) -> None:
     own_board(rig.robot, "drive")._latch(Fault.BUMPER, cut=True)
 
 
-def breaks(plant_of: Callable[[Rig], Body | Head], fault: Fault) -> Callable[[Rig], Awaitable[None]]:
+def breaks(plant_of: Callable[[Rig], Body | StepperHead], fault: Fault) -> Callable[[Rig], Awaitable[None]]:
     """For a moment, which is enough to latch it."""
 
     async def break_it(rig: Rig) -> None:

@@ -21,7 +21,7 @@ from robotd.hardware.wire.board import BoardWire
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, Stall
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.fault import Fault
-from robotd.sim.faults.of_flow import Silence
+from robotd.sim.faults.of_flow import SilentLine
 from robotd.sim.faults.of_frames import frames_of
 from robotd.sim.robot import DEVICES
 from tests.support.bench import Bench, bench
@@ -80,7 +80,7 @@ async def mapping(directory: Path, silence_s: float = 1.0) -> AsyncIterator[Benc
 
 def fall_silent(it: Bench, devices: tuple[str, ...] = DEVICES) -> None:
     for device in devices:
-        it.cables[device].set_fault(Silence(random.Random(1)))
+        it.cables[device].set_fault(SilentLine(random.Random(1)))
 
 
 def mend(it: Bench) -> None:

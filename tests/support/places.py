@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.app.compose import Daemon, head_settings
-from robotd.children.in_process import InProcess as ChildInProcess
+from robotd.children.in_process import InProcess
 from robotd.config import Config
 from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.grid_spec import GridSpec
@@ -20,7 +20,7 @@ from robotd.head.desk import Desk
 from robotd.head.far import FarHead
 from robotd.head.head import Head
 from robotd.head.jobs import HeldMap, ShowMap, TakeMap
-from robotd.head.near import InProcess
+from robotd.head.near import HeadAtHand
 from robotd.head.program import serve
 from robotd.head.settings import HeadSettings
 from robotd.mission.whereabouts.map_in_use import MapInUse
@@ -28,9 +28,9 @@ from robotd.mission.whereabouts.map_in_use import MapInUse
 _NUMBERS = itertools.count(1000)
 
 
-def head_on(compute: object, config: Config | None = None) -> InProcess:
+def head_on(compute: object, config: Config | None = None) -> HeadAtHand:
     """Return a head of this process that computes where it is asked, or where ``compute`` says."""
-    return InProcess(Desk(head_settings(config or Config())), unpaced(compute))
+    return HeadAtHand(Desk(head_settings(config or Config())), unpaced(compute))
 
 
 class NearHead(FarHead):
@@ -38,12 +38,12 @@ class NearHead(FarHead):
 
     @classmethod
     def spawned(cls, settings: HeadSettings, log_level: str) -> "NearHead":
-        return cls(settings, lambda: ChildInProcess(serve))
+        return cls(settings, lambda: InProcess(serve))
 
 
-def near_front() -> ChildInProcess:
+def near_front() -> InProcess:
     """Return a front as the program has it, but as a task of this process."""
-    return ChildInProcess(serve_clients, LANES)
+    return InProcess(serve_clients, LANES)
 
 
 def unpaced(compute: object) -> Compute:

@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 
-from robotd.sim.physics.walls import Walls, ray_cast
+from robotd.sim.physics.walls import WallSegments, ray_cast
 
 _CORNERS = [(0.0, 0.0), (5.0, 0.0), (5.0, 1.5), (3.8, 1.5), (3.8, 3.0), (1.2, 3.0), (1.2, 2.2), (0.0, 2.2)]
-ROOM = Walls.of((start, end, math.inf) for start, end in zip(_CORNERS, [*_CORNERS[1:], _CORNERS[0]], strict=True))
+ROOM = WallSegments.of(
+    (start, end, math.inf) for start, end in zip(_CORNERS, [*_CORNERS[1:], _CORNERS[0]], strict=True)
+)
 BEAMS = 90
 NOTHING_M = 81.83
 SIGHT_M = 4.2

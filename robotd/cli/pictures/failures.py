@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 
 from robotd.cli.pictures.sheet import ESTIMATE, PATH, TRUTH, Points, evidence, known_box, legend, paper, save
 from robotd.core.pose import Pose2
-from robotd.evaluation.result import Result
-from robotd.evaluation.seeking import Job
+from robotd.evaluation.result import CaseResult
+from robotd.evaluation.seeking import Seeking
 from robotd.evaluation.verdict import CaseVerdict
 from robotd.logs.scan import Scan
 
@@ -19,7 +19,7 @@ _POINTER = 0.04
 """Length of what shows a heading, as a share of the picture's width."""
 
 
-def draw_failure(directory: Path, job: Job, scan: Scan, result: Result) -> None:
+def draw_failure(directory: Path, job: Seeking, scan: Scan, result: CaseResult) -> None:
     """Draw a case into a file of its own, named by log, scan and verdict, unless it is right."""
     if result.verdict is CaseVerdict.RIGHT:
         return
@@ -29,14 +29,14 @@ def draw_failure(directory: Path, job: Job, scan: Scan, result: Result) -> None:
     save(axes, directory / f"{_file_name(job)}-{result.key.scan:05}-{result.verdict}.png")
 
 
-def _file_name(job: Job) -> str:
+def _file_name(job: Seeking) -> str:
     """Return what tells the pictures of one task from those of another."""
     usual = job.protocol == "interleaved"
     name = job.log.split(".")[0] if usual else f"{job.log.split('.')[0]}-{job.protocol.split('.')[0]}"
     return f"{name}-{round(1000 * job.grid.spec.resolution_m)}mm".replace("=", "-")
 
 
-def _map(title: str, job: Job, result: Result) -> Axes:
+def _map(title: str, job: Seeking, result: CaseResult) -> Axes:
     spec, cells = job.grid.spec, job.grid.cells
     off = "" if result.error_m is None else f", {result.error_m:.2f} m off"
     share = f"{result.best_rank or 'too few'} of {result.readings} readings explained"
@@ -45,7 +45,7 @@ def _map(title: str, job: Job, result: Result) -> Axes:
     return axes
 
 
-def _answers(axes: Axes, scan: Scan, result: Result) -> None:
+def _answers(axes: Axes, scan: Scan, result: CaseResult) -> None:
     """Draw the scan where it was taken and where the best answer has it, and all other answers."""
     claimed = result.best or (result.answers[0] if result.answers else None)
     rivals = result.answers[1:]

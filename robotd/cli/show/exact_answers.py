@@ -4,18 +4,18 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from robotd.cli.exact_inputs import Question
+from robotd.cli.exact_inputs import ExactQuestion
 from robotd.cli.show.terminal import print_json, print_pairs, print_table
 from robotd.core.errors import RobotdError
 from robotd.exact.beams import Beam
-from robotd.exact.casting import CastVerdict, Outcome, cast
+from robotd.exact.casting import CastOutcome, CastVerdict, cast
 from robotd.exact.error_bracket import smallest_error
 from robotd.exact.points import Point
 from robotd.exact.rationals import Rational, rational
-from robotd.exact.regions import Region
+from robotd.exact.regions import ExactRegion
 from robotd.exact.surds import Number
 
-Place = tuple[float, Region]
+Place = tuple[float, ExactRegion]
 """A heading [deg] and a region of poses of that heading."""
 
 
@@ -29,14 +29,14 @@ def say_where(summary: dict[str, Any], found: Sequence[Place], *, as_json: bool)
     print_table(names, (_row(heading, region) for heading, region in found))
 
 
-def _row(heading_deg: float, region: Region) -> tuple[str, ...]:
+def _row(heading_deg: float, region: ExactRegion) -> tuple[str, ...]:
     west, south, east, north = region.box_m
     sizes = (region.length_m, *region.centre_m, east - west, north - south)
     texts = (f"{size:.4f}" if math.isfinite(size) else "-" for size in sizes)
     return (str(region.best_rank), f"{heading_deg:.3f}", region.kind, f"{region.area_m2:.6g}", *texts)
 
 
-def _document(heading_deg: float, region: Region) -> dict[str, Any]:
+def _document(heading_deg: float, region: ExactRegion) -> dict[str, Any]:
     return {
         "rank": region.best_rank,
         "heading_deg": heading_deg,
@@ -48,12 +48,12 @@ def _document(heading_deg: float, region: Region) -> dict[str, Any]:
     }
 
 
-def say_why(asked: Question, eps: Rational, pose: Point, *, as_json: bool) -> None:
+def say_why(asked: ExactQuestion, eps: Rational, pose: Point, *, as_json: bool) -> None:
     """Say of every reading whether it holds at a point, and if not why: at each heading, best first."""
     by_heading = []
     for heading_deg, beams in zip(asked.headings_deg, asked.slices, strict=True):
         verdicts = [cast(asked.obstacles, beam, eps, pose) for beam in beams]
-        rank = sum(one.outcome is Outcome.HOLDS for one in verdicts)
+        rank = sum(one.outcome is CastOutcome.HOLDS for one in verdicts)
         by_heading.append((rank, heading_deg, beams, verdicts))
     by_heading.sort(key=lambda one: -one[0])
     if as_json:
@@ -93,7 +93,7 @@ _HALVINGS = 10
 """The ends of the bracket are multiples of 2^-10 m, which ten decimals write without rounding."""
 
 
-def say_smallest_error(asked: Question, share: Rational, *, as_json: bool) -> None:
+def say_smallest_error(asked: ExactQuestion, share: Rational, *, as_json: bool) -> None:
     """Say between which radii the smallest one lies, for the best of the headings.
 
     Raises:

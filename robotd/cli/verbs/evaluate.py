@@ -28,8 +28,8 @@ from robotd.evaluation.processes import over_processes
 from robotd.evaluation.protocol import WORDS as PROTOCOL_WORDS
 from robotd.evaluation.protocol import Protocol, checked_word
 from robotd.evaluation.recorded import Reach
-from robotd.evaluation.result import Result
-from robotd.evaluation.seeking import Job, JobSettings, run
+from robotd.evaluation.result import CaseResult
+from robotd.evaluation.seeking import Seeking, SeekingSettings, run
 from robotd.evaluation.tally import Tally
 from robotd.evaluation.verdict import RIGHT_M, RIGHT_RAD
 from robotd.grid import kernels
@@ -37,7 +37,7 @@ from robotd.grid.settings import GridSettings
 from robotd.head.cores import cores
 from robotd.logs.scan import RecordedLog, Scan
 
-_Draw = Callable[[Path, Job, Scan, Result], None]
+_Draw = Callable[[Path, Seeking, Scan, CaseResult], None]
 _Say = Callable[[dict[str, Any]], None]
 
 
@@ -50,7 +50,7 @@ class _Plan:
     grids: tuple[GridSettings, ...]
     """One for each size of cells."""
     protocols: tuple[Protocol, ...]
-    job: JobSettings
+    job: SeekingSettings
     workers: int
     commit: str
 
@@ -110,7 +110,7 @@ def _plan(arguments: argparse.Namespace) -> _Plan:
     reach = Reach(arguments.range_max, min(arguments.clear, arguments.range_max))
     # Threads or processes, not both: they would take each other the same processors.
     threads = cores() if arguments.workers == 1 else 1
-    job = JobSettings(reach, read.localization, read.judgement, read.error_model, threads)
+    job = SeekingSettings(reach, read.localization, read.judgement, read.error_model, threads)
     protocols = tuple(_protocol(arguments, word) for word in arguments.protocol or ["interleaved"])
     return _Plan(arguments.cases, arguments.seed, grids, protocols, job, arguments.workers, _commit())
 
@@ -150,7 +150,7 @@ def _drawing() -> _Draw:
     return draw_failure
 
 
-def _into(directory: Path, draw: _Draw) -> Callable[[Job, Scan, Result], None]:
+def _into(directory: Path, draw: _Draw) -> Callable[[Seeking, Scan, CaseResult], None]:
     return lambda job, scan, result: draw(directory, job, scan, result)
 
 
@@ -174,7 +174,9 @@ def _is_standard_output(file: Path | None) -> bool:
     return str(file) == STANDARD_OUTPUT
 
 
-def _evaluate(plan: _Plan, task: _Task, say: _Say, draw: Callable[[Job, Scan, Result], None] | None) -> LogReport:
+def _evaluate(
+    plan: _Plan, task: _Task, say: _Say, draw: Callable[[Seeking, Scan, CaseResult], None] | None
+) -> LogReport:
     """Make the map of a log and seek its queries; Ctrl-C keeps what was done."""
     job, division = _job(plan, task)
     scans = {query.number: query.scan for query in division.queries}
@@ -192,14 +194,14 @@ def _evaluate(plan: _Plan, task: _Task, say: _Say, draw: Callable[[Job, Scan, Re
     return LogReport(task.name, task.protocol.name, *counts, facts, tally, task.log.poses, task.log.damaged_lines)
 
 
-def _job(plan: _Plan, task: _Task) -> tuple[Job, Division]:
+def _job(plan: _Plan, task: _Task) -> tuple[Seeking, Division]:
     try:
         grid, division = task.protocol.map_and_queries(
             task.log, plan.job.reach, task.grid, cases=plan.cases, seed=plan.seed
         )
     except ValueError as error:
         raise RecordingError(f"{task.name}: no map can be made of it: {error}") from error
-    job = Job.of(task.name, grid, plan.job, seed=plan.seed, commit=plan.commit, protocol=task.protocol.name)
+    job = Seeking.of(task.name, grid, plan.job, seed=plan.seed, commit=plan.commit, protocol=task.protocol.name)
     return job, division
 
 

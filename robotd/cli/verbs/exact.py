@@ -4,7 +4,7 @@ import argparse
 from dataclasses import dataclass
 from pathlib import Path
 
-from robotd.cli.exact_inputs import Question, question
+from robotd.cli.exact_inputs import ExactQuestion, question
 from robotd.cli.exit_codes import OK
 from robotd.cli.outputs import PNG, output_argument
 from robotd.cli.pictures.plots_extra import require_plots
@@ -54,7 +54,7 @@ def _refuse_contradictions(arguments: argparse.Namespace) -> None:
         raise RobotdError("--out draws regions: neither --at nor --smallest-error has any")
 
 
-def _where(arguments: argparse.Namespace, asked: Question, eps: Rational) -> None:
+def _where(arguments: argparse.Namespace, asked: ExactQuestion, eps: Rational) -> None:
     polygon_map = PolygonMap(asked.obstacles, eps)
     by_heading = zip(asked.headings_deg, asked.slices, strict=True)
     slices = [_slice(polygon_map, beams, heading_deg) for heading_deg, beams in by_heading]

@@ -3,7 +3,7 @@
 import argparse
 import math
 
-from robotd.cli.motion import Outcome, carry_out, last_word, mission_verb
+from robotd.cli.motion import MissionOutcome, carry_out, last_word, mission_verb
 from robotd.cli.quantities import between, whole
 from robotd.cli.show.wording import as_json, range_in_words
 from robotd.client.mission_run import MissionEvent, ranges_measured
@@ -57,12 +57,12 @@ def _measure(arguments: argparse.Namespace) -> int:
     return carry_out(arguments, Measure(arguments.count), _measured)
 
 
-def _measured(events: list[MissionEvent]) -> Outcome:
+def _measured(events: list[MissionEvent]) -> MissionOutcome:
     ranges = ranges_measured(events)
     lines = [range_in_words(one) for one in ranges]
     if len(ranges) > 1:
         lines.append(last_word(events).words)
-    return Outcome([as_json(one) for one in ranges], "\n".join(lines))
+    return MissionOutcome([as_json(one) for one in ranges], "\n".join(lines))
 
 
 def _count(parser: argparse.ArgumentParser) -> None:
@@ -75,9 +75,9 @@ def _scan(arguments: argparse.Namespace) -> int:
     return carry_out(arguments, Scan(base_turns=not arguments.head_only), _swept)
 
 
-def _swept(events: list[MissionEvent]) -> Outcome:
+def _swept(events: list[MissionEvent]) -> MissionOutcome:
     done = next(event for event in reversed(events) if isinstance(event, SweepDone))
-    return Outcome(as_json(done), last_word(events).words)
+    return MissionOutcome(as_json(done), last_word(events).words)
 
 
 def _how_far_round(parser: argparse.ArgumentParser) -> None:

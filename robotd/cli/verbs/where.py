@@ -6,7 +6,7 @@ from datetime import datetime
 
 from robotd.cli.connection import connect
 from robotd.cli.exit_codes import AMBIGUOUS, LOST, OK
-from robotd.cli.motion import Outcome, carry_out, legs_argument, mission_verb
+from robotd.cli.motion import MissionOutcome, carry_out, legs_argument, mission_verb
 from robotd.cli.quantities import heading_of_deg, number
 from robotd.cli.show.quiet import Quiet
 from robotd.cli.show.terminal import out, print_json
@@ -33,11 +33,11 @@ def _localize(arguments: argparse.Namespace) -> int:
     return carry_out(arguments, Localize(heading_rad, heading=heading, within=arguments.within), _found)
 
 
-def _found(events: list[MissionEvent]) -> Outcome:
+def _found(events: list[MissionEvent]) -> MissionOutcome:
     estimate = final_estimate(events)
     # Lost and ambiguous are answers, not failures: scripts tell them apart by the exit code.
     code = {PoseState.LOST: LOST, PoseState.AMBIGUOUS: AMBIGUOUS}.get(estimate.state, OK)
-    return Outcome(as_json(estimate), estimate_in_words(estimate), code)
+    return MissionOutcome(as_json(estimate), estimate_in_words(estimate), code)
 
 
 def _known(parser: argparse.ArgumentParser) -> None:

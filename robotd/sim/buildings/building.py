@@ -27,7 +27,7 @@ _NEAR_STEPS = 0.75
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class RecordedStop:
     """One place where the recorded robot was, and what its scanner saw from there."""
 
     scan: int
@@ -65,7 +65,7 @@ class RecordedBuilding:
 
     log: str
     """Name of the log they come from."""
-    stops: tuple[Stop, ...]
+    stops: tuple[RecordedStop, ...]
     format: str = FORMAT
     version: int = VERSION
 
@@ -95,7 +95,7 @@ class View:
         return nearest if missing_rad[nearest] <= _NEAR_STEPS * self.step_rad else None
 
 
-def view_from(stop: Stop, in_stop: Pose2) -> View:
+def view_from(stop: RecordedStop, in_stop: Pose2) -> View:
     """Return what the scan of a stop shows to a robot at pose ``in_stop`` in the frame of the recorded robot.
 
     Exact for each beam: its end point is carried over, and seen from the centre of the robot that is there now.
@@ -117,7 +117,7 @@ def view_from(stop: Stop, in_stop: Pose2) -> View:
 
 def select_stops(
     log: RecordedLog, spacing_m: float = 1.0, *, keep_out_every: int = 2, limit: int | None = None
-) -> tuple[Stop, ...]:
+) -> tuple[RecordedStop, ...]:
     """Walk a log in file order and take a scan every ``spacing_m`` of travel.
 
     Straight lines from one stop to the next then follow where the robot once went.
@@ -144,8 +144,8 @@ def select_stops(
     )
 
 
-def _stop(index: int, scan: Scan, *, kept_out: bool) -> Stop:
-    return Stop(
+def _stop(index: int, scan: Scan, *, kept_out: bool) -> RecordedStop:
+    return RecordedStop(
         scan=index,
         pose=scan.robot_pose,
         odometry=scan.odometry,

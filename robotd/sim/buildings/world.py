@@ -13,7 +13,7 @@ import msgspec
 
 from robotd.core.errors import ConfigError
 from robotd.core.pose import Pose2
-from robotd.sim.physics.walls import Point, Walls
+from robotd.sim.physics.walls import Point, WallSegments
 
 WORLDS_DIR = Path(__file__).parent / "worlds"
 
@@ -73,9 +73,9 @@ class World:
             raise ValueError("wall: a world needs at least one")
 
     @cached_property
-    def walls(self) -> Walls:
+    def walls(self) -> WallSegments:
         """All its walls as segments."""
-        return Walls.of(segment for wall in self.wall for segment in wall.segments())
+        return WallSegments.of(segment for wall in self.wall for segment in wall.segments())
 
     @property
     def start_pose(self) -> Pose2:

@@ -36,7 +36,7 @@ from robotd.recording.comparison import NOTHING, Difference
 from robotd.recording.reader import Recording
 from robotd.sim.boards.board_outbox import BoardOutbox
 from robotd.sim.fakes.plausible import aimed, plausible_answer, recorded_answer, state_after
-from robotd.sim.fakes.script import BOOKKEEPING, Asked, Said, is_standstill, read_script, starts_motion
+from robotd.sim.fakes.script import BOOKKEEPING, Said, ScriptedRequest, is_standstill, read_script, starts_motion
 from robotd.sim.fakes.walk import Meeting, Walk
 
 _NS_PER_US = 1000
@@ -237,7 +237,7 @@ class FakeBoard:
         if RULES[type(request)].deduplicated:
             self._outbox.remember(request.TYPE, seq, wire)
 
-    def _differs(self, expected: Asked, got: str) -> None:
+    def _differs(self, expected: ScriptedRequest, got: str) -> None:
         difference = Difference(expected.time_us * _NS_PER_US, self._device, str(expected.request), got)
         self.mismatches.append(difference)
         _log.warning("%s", difference)

@@ -1,6 +1,6 @@
 """A recorded conversation with one board, as the script that a fake board plays.
 
-A script is a row of steps in recorded order. *Asked* steps are requests that changed something; what follows one
+A script is a row of steps in recorded order. A *scripted request* is one that changed something; what follows one
 was said because of it, and must wait for it. Questions that change nothing, renewed set-points and repeats are
 not in the script: they are answered whenever they come.
 """
@@ -43,7 +43,7 @@ _NS_PER_US = 1000
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class ScriptedRequest:
     """A request of the recorded host: what follows waits for it."""
 
     time_us: int
@@ -65,7 +65,7 @@ class Said:
     """Which step it answers; None for telemetry."""
 
 
-Step = Asked | Said
+Step = ScriptedRequest | Said
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,11 +192,11 @@ class _Builder:
             return
         if not self._is_repeat(request, seq):
             self._by_seq[request.TYPE, seq] = len(self._steps)
-            self._steps.append(Asked(time_us, request, seq))
+            self._steps.append(ScriptedRequest(time_us, request, seq))
 
     def _is_repeat(self, request: Message, seq: int) -> bool:
         if isinstance(request, Stop | Kill):  # all of them have the same seq, and they are sent in volleys
-            last = next((step for step in reversed(self._steps) if isinstance(step, Asked)), None)
+            last = next((step for step in reversed(self._steps) if isinstance(step, ScriptedRequest)), None)
             return last is not None and last.request == request
         return (request.TYPE, seq) in self._by_seq
 
@@ -219,7 +219,11 @@ class _Builder:
         if at is None:
             return  # the answer to a question, or to a set-point
         asked = self._steps[at]
-        if isinstance(asked, Asked) and not asked.answered and not isinstance(asked.request, SetVelocity | Stop | Kill):
+        if (
+            isinstance(asked, ScriptedRequest)
+            and not asked.answered
+            and not isinstance(asked.request, SetVelocity | Stop | Kill)
+        ):
             self._steps[at] = replace(asked, answered=True)
             self._steps.append(Said(time_us, message, answers=at))
 
@@ -228,14 +232,14 @@ def _without_farewell(steps: tuple[Step, ...]) -> tuple[Step, ...]:
     """Leave out the Stop with which a host ends a session that it gives up: nobody will ask for it again."""
     for at in range(len(steps) - 1, -1, -1):
         step = steps[at]
-        if isinstance(step, Asked):
+        if isinstance(step, ScriptedRequest):
             return steps[:at] if isinstance(step.request, Stop) else steps
     return steps
 
 
-def asked_ahead(steps: tuple[Step, ...], at: int) -> Iterator[tuple[int, Asked]]:
+def asked_ahead(steps: tuple[Step, ...], at: int) -> Iterator[tuple[int, ScriptedRequest]]:
     """Yield the requests from step ``at`` on, with their places."""
     for place in range(at, len(steps)):
         step = steps[place]
-        if isinstance(step, Asked):
+        if isinstance(step, ScriptedRequest):
             yield place, step

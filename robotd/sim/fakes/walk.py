@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.schema import Message
-from robotd.sim.fakes.script import BOOKKEEPING, Asked, Said, Step, asked_ahead
+from robotd.sim.fakes.script import BOOKKEEPING, Said, ScriptedRequest, Step, asked_ahead
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,8 +17,8 @@ class Meeting:
 
     place: int
     """Which step."""
-    asked: Asked
-    skipped: tuple[Asked, ...]
+    asked: ScriptedRequest
+    skipped: tuple[ScriptedRequest, ...]
     """Requests of the script that the host left out."""
     caught_up: tuple[Said, ...]
     """What must be said before the answer."""
@@ -50,7 +50,7 @@ class Walk:
         return self._base_us + step.time_us - self._recorded_base_us
 
     @property
-    def expected(self) -> Asked | None:
+    def expected(self) -> ScriptedRequest | None:
         """The request that the script has next."""
         return next((asked for _, asked in asked_ahead(self._steps, self._at)), None)
 
@@ -74,7 +74,7 @@ class Walk:
 
         On the way only bookkeeping is passed over: a mission's requests come in their order or not at all.
         """
-        skipped: list[Asked] = []
+        skipped: list[ScriptedRequest] = []
         for place, asked in asked_ahead(self._steps, self._at):
             if type(asked.request) is type(request):
                 caught_up = _essence(self._steps[self._at : place])

@@ -13,7 +13,7 @@ from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.transport import Transport
 
 
-class Line(Protocol):
+class CableEnd(Protocol):
     """The part of a cable that a fault may lay hands on."""
 
     def unplug(self) -> None:
@@ -40,10 +40,10 @@ class Fault:
         self._rng = rng
         self._over = asyncio.Event()
 
-    def begin(self, line: Line) -> None:
+    def begin(self, line: CableEnd) -> None:
         """Do to the cable what begins the fault."""
 
-    def end(self, line: Line) -> None:
+    def end(self, line: CableEnd) -> None:
         """Undo it; a subclass that overrides this calls it."""
         self._over.set()
 

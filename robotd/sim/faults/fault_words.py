@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from robotd.sim.faults.fault import Fault
 from robotd.sim.faults.of_bytes import BitFlips, Garbage, HalfBaud, StuckByte
-from robotd.sim.faults.of_flow import Blocked, Drip, Flood, Silence
+from robotd.sim.faults.of_flow import Blocked, Drip, Flood, SilentLine
 from robotd.sim.faults.of_frames import Doubled, Dropped, Split
 from robotd.sim.faults.of_plugs import Reboot, Replug, Unplug, WriteFails, WrongIdentity
 
@@ -15,7 +15,7 @@ FAULTS: Mapping[str, type[Fault]] = {
     "reboot": Reboot,
     "eio": WriteFails,
     "blocked": Blocked,
-    "silence": Silence,
+    "silence": SilentLine,
     "drip": Drip,
     "flood": Flood,
     "garbage": Garbage,

@@ -10,7 +10,7 @@ _FLOOD_BYTES = 2000
 """At once; with the above, 100 kB/s: nine times what a line of 115200 baud can carry."""
 
 
-class Silence(Fault):
+class SilentLine(Fault):
     """Nothing comes from the board, which hears everything."""
 
     def changed(self, data: bytes, way: Direction) -> bytes:

@@ -3,17 +3,17 @@
 from robotd.core.errors import TransportError
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.transport.transport import Transport
-from robotd.sim.faults.fault import Fault, Line, deliver
+from robotd.sim.faults.fault import CableEnd, Fault, deliver
 
 
 class Unplug(Fault):
     """The plug is pulled; when it is over it is back, under another name of the system's."""
 
-    def begin(self, line: Line) -> None:
+    def begin(self, line: CableEnd) -> None:
         """Pull it."""
         line.unplug()
 
-    def end(self, line: Line) -> None:
+    def end(self, line: CableEnd) -> None:
         """Put it back."""
         super().end(line)
         line.plug()
@@ -22,7 +22,7 @@ class Unplug(Fault):
 class Replug(Fault):
     """The plug is pulled and at once back, under another name of the system's."""
 
-    def begin(self, line: Line) -> None:
+    def begin(self, line: CableEnd) -> None:
         """Pull it, and put it back."""
         line.unplug()
         line.plug()
@@ -31,11 +31,11 @@ class Replug(Fault):
 class WrongIdentity(Fault):
     """Another device answers on this port."""
 
-    def begin(self, line: Line) -> None:
+    def begin(self, line: CableEnd) -> None:
         """Plug another one in."""
         line.exchange(stranger=True)
 
-    def end(self, line: Line) -> None:
+    def end(self, line: CableEnd) -> None:
         """Plug the right one in."""
         super().end(line)
         line.exchange(stranger=False)
@@ -56,6 +56,6 @@ class WriteFails(Fault):
 class Reboot(Fault):
     """The board loses its power for a moment."""
 
-    def begin(self, line: Line) -> None:
+    def begin(self, line: CableEnd) -> None:
         """Take it away."""
         line.reboot()

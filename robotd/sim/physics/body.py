@@ -15,7 +15,7 @@ from firmware_proto.common import Fault
 from robotd.core.angles import FULL_TURN_RAD
 from robotd.core.pose import Pose2
 from robotd.sim.physics.noise import NoiseSettings
-from robotd.sim.physics.walls import Walls, clearance_m, nearest_points
+from robotd.sim.physics.walls import WallSegments, clearance_m, nearest_points
 
 _KNOT_US = 5_000
 _US_PER_S = 1e6
@@ -83,7 +83,7 @@ class Body:
     """The plant behind the drive board; lives in true time [us]."""
 
     def __init__(
-        self, walls: Walls, start: Pose2, settings: BodySettings, noise: NoiseSettings, randomness: random.Random
+        self, walls: WallSegments, start: Pose2, settings: BodySettings, noise: NoiseSettings, randomness: random.Random
     ) -> None:
         self.broken = Fault.NONE
         """What is wrong with it, for those who want to see what comes of that."""

@@ -9,8 +9,8 @@ from robotd.core.pose import Pose2
 from robotd.sim.physics.body import Body
 from robotd.sim.physics.noise import NoiseSettings
 from robotd.sim.physics.plant import ShotAnswer
-from robotd.sim.physics.steppers import Head
-from robotd.sim.physics.walls import Walls, ray_cast
+from robotd.sim.physics.steppers import StepperHead
+from robotd.sim.physics.walls import WallSegments, ray_cast
 
 _STRENGTH_AT_1_M = 20_000
 _STRENGTH_MAX = 65_535
@@ -53,9 +53,9 @@ class Laser:
 
     def __init__(
         self,
-        walls: Walls,
+        walls: WallSegments,
         body: Body,
-        head: Head,
+        head: StepperHead,
         *,
         settings: LaserSettings,
         noise: NoiseSettings,

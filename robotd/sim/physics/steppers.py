@@ -10,7 +10,7 @@ _US_PER_S = 1e6
 
 
 @dataclass(frozen=True, slots=True)
-class HeadSettings:
+class StepperSettings:
     """A head like the classic stepper units: +-159 degrees, 185.14 arc seconds a step."""
 
     pan_limit_rad: float = math.radians(159.0)
@@ -41,10 +41,10 @@ class HeadSettings:
         return self.pan_limit_rad >= math.pi
 
 
-class Head:
+class StepperHead:
     """The plant behind the pan/tilt board; lives in true time [us]. Each axis turns at constant speed."""
 
-    def __init__(self, settings: HeadSettings) -> None:
+    def __init__(self, settings: StepperSettings) -> None:
         self.broken = Fault.NONE
         """What is wrong with it, for those who want to see what comes of that."""
         self._settings = settings

@@ -14,7 +14,7 @@ _ON_THE_WALL = 1e-12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Walls:
+class WallSegments:
     """``n`` segments in the world frame, each reaching from the floor up to its height."""
 
     starts_m: NDArray[np.float64]
@@ -25,7 +25,7 @@ class Walls:
     """``float64[n]``; ``inf`` for walls that reach the ceiling."""
 
     @classmethod
-    def of(cls, segments: Iterable[tuple[Point, Point, float]]) -> "Walls":
+    def of(cls, segments: Iterable[tuple[Point, Point, float]]) -> "WallSegments":
         """Gather ``(start, end, height)`` segments; those of no length are left out."""
         table = np.array([(*start, *end, height) for start, end, height in segments], dtype=np.float64).reshape(-1, 5)
         along = table[:, 2:4] - table[:, 0:2]
@@ -33,11 +33,11 @@ class Walls:
         return cls(table[kept, 0:2], along[kept], table[kept, 4])
 
 
-NO_WALLS = Walls.of(())
+NO_WALLS = WallSegments.of(())
 
 
 def ray_cast(
-    walls: Walls, origin_m: Point, direction_rad: float, *, eye_height_m: float = 0.0, climb: float = 0.0
+    walls: WallSegments, origin_m: Point, direction_rad: float, *, eye_height_m: float = 0.0, climb: float = 0.0
 ) -> float:
     """Return the horizontal distance to the first wall along a ray, ``inf`` if there is none; O(n).
 
@@ -74,7 +74,7 @@ def _meet_edge_on(
     return in_line & (np.maximum(one_m, other_m) >= 0.0), np.maximum(0.0, np.minimum(one_m, other_m))
 
 
-def nearest_points(walls: Walls, point_m: Point) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def nearest_points(walls: WallSegments, point_m: Point) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return how far each wall is, ``float64[n]``, and from ``point_m`` to its nearest point, ``float64[n, 2]``."""
     to_start = walls.starts_m - np.array(point_m)
     along = walls.along_m
@@ -83,6 +83,6 @@ def nearest_points(walls: Walls, point_m: Point) -> tuple[NDArray[np.float64], N
     return np.hypot(offset[:, 0], offset[:, 1]), offset
 
 
-def clearance_m(walls: Walls, point_m: Point) -> float:
+def clearance_m(walls: WallSegments, point_m: Point) -> float:
     """Return the distance to the nearest wall, ``inf`` without walls."""
     return float(np.min(nearest_points(walls, point_m)[0], initial=np.inf))

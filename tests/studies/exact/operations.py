@@ -7,7 +7,7 @@ from typing import Any
 from unittest.mock import patch
 
 from robotd.exact import points, sweep
-from robotd.exact.supports import HalfCircle, Line
+from robotd.exact.supports import HalfCircle, SupportLine
 
 
 @dataclass(slots=True)
@@ -31,7 +31,7 @@ class Operations:
 
 _COUNTED = (
     (points, "compare_points", "comparisons"),
-    (Line, "side", "sides"),
+    (SupportLine, "side", "sides"),
     (HalfCircle, "side", "sides"),
     (sweep, "order_after", "orders"),
     (sweep, "crossings", "intersections"),

@@ -29,7 +29,7 @@ from robotd.sim.physics.body import Body, BodySettings
 from robotd.sim.physics.laser import Laser, LaserSettings
 from robotd.sim.physics.noise import NoiseSettings, stream
 from robotd.sim.physics.plant import ShotAnswer
-from robotd.sim.physics.steppers import Head, HeadSettings
+from robotd.sim.physics.steppers import StepperHead, StepperSettings
 from robotd.sim.physics.walls import Point, ray_cast
 from robotd.sim.robot import SimulatedRobot
 from tests.support.living import living
@@ -83,13 +83,13 @@ def probes_at(world: World, pose: Pose2, count: int, seed: int) -> tuple[RangeRe
     """Return this many readings evenly round a robot that stands at a pose, whatever became of them."""
     noise = NoiseSettings()
     body = Body(world.walls, pose, BodySettings(), noise, stream(seed, "drive"))
-    head = Head(HeadSettings(pan_limit_rad=math.pi))
+    head = StepperHead(StepperSettings(pan_limit_rad=math.pi))
     laser = Laser(world.walls, body, head, settings=LaserSettings(), noise=noise, randomness=stream(seed, "probes"))
     laser.switch(on=True)
     return tuple(_probe(head, laser, number * _TURN_US, math.tau * number / count) for number in range(count))
 
 
-def _probe(head: Head, laser: Laser, at_us: int, bearing_rad: float) -> RangeReading:
+def _probe(head: StepperHead, laser: Laser, at_us: int, bearing_rad: float) -> RangeReading:
     head.advance(at_us)
     head.aim(math.remainder(bearing_rad, math.tau), TILT_RAD)
     shot = _shot(laser.shoot(at_us + _TURN_US))

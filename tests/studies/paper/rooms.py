@@ -20,7 +20,7 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.planning.settings import PlanningSettings
 from robotd.planning.traversable import free_cells, inflated
 from robotd.sim.buildings.world import World, load_world
-from robotd.sim.physics.walls import Point, Walls, clearance_m
+from robotd.sim.physics.walls import Point, WallSegments, clearance_m
 from tests.studies.paper.robot import CUT_OFF_M, RANGE_MIN_M, ROBOT_RADIUS_M, true_ranges_m
 
 _RESOLUTION_M = 0.05
@@ -95,7 +95,7 @@ def known_floor(grid: OccupancyGrid) -> NDArray[np.bool_]:
     return ~inflated(~free_cells(grid, PlanningSettings().gap_cells), radius_cells, 0.0)
 
 
-def _is_inside(walls: Walls, point_m: Point) -> bool:
+def _is_inside(walls: WallSegments, point_m: Point) -> bool:
     """Return whether a point is in the room and in none of its furniture: a ray from it crosses an odd number of walls.
 
     Furniture along a wall has an edge in common with the room; the ray crosses both.

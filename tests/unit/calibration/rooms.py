@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robotd.calibration.heads import Heads
+from robotd.calibration.heads import SweepHeads
 from robotd.core.pose import Pose2
 from robotd.sim.buildings.world import World
 from robotd.sim.physics.walls import ray_cast
@@ -19,9 +19,9 @@ class Seen:
     bearings_rad: NDArray[np.float64]
     ranges_m: NDArray[np.float64]
 
-    def heads(self, turned_rad: float = 0.0) -> Heads:
+    def heads(self, turned_rad: float = 0.0) -> SweepHeads:
         """As a head sees it whose zero is turned so far."""
-        return Heads.of(self.bearings_rad + turned_rad, self.ranges_m, np.zeros((len(self.ranges_m), 2)))
+        return SweepHeads.of(self.bearings_rad + turned_rad, self.ranges_m, np.zeros((len(self.ranges_m), 2)))
 
 
 def seen_from(

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.calibration.heads import Heads
+from robotd.calibration.heads import SweepHeads
 from robotd.calibration.matching import match
 from robotd.calibration.two_way_stops import along, round_about
 from robotd.core.errors import CalibrationError
@@ -21,7 +21,7 @@ START = LABORATORY.start_pose
 
 
 @cache
-def reference() -> Heads:
+def reference() -> SweepHeads:
     return seen_from(LABORATORY, START, np.random.default_rng(1)).heads()
 
 
@@ -75,7 +75,9 @@ def test_without_noise_it_is_exact_to_a_millimetre() -> None:
 def test_two_rooms_do_not_match() -> None:
     corridor = load_world("corridor")
     elsewhere = seen_from(corridor, corridor.start_pose, np.random.default_rng(2)).heads()
-    cloud = Heads.of(np.linspace(-3.0, 3.0, 200), np.random.default_rng(3).uniform(0.5, 6.0, 200), np.zeros((200, 2)))
+    cloud = SweepHeads.of(
+        np.linspace(-3.0, 3.0, 200), np.random.default_rng(3).uniform(0.5, 6.0, 200), np.zeros((200, 2))
+    )
     for other in (elsewhere, cloud):
         with pytest.raises(CalibrationError, match="do not show the same walls"):
             match(reference(), other, [IDENTITY])
@@ -83,4 +85,4 @@ def test_two_rooms_do_not_match() -> None:
 
 def test_too_few_readings_are_refused() -> None:
     with pytest.raises(CalibrationError, match="only 5 readings met a wall"):
-        Heads.of(np.zeros(5), np.ones(5), np.zeros((5, 2)))
+        SweepHeads.of(np.zeros(5), np.ones(5), np.zeros((5, 2)))

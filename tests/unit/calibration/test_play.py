@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robotd.calibration.head_zero import combined, play
-from robotd.calibration.heads import Heads
+from robotd.calibration.heads import SweepHeads
 from robotd.core.errors import CalibrationError
 from robotd.sim.buildings.world import load_world
 from tests.unit.calibration.rooms import seen_from
@@ -57,7 +57,7 @@ def test_a_real_head_has_5_degrees() -> None:
     assert math.degrees(error_rad) < 0.5
 
 
-def _heads(readings: list[tuple[float, float]]) -> Heads:
+def _heads(readings: list[tuple[float, float]]) -> SweepHeads:
     # Clockwise from ahead, in degrees; zeros and ranges beyond what the instrument reaches are no readings.
     good = np.array([(math.remainder(-math.radians(deg), math.tau), m) for deg, m in readings if 0.2 < m < 8.0])
-    return Heads.of(good[:, 0], good[:, 1], np.zeros((len(good), 2)))
+    return SweepHeads.of(good[:, 0], good[:, 1], np.zeros((len(good), 2)))

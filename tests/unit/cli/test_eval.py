@@ -13,8 +13,8 @@ from matplotlib.image import imread
 
 from robotd.cli.main import main
 from robotd.evaluation.division import Query
-from robotd.evaluation.result import Result
-from robotd.evaluation.seeking import Job
+from robotd.evaluation.result import CaseResult
+from robotd.evaluation.seeking import Seeking
 from tests.support.recorded_room import drive_lines
 
 
@@ -114,7 +114,7 @@ def test_pictures_without_matplotlib_are_refused_before_any_work(
     monkeypatch.delitem(sys.modules, "robotd.cli.pictures.failures", raising=False)
     monkeypatch.delitem(sys.modules, "robotd.cli.pictures.sheet", raising=False)
     monkeypatch.setitem(sys.modules, "matplotlib.axes", None)
-    monkeypatch.setattr(Job, "__call__", None)
+    monkeypatch.setattr(Seeking, "__call__", None)
     assert run_eval(log_file, "--pictures", tmp_path) == 1
     assert "--pictures needs matplotlib" in capsys.readouterr().err
 
@@ -122,16 +122,16 @@ def test_pictures_without_matplotlib_are_refused_before_any_work(
 def test_ctrl_c_keeps_what_was_done(
     log_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    whole = Job.__call__
+    whole = Seeking.__call__
     answered: list[Query] = []
 
-    def interrupted(self: Job, query: Query) -> Result:
+    def interrupted(self: Seeking, query: Query) -> CaseResult:
         if answered:
             raise KeyboardInterrupt
         answered.append(query)
         return whole(self, query)
 
-    monkeypatch.setattr(Job, "__call__", interrupted)
+    monkeypatch.setattr(Seeking, "__call__", interrupted)
     file = tmp_path / "report.json"
     assert run_eval(log_file, log_file, "--cases", "5", "--json", file) == 130
     assert "interrupted after 1 of 5 cases" in capsys.readouterr().out
@@ -142,7 +142,7 @@ def test_ctrl_c_keeps_what_was_done(
 def test_a_damaged_log_is_named_with_line_and_expectation_before_any_work(
     log_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(Job, "__call__", None)
+    monkeypatch.setattr(Seeking, "__call__", None)
     bad = tmp_path / "bad.log"
     bad.write_text("# a log\nFLASER 3 1.0 x 1.0 0 0 0 0 0 0 1 h 1\n")
     assert run_eval(log_file, bad) == 1

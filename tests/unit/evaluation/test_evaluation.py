@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from robotd.core.reading import ReadingStatus
 from robotd.evaluation.division import Query, elsewhere, halves, interleaved
 from robotd.evaluation.recorded import Reach, map_of, readings_of
-from robotd.evaluation.result import Result
-from robotd.evaluation.seeking import Job, JobSettings, run
+from robotd.evaluation.result import CaseResult
+from robotd.evaluation.seeking import Seeking, SeekingSettings, run
 from robotd.evaluation.verdict import CaseVerdict
 from robotd.grid.settings import GridSettings
 from robotd.localization.judge.error_model import ErrorModel
@@ -93,7 +93,7 @@ def test_a_query_is_near_where_a_scan_of_the_map_was_taken_nearby(log: RecordedL
     assert {query.number: query.is_near for query in division.queries} == {1: True, 3: False}
 
 
-def test_on_another_buildings_map_nothing_is_right(log: RecordedLog, job: Job) -> None:
+def test_on_another_buildings_map_nothing_is_right(log: RecordedLog, job: Seeking) -> None:
     queries = elsewhere(log, log, 3, 0).queries
     assert [query.truth for query in queries] == [None] * 3
     verdicts = {result.verdict for result in run(job, queries)}
@@ -102,19 +102,19 @@ def test_on_another_buildings_map_nothing_is_right(log: RecordedLog, job: Job) -
 
 
 @pytest.fixture
-def job(log: RecordedLog) -> Job:
+def job(log: RecordedLog) -> Seeking:
     grid = map_of(
         interleaved(log, 4, 0).map_scans, REACH, GridSettings(rows=1, cols=1, raise_alpha=0.5, lower_alpha=0.9)
     )
-    judged = JobSettings(REACH, LocalizationSettings(), Judgement(), ErrorModel(), 1)
-    return Job.of("room.log", grid, judged, seed=0, commit="none", protocol="interleaved")
+    judged = SeekingSettings(REACH, LocalizationSettings(), Judgement(), ErrorModel(), 1)
+    return Seeking.of("room.log", grid, judged, seed=0, commit="none", protocol="interleaved")
 
 
-def timeless(result: Result) -> Result:
+def timeless(result: CaseResult) -> CaseResult:
     return replace(result, cpu_s=0.0, wall_s=0.0)
 
 
-def in_another_process(job: Job, queries: Iterable[Query]) -> list[Result]:
+def in_another_process(job: Seeking, queries: Iterable[Query]) -> list[CaseResult]:
     """Be a scheduler: send all of it out by bytes, and get it back so."""
     code = (
         "import pickle, sys; job, *queries = pickle.load(sys.stdin.buffer);"
@@ -123,29 +123,34 @@ def in_another_process(job: Job, queries: Iterable[Query]) -> list[Result]:
     found = subprocess.run(
         [sys.executable, "-c", code], input=pickle.dumps((job, *queries)), capture_output=True, check=True, timeout=60.0
     )
-    results: list[Result] = pickle.loads(found.stdout)
+    results: list[CaseResult] = pickle.loads(found.stdout)
     return results
 
 
-def test_cases_mean_the_same_in_processes_of_their_own(log: RecordedLog, job: Job) -> None:
+def test_cases_mean_the_same_in_processes_of_their_own(log: RecordedLog, job: Seeking) -> None:
     queries = interleaved(log, 4, 0).queries
     elsewhere = list(run(job, queries, in_another_process))
     assert [timeless(result) for result in elsewhere] == [timeless(result) for result in run(job, queries)]
     assert len({result.key for result in elsewhere}) == len(queries)
 
 
-def test_a_key_changes_with_whatever_the_answer_depends_on(job: Job) -> None:
+def test_a_key_changes_with_whatever_the_answer_depends_on(job: Seeking) -> None:
     settings = replace(job.settings, localization=replace(job.settings.localization, range_error_m=0.2))
-    other_map = Job.of(job.log, job.grid, job.settings, seed=0, commit="none", protocol="interleaved")
+    other_map = Seeking.of(job.log, job.grid, job.settings, seed=0, commit="none", protocol="interleaved")
     other_map.grid.cells[0, 0] ^= 1
-    digests = {job.digest, Job.of(job.log, job.grid, settings, seed=0, commit="none", protocol="interleaved").digest}
-    digests.add(Job.of(job.log, other_map.grid, job.settings, seed=0, commit="none", protocol="interleaved").digest)
-    threads = Job.of(job.log, job.grid, replace(job.settings, threads=7), seed=0, commit="none", protocol="interleaved")
+    digests = {
+        job.digest,
+        Seeking.of(job.log, job.grid, settings, seed=0, commit="none", protocol="interleaved").digest,
+    }
+    digests.add(Seeking.of(job.log, other_map.grid, job.settings, seed=0, commit="none", protocol="interleaved").digest)
+    threads = Seeking.of(
+        job.log, job.grid, replace(job.settings, threads=7), seed=0, commit="none", protocol="interleaved"
+    )
     assert len(digests) == 3
     assert threads.digest in digests
 
 
-def test_a_result_is_small_and_comes_back_whole(log: RecordedLog, job: Job) -> None:
+def test_a_result_is_small_and_comes_back_whole(log: RecordedLog, job: Seeking) -> None:
     result = job(interleaved(log, 1, 0).queries[0])
     packed = pickle.dumps(result)
     assert len(packed) < 4096

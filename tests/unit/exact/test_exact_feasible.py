@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from robotd.exact.arrangement import Arrangement
 from robotd.exact.beams import Beam
-from robotd.exact.casting import Outcome, cast
+from robotd.exact.casting import CastOutcome, cast
 from robotd.exact.feasible import PolygonMap, feasible_arrangement, is_feasible
 from robotd.exact.locate import contains, middle
 from robotd.exact.planar import Border, PlanarSet
@@ -28,11 +28,11 @@ def test_every_cell_is_what_casting_the_beam_says(
 ) -> None:
     arrangement = feasible_arrangement(PolygonMap(obstacles, eps), beam)
     for vertex in data.draw(st.lists(st.sampled_from(arrangement.vertices), max_size=12)):
-        expected = cast(obstacles, beam, eps, vertex.point).outcome is Outcome.HOLDS
+        expected = cast(obstacles, beam, eps, vertex.point).outcome is CastOutcome.HOLDS
         assert is_feasible(vertex.mask) == expected, vertex.point
     for edge in data.draw(st.lists(st.integers(0, len(arrangement.edges) - 1), max_size=6)):
         at = somewhere_on(arrangement, edge)
-        expected = cast(obstacles, beam, eps, at).outcome is Outcome.HOLDS
+        expected = cast(obstacles, beam, eps, at).outcome is CastOutcome.HOLDS
         assert is_feasible(arrangement.edges[edge].mask) == expected, at
 
 
@@ -46,4 +46,4 @@ def test_every_point_is_what_casting_the_beam_says(
 ) -> None:
     feasible = feasible_arrangement(PolygonMap(obstacles, eps), beam).select(is_feasible)
     for at in probes:
-        assert contains(feasible, at) == (cast(obstacles, beam, eps, at).outcome is Outcome.HOLDS)
+        assert contains(feasible, at) == (cast(obstacles, beam, eps, at).outcome is CastOutcome.HOLDS)

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robotd.exact.beams import Beam
-from robotd.exact.casting import Outcome, cast, distance_square, rank_at
+from robotd.exact.casting import CastOutcome, cast, distance_square, rank_at
 from robotd.exact.error_bracket import smallest_error
 from robotd.exact.feasible import PolygonMap, best_rank, feasible_poses, of_rank, ranked
 from robotd.exact.locate import contains
@@ -110,7 +110,7 @@ def test_the_rank_is_the_sum_of_single_answers(
     arrangement = ranked(PolygonMap(obstacles, eps), readings)
     for vertex in data.draw(st.lists(st.sampled_from(arrangement.vertices or [None]), max_size=8)):
         if vertex is not None:
-            holding = [cast(obstacles, beam, eps, vertex.point).outcome is Outcome.HOLDS for beam in readings]
+            holding = [cast(obstacles, beam, eps, vertex.point).outcome is CastOutcome.HOLDS for beam in readings]
             assert vertex.mask == sum(holds << number for number, holds in enumerate(holding))
             assert rank_at(obstacles, readings, eps, vertex.point) == sum(holding)
 
@@ -135,7 +135,7 @@ def test_polygons_that_share_an_edge_are_one() -> None:
     assert edge_count(obstacles) == 8
     along_the_seam = Beam(rational(0), rational(6))
     verdict = cast(obstacles, along_the_seam, rational(0), Point(rational(4), rational(-1)))
-    assert verdict.outcome is Outcome.BLOCKED
+    assert verdict.outcome is CastOutcome.BLOCKED
     assert verdict.free_length == 2
 
 

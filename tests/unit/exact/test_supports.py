@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from robotd.exact.points import Point
 from robotd.exact.rationals import ARITHMETICS, Arithmetic
-from robotd.exact.supports import HalfCircle, Line
+from robotd.exact.supports import HalfCircle, SupportLine
 from robotd.exact.surds import sign
 
 EXPONENTS = st.sampled_from([-330, -170, -162, -90, 0, 90, 160, 310])
@@ -25,7 +25,7 @@ def test_sides_are_exact_where_floats_overflow_and_where_they_vanish(
     of_a, of_c, of_x, of_y, of_r2 = (arithmetic(number) for number in numbers)
     unit, steep = (arithmetic(10) ** exponent for exponent in (scale, slope))
     point = Point(of_x * unit, of_y * unit)
-    line = Line(of_a * steep, arithmetic(1), of_c * unit)
+    line = SupportLine(of_a * steep, arithmetic(1), of_c * unit)
     assert line.side(point) == sign(line.a * point.x + point.y - line.c)
     circle = HalfCircle(arithmetic(0), arithmetic(0), (1 + abs(of_r2)) * unit * unit, upper=True)
     assert circle.outside(point) == sign(point.x * point.x + point.y * point.y - circle.r2)

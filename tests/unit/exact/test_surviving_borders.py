@@ -3,7 +3,7 @@
 import pytest
 
 from robotd.exact.beams import Beam
-from robotd.exact.casting import Outcome, cast
+from robotd.exact.casting import CastOutcome, cast
 from robotd.exact.feasible import PolygonMap, best_rank, feasible_poses, of_rank, ranked
 from robotd.exact.locate import contains
 from robotd.exact.measure import face_areas
@@ -44,7 +44,7 @@ def test_a_gap_of_no_width_leaves_an_isolated_point(arithmetic: Arithmetic) -> N
     assert not any(border.start <= only <= border.end and border.support.side(only) == 0 for border in feasible.borders)
     for dx, dy in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, -1)):
         beside = only.moved(rational(dx, arithmetic) / 100, rational(dy, arithmetic) / 100)
-        assert cast(walls, beam, rational(0, arithmetic), beside).outcome is not Outcome.HOLDS
+        assert cast(walls, beam, rational(0, arithmetic), beside).outcome is not CastOutcome.HOLDS
         assert not contains(feasible, beside)
     with_radius = feasible_poses(PolygonMap(walls, rational("1/10", arithmetic)), beam)
     assert max(face_areas(arrange([with_radius]))[1:]) > 0.0, "with an error radius it is an area"
@@ -84,4 +84,4 @@ def test_tangents_hold_just_as_far_as_eps_reaches() -> None:
     for x, y, holds in (("8/5", "24/5", True), ("81/50", "24/5", False), ("-1", "4", True), ("-1001/1000", "4", False)):
         at = Point(rational(x), rational(y))
         assert contains(feasible, at) == holds
-        assert (cast(walls, beam, eps, at).outcome is Outcome.HOLDS) == holds
+        assert (cast(walls, beam, eps, at).outcome is CastOutcome.HOLDS) == holds

@@ -12,7 +12,7 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
-from robotd.sim.physics.walls import Point, Walls, ray_cast
+from robotd.sim.physics.walls import Point, WallSegments, ray_cast
 
 SPEC = GridSpec(0.05, -1.0, -1.0, (140, 200))
 LINES = (
@@ -39,7 +39,7 @@ def drawn(pen_m: float) -> OccupancyGrid:
 
 def scan(pose: Pose2, face_m: float) -> list[RangeReading]:
     """Return half a circle of readings of walls whose faces stand so far from the lines, on either side."""
-    walls, random = Walls.of([side for line in LINES for side in sides(*line, face_m)]), np.random.default_rng(3)
+    walls, random = WallSegments.of([side for line in LINES for side in sides(*line, face_m)]), np.random.default_rng(3)
     readings = []
     for bearing_rad in np.linspace(-math.pi / 2, math.pi / 2, 180):
         range_m = ray_cast(walls, (pose.x_m, pose.y_m), pose.heading_rad + bearing_rad) + random.normal(0, 0.015)

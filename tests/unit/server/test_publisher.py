@@ -15,7 +15,7 @@ from robotd.contract.requests import GetStatus, MapShow
 from robotd.contract.topics import Message, Topic, decode_frame
 from robotd.core.errors import LinkTimeout
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
-from robotd.server.client_connection import Process
+from robotd.server.client_connection import PeerProcess
 from robotd.server.publisher import Publisher
 from robotd.server.zmtp import GREETING, Reader, ready
 from robotd.server.zmtp import Message as Sent
@@ -26,7 +26,7 @@ ERRORS = [OSError(errno.ENOMEM, "Out of memory"), MemoryError(), RuntimeError("c
 class AConnection:
     """Takes all that is sent."""
 
-    process = Process(1, 2)
+    process = PeerProcess(1, 2)
 
     def __init__(self) -> None:
         self.sent: list[Message] = []

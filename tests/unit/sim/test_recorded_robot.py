@@ -8,12 +8,12 @@ import pytest
 from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.logs.carmen import parse_carmen
-from robotd.sim.buildings.building import RecordedBuilding, Stop, encode_recorded_building, select_stops
+from robotd.sim.buildings.building import RecordedBuilding, RecordedStop, encode_recorded_building, select_stops
 from robotd.sim.buildings.log_file import read_log
 from robotd.sim.load import load_robot
 from robotd.sim.recorded_robot import OdometrySource, Place, RecordedHead, RecordedLaser, RecordedRobot
 
-FIRST = Stop(
+FIRST = RecordedStop(
     scan=0,
     pose=Pose2(1.0, 2.0, 0.0),
     odometry=Pose2(0.0, 0.0, 0.0),

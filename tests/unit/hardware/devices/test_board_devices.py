@@ -26,7 +26,7 @@ from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.tap import NoTap
 from robotd.sim.physics.noise import NOISELESS
-from robotd.sim.physics.steppers import HeadSettings
+from robotd.sim.physics.steppers import StepperSettings
 from robotd.sim.robot import SimSettings
 from tests.unit.hardware.conftest import lose
 from tests.unit.hardware.devices.conftest import nowhere, rig
@@ -269,7 +269,7 @@ async def test_the_zeros_of_the_mount_are_applied_both_ways() -> None:
 
 
 async def test_a_head_without_end_pans_all_round_whatever_its_zero() -> None:
-    sim = SimSettings(noise=NOISELESS, head=HeadSettings(pan_limit_rad=math.pi))
+    sim = SimSettings(noise=NOISELESS, head=StepperSettings(pan_limit_rad=math.pi))
     async with rig(sim=sim, pantilt=BoardPanTiltSettings(pan_zero_rad=1.0)) as r:
         limits = await r.pantilt.limits()
         assert (limits.pan_min_rad, limits.pan_max_rad) == (-math.pi, math.pi)

@@ -24,7 +24,7 @@ from robotd.localization.judge.likelihood import Likelihood
 from robotd.localization.judge.second_look import SecondLook, _contrast, second_look, share_on_walls
 from robotd.localization.judge.second_look_settings import SecondLookSettings
 from robotd.localization.judge.shortlist import near
-from robotd.sim.physics.walls import Walls, ray_cast
+from robotd.sim.physics.walls import WallSegments, ray_cast
 
 CUT_OFF_M = 6.0
 Box = tuple[float, float, float, float]
@@ -42,12 +42,12 @@ class World:
     stops_m: tuple[tuple[float, float], ...]
 
 
-def walls_of(boxes: tuple[Box, ...]) -> Walls:
+def walls_of(boxes: tuple[Box, ...]) -> WallSegments:
     sides = []
     for x, y, width, depth in boxes:
         corners = [(x, y), (x + width, y), (x + width, y + depth), (x, y + depth)]
         sides += [(one, other, math.inf) for one, other in zip(corners, corners[1:] + corners[:1], strict=True)]
-    return Walls.of(sides)
+    return WallSegments.of(sides)
 
 
 def scan(

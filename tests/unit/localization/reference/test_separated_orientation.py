@@ -27,14 +27,21 @@ from robotd.localization.reference.separated_orientation import (
     separated_orientation,
 )
 from robotd.sim.buildings.world import load_world
-from robotd.sim.physics.walls import Point, Walls, ray_cast
+from robotd.sim.physics.walls import Point, WallSegments, ray_cast
 
 RESOLUTION_M = 0.05
 SETTINGS = OrientationSettings()
 
 
 def swept(
-    walls: Walls, x_m: float, y_m: float, heading_rad: float, *, cut_off_m: float = 6.0, seed: int = 0, count: int = 300
+    walls: WallSegments,
+    x_m: float,
+    y_m: float,
+    heading_rad: float,
+    *,
+    cut_off_m: float = 6.0,
+    seed: int = 0,
+    count: int = 300,
 ) -> list[RangeReading]:
     """Sigma 2 cm, one reading in twenty wrong."""
     chance, sweep = random.Random(seed), []
@@ -48,7 +55,7 @@ def swept(
     return sweep
 
 
-def drawn(walls: Walls, turn_rad: float = 0.0) -> BinaryMap:
+def drawn(walls: WallSegments, turn_rad: float = 0.0) -> BinaryMap:
     """Draw walls, turned about the origin, on a grid that is large enough; nothing else is occupied."""
     cos, sin = math.cos(turn_rad), math.sin(turn_rad)
     shares = np.linspace(0.0, 1.0, 1500)[:, None, None]
@@ -140,7 +147,7 @@ def test_the_headings_to_search_lie_round_the_four_found_and_hold_the_true_one()
     assert alone == separated_orientation(sweep, axis, SETTINGS).headings_rad
 
 
-def clutter(seed: int) -> Walls:
+def clutter(seed: int) -> WallSegments:
     """Sixty short walls in all directions, none near the robot at the origin."""
     chance = random.Random(seed)
     segments: list[tuple[Point, Point, float]] = []
@@ -153,16 +160,16 @@ def clutter(seed: int) -> Walls:
         )
         if math.hypot(x, y) > 1.0:
             segments.append(((x, y), (x + length * math.cos(angle), y + length * math.sin(angle)), math.inf))
-    return Walls.of(segments)
+    return WallSegments.of(segments)
 
 
-def round_room() -> Walls:
+def round_room() -> WallSegments:
     corners = [(3.0 * math.cos(k * math.tau / 40), 3.0 * math.sin(k * math.tau / 40)) for k in range(41)]
-    return Walls.of((one, other, math.inf) for one, other in itertools.pairwise(corners))
+    return WallSegments.of((one, other, math.inf) for one, other in itertools.pairwise(corners))
 
 
 @pytest.mark.parametrize("walls", [*(clutter(seed) for seed in range(6)), round_room()])
-def test_among_clutter_and_in_a_round_room_it_says_that_it_must_not_be_used(walls: Walls) -> None:
+def test_among_clutter_and_in_a_round_room_it_says_that_it_must_not_be_used(walls: WallSegments) -> None:
     sweep = swept(walls, 0.3, 0.1, 0.4)
     result = separated_orientation(sweep, Axis(0.0, 1.0), SETTINGS)
     assert (result.verdict, result.headings_rad) == (AxisVerdict.READINGS_CLUTTERED, ())

@@ -9,7 +9,7 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.head.desk import Desk
 from robotd.head.jobs import Prepare
-from robotd.head.near import InProcess
+from robotd.head.near import HeadAtHand
 from robotd.head.settings import HeadSettings
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.localizing import Narrowing
@@ -32,7 +32,7 @@ class Counting:
 
 async def test_another_estimator_is_asked_after_each_batch_and_given_what_was_measured() -> None:
     published: list[PoseEstimate] = []
-    head = InProcess(Desk(HeadSettings(), begin=lambda _ready, _job: Counting()), unpaced(AtOnce()))
+    head = HeadAtHand(Desk(HeadSettings(), begin=lambda _ready, _job: Counting()), unpaced(AtOnce()))
     here = await place_of(head, OccupancyGrid(held().spec), "m")
     stop = head.number()
     await head.ask(Prepare(stop, here.ref, here.map_id, (0.0,), None))

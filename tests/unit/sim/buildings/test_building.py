@@ -15,7 +15,7 @@ from robotd.core.pose import IDENTITY, Pose2
 from robotd.logs.carmen import parse_carmen
 from robotd.sim.buildings.building import (
     RecordedBuilding,
-    Stop,
+    RecordedStop,
     encode_recorded_building,
     load_recorded_building,
     select_stops,
@@ -25,7 +25,7 @@ from robotd.sim.buildings.log_file import read_log
 from robotd.sim.physics.walls import Point
 
 LASER = Pose2(-0.04, 0.0, 0.0)
-STOP = Stop(
+STOP = RecordedStop(
     scan=7,
     pose=Pose2(1.0, 2.0, 0.3),
     odometry=Pose2(1.1, 2.1, 0.4),

@@ -15,7 +15,7 @@ from robotd.grid.image import encode_pgm
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.sim.buildings.map_world import borders_of, world_of
 from robotd.sim.load import load_robot
-from robotd.sim.physics.walls import Walls, ray_cast
+from robotd.sim.physics.walls import WallSegments, ray_cast
 
 SPEC = GridSpec(0.5, -1.0, 2.0, (12, 15))
 YAML = b"image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
@@ -37,7 +37,7 @@ def test_light_ends_where_a_wall_cell_begins(
     occupied: NDArray[np.bool_], place: tuple[int, int], heading_rad: float
 ) -> None:
     occupied[place] = False
-    walls = Walls.of((start, end, math.inf) for start, end in borders_of(occupied, SPEC))
+    walls = WallSegments.of((start, end, math.inf) for start, end in borders_of(occupied, SPEC))
     start = SPEC.centre_of(*place)
     assert ray_cast(walls, start, heading_rad) == pytest.approx(walked_m(occupied, start, heading_rad), abs=2e-4)
 

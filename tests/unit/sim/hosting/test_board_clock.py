@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.sim.hosting.board_clock import BoardClock, HeadOnClock, LaserOnClock
 from robotd.sim.physics.plant import ShotAnswer
-from robotd.sim.physics.steppers import Head, HeadSettings
+from robotd.sim.physics.steppers import StepperHead, StepperSettings
 
 CLOCKS = st.builds(BoardClock, st.integers(0, 10**9), st.integers(-200_000, 200_000))
 TIMES = st.integers(0, 10**15)
@@ -37,7 +37,7 @@ def test_clocks_of_a_seed_differ_by_device_and_stay_the_same() -> None:
 
 @given(CLOCKS, TIMES)
 def test_a_head_has_arrived_when_its_board_is_told_so(clock: BoardClock, start_us: int) -> None:
-    head = HeadOnClock(Head(HeadSettings()), clock)
+    head = HeadOnClock(StepperHead(StepperSettings()), clock)
     head.advance(clock.board_us(start_us))
     head.aim(1.0, 0.0)
     arrives_us = head.arrives_us

@@ -9,14 +9,16 @@ from robotd.core.pose import IDENTITY, Pose2
 from robotd.sim.buildings.world import load_world
 from robotd.sim.physics.body import Body, BodySettings
 from robotd.sim.physics.noise import NOISELESS, NoiseSettings, stream
-from robotd.sim.physics.walls import NO_WALLS, Walls, clearance_m
+from robotd.sim.physics.walls import NO_WALLS, WallSegments, clearance_m
 
 COUNTS_PER_M, COUNTS_PER_RAD = 27300.0, 4096.0
-WALL_AHEAD = Walls.of([((1.0, -2.0), (1.0, 2.0), math.inf)])
+WALL_AHEAD = WallSegments.of([((1.0, -2.0), (1.0, 2.0), math.inf)])
 SPEED = st.floats(-0.6, 0.6).map(lambda value: round(value, 3))
 
 
-def body(walls: Walls = NO_WALLS, start: Pose2 = IDENTITY, noise: NoiseSettings = NOISELESS, seed: int = 1) -> Body:
+def body(
+    walls: WallSegments = NO_WALLS, start: Pose2 = IDENTITY, noise: NoiseSettings = NOISELESS, seed: int = 1
+) -> Body:
     made = Body(walls, start, BodySettings(), noise, stream(seed, "drive"))
     made.advance(0)
     return made

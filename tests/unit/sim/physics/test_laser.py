@@ -10,11 +10,11 @@ from robotd.sim.physics.body import Body, BodySettings
 from robotd.sim.physics.laser import Laser, LaserSettings
 from robotd.sim.physics.noise import NOISELESS, NoiseSettings, stream
 from robotd.sim.physics.plant import ShotAnswer
-from robotd.sim.physics.steppers import Head, HeadSettings
-from robotd.sim.physics.walls import Walls
+from robotd.sim.physics.steppers import StepperHead, StepperSettings
+from robotd.sim.physics.walls import WallSegments
 
-WALL_AT_3_M = Walls.of([((3.0, -20.0), (3.0, 20.0), math.inf)])
-FINE = HeadSettings(step_rad=1e-9)
+WALL_AT_3_M = WallSegments.of([((3.0, -20.0), (3.0, 20.0), math.inf)])
+FINE = StepperSettings(step_rad=1e-9)
 
 
 class Rig:
@@ -25,11 +25,11 @@ class Rig:
         settings: LaserSettings | None = None,
         noise: NoiseSettings = NOISELESS,
         start: Pose2 | None = None,
-        walls: Walls = WALL_AT_3_M,
+        walls: WallSegments = WALL_AT_3_M,
     ) -> None:
         start = start or Pose2(0.0, 0.0, 0.0)
         self.body = Body(walls, start, BodySettings(), NOISELESS, stream(1, "drive"))
-        self.head = Head(FINE)
+        self.head = StepperHead(FINE)
         self.laser = Laser(
             walls,
             self.body,
@@ -74,7 +74,7 @@ def test_a_slanted_beam_is_longer_and_ends_on_the_floor() -> None:
 
 
 def test_a_beam_passes_over_what_is_lower() -> None:
-    walls = Walls.of([((2.0, -1.0), (2.0, 1.0), 0.5), ((3.0, -1.0), (3.0, 1.0), math.inf)])
+    walls = WallSegments.of([((2.0, -1.0), (2.0, 1.0), 0.5), ((3.0, -1.0), (3.0, 1.0), math.inf)])
     assert Rig(walls=walls).shoot().range_m == pytest.approx(3.0)
     assert Rig(LaserSettings(height_m=0.4), walls=walls).shoot().range_m == pytest.approx(2.0)
 

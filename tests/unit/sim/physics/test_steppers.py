@@ -4,13 +4,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robotd.sim.physics.steppers import Head, HeadSettings
+from robotd.sim.physics.steppers import StepperHead, StepperSettings
 
-STEP_RAD = HeadSettings().step_rad
+STEP_RAD = StepperSettings().step_rad
 
 
 def test_it_takes_its_time_and_says_beforehand_how_long() -> None:
-    head = Head(HeadSettings())
+    head = StepperHead(StepperSettings())
     head.advance(1_000_000)
     head.aim(1.2, -0.3)
     assert head.arrives_us == pytest.approx(1_200_000, abs=200)
@@ -25,7 +25,7 @@ def test_it_takes_its_time_and_says_beforehand_how_long() -> None:
 
 @given(st.floats(-2.7, 2.7), st.floats(-0.8, 0.5))
 def test_it_rests_on_the_nearest_step_and_reads_back_where_it_rests(pan_rad: float, tilt_rad: float) -> None:
-    head = Head(HeadSettings())
+    head = StepperHead(StepperSettings())
     head.aim(pan_rad, tilt_rad)
     head.advance(2_000_000)
     for found, aimed in zip(head.angles_rad, (pan_rad, tilt_rad), strict=True):
@@ -36,7 +36,7 @@ def test_it_rests_on_the_nearest_step_and_reads_back_where_it_rests(pan_rad: flo
 
 @given(st.lists(st.integers(1, 400_000), max_size=12))
 def test_how_time_is_cut_changes_nothing(looks_us: list[int]) -> None:
-    straight, looked_at = Head(HeadSettings()), Head(HeadSettings())
+    straight, looked_at = StepperHead(StepperSettings()), StepperHead(StepperSettings())
     for head in (straight, looked_at):
         head.aim(2.0, 0.4)
     for look_us in sorted(looks_us):
@@ -48,7 +48,7 @@ def test_how_time_is_cut_changes_nothing(looks_us: list[int]) -> None:
 
 
 def test_a_new_aim_starts_from_where_the_old_one_had_got_to() -> None:
-    head = Head(HeadSettings())
+    head = StepperHead(StepperSettings())
     head.aim(2.0, 0.0)
     head.advance(100_000)
     head.aim(0.0, 0.0)
@@ -57,7 +57,7 @@ def test_a_new_aim_starts_from_where_the_old_one_had_got_to() -> None:
 
 
 def test_halted_it_stays_where_it_is() -> None:
-    head = Head(HeadSettings())
+    head = StepperHead(StepperSettings())
     head.aim(2.0, 0.0)
     head.advance(100_000)
     head.halt()
@@ -67,7 +67,7 @@ def test_halted_it_stays_where_it_is() -> None:
 
 
 def test_a_limited_head_goes_back_the_long_way_and_an_endless_one_the_short_way() -> None:
-    limited, endless = Head(HeadSettings()), Head(HeadSettings(pan_limit_rad=math.pi))
+    limited, endless = StepperHead(StepperSettings()), StepperHead(StepperSettings(pan_limit_rad=math.pi))
     for head in (limited, endless):
         head.aim(2.7, 0.0)
         head.advance(1_000_000)
@@ -81,12 +81,12 @@ def test_a_limited_head_goes_back_the_long_way_and_an_endless_one_the_short_way(
 
 
 def test_its_limits_are_those_of_the_settings() -> None:
-    assert Head(HeadSettings()).limits_rad[:2] == (-math.radians(159), math.radians(159))
-    assert Head(HeadSettings(pan_limit_rad=7.0)).limits_rad[:2] == (-math.pi, math.pi)
+    assert StepperHead(StepperSettings()).limits_rad[:2] == (-math.radians(159), math.radians(159))
+    assert StepperHead(StepperSettings(pan_limit_rad=7.0)).limits_rad[:2] == (-math.pi, math.pi)
 
 
 def test_impossible_settings_are_refused() -> None:
     with pytest.raises(ValueError, match="speed_radps must be positive"):
-        HeadSettings(speed_radps=0.0)
+        StepperSettings(speed_radps=0.0)
     with pytest.raises(ValueError, match="tilt_min_rad"):
-        HeadSettings(tilt_min_rad=0.1)
+        StepperSettings(tilt_min_rad=0.1)

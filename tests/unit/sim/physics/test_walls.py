@@ -6,13 +6,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from robotd.sim.physics.walls import NO_WALLS, Point, Walls, clearance_m, nearest_points, ray_cast
+from robotd.sim.physics.walls import NO_WALLS, Point, WallSegments, clearance_m, nearest_points, ray_cast
 
 COORDINATE = st.integers(-8, 8).map(float)
 POINT = st.tuples(COORDINATE, COORDINATE)
 SEGMENTS = st.lists(st.tuples(POINT, POINT).filter(lambda pair: pair[0] != pair[1]), min_size=1, max_size=8)
 CORNERS = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0))
-SQUARE = Walls.of((start, end, math.inf) for start, end in zip(CORNERS, CORNERS[1:] + CORNERS[:1], strict=True))
+SQUARE = WallSegments.of((start, end, math.inf) for start, end in zip(CORNERS, CORNERS[1:] + CORNERS[:1], strict=True))
 
 
 def slow_ray_cast(segments: list[tuple[Point, Point]], origin: Point, towards: Point) -> float:
@@ -35,8 +35,8 @@ def slow_ray_cast(segments: list[tuple[Point, Point]], origin: Point, towards: P
     return math.inf if best is None else float(best) * math.hypot(dx, dy)
 
 
-def walls_of(segments: list[tuple[Point, Point]]) -> Walls:
-    return Walls.of((start, end, math.inf) for start, end in segments)
+def walls_of(segments: list[tuple[Point, Point]]) -> WallSegments:
+    return WallSegments.of((start, end, math.inf) for start, end in segments)
 
 
 @settings(max_examples=150)
@@ -79,14 +79,14 @@ def test_where_no_wall_is_the_ray_never_ends() -> None:
 
 
 def test_a_rising_beam_passes_over_a_low_wall_and_a_falling_one_meets_it() -> None:
-    walls = Walls.of([((2.0, -1.0), (2.0, 1.0), 0.7), ((3.0, -1.0), (3.0, 1.0), math.inf)])
+    walls = WallSegments.of([((2.0, -1.0), (2.0, 1.0), 0.7), ((3.0, -1.0), (3.0, 1.0), math.inf)])
     assert ray_cast(walls, (0.0, 0.0), 0.0, eye_height_m=0.5, climb=0.2) == pytest.approx(3.0)
     assert ray_cast(walls, (0.0, 0.0), 0.0, eye_height_m=0.5, climb=0.05) == pytest.approx(2.0)
     assert ray_cast(walls, (0.0, 0.0), 0.0, eye_height_m=0.9, climb=-0.2) == pytest.approx(2.0)
 
 
 def test_walls_of_no_length_are_left_out() -> None:
-    assert Walls.of([((1.0, 1.0), (1.0, 1.0), math.inf)]).starts_m.shape == (0, 2)
+    assert WallSegments.of([((1.0, 1.0), (1.0, 1.0), math.inf)]).starts_m.shape == (0, 2)
 
 
 @settings(max_examples=50)
