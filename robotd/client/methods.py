@@ -33,6 +33,7 @@ from robotd.contract.requests import (
     MapLoad,
     MapSave,
     MapShow,
+    PlanTo,
     RecordStart,
     RecordStop,
     Renew,
@@ -153,5 +154,6 @@ class Methods:
     map_discard = Asks(MapDiscard, _nothing)
     map_list = Asks(ListMaps, lambda answer: answer.maps)
     map_show = Asks(MapShow, _all)
+    plan_to = Asks(PlanTo, _all)
     record_start = Asks(RecordStart, lambda answer: answer.path)
     record_stop = Asks(RecordStop, lambda answer: answer.path)

@@ -145,6 +145,12 @@ class PoseEstimate:
     there were too many to tell. Then the state is ``ambiguous``."""
     ends: Ends | None = None
     """How much of the sweep the map knows at the best place that was weighed, whatever the state; None without one."""
+    in_odom: Pose2 | None = None
+    """Where odometry placed the robot at ``time_ns``, or where the sweep began that this is built from; None if that is
+    not known."""
+    map_from_odom: Pose2 | None = None
+    """How the odometry frame lies on the map, once this estimate is taken into account; None while nothing ties them
+    that is believed."""
 
     def __str__(self) -> str:
         """Say in one line what people ask first."""

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from robotd.contract.device_status import DeviceStatus
 from robotd.contract.estimate import PoseEstimate
+from robotd.contract.ways import MissionPlan
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import ReadingStatus, Sweep
@@ -46,6 +47,40 @@ class Status:
 
 
 @dataclass(frozen=True, slots=True)
+class SweepBegun:
+    """A sweep begins; the base stands, and may turn before it ends."""
+
+    time_ns: int
+    number: int
+    total: int
+    """Readings of the whole sweep."""
+    in_odom: Pose2
+    """Where odometry placed the robot: the frame of all its readings, however the base turns for them."""
+    in_map: Pose2 | None
+    """The same on the map in use; None while nothing ties odometry to it."""
+
+
+@dataclass(frozen=True, slots=True)
+class SweepReadings:
+    """Readings of a sweep under way, in columns; :mod:`robotd.contract.sweep_columns` makes and reads them."""
+
+    time_ns: int
+    """When the last of them was made."""
+    number: int
+    first: int
+    """Which reading of the sweep the first of them is, from 0."""
+    bearing_f32le: bytes
+    """Directions [rad] in the robot frame of the sweep's begin, four bytes each, little-endian."""
+    range_f32le: bytes
+    """Ranges [m]; of a miss, how far nothing was met; NaN of every other status."""
+    status_u8: bytes
+    """What became of each, a byte each: its place among the words of ``ReadingStatus``."""
+    origin_x_f32le: bytes
+    """Where the beams start [m], robot frame; empty where all of them start at the robot's centre."""
+    origin_y_f32le: bytes
+
+
+@dataclass(frozen=True, slots=True)
 class SweepProgress:
     """How far a sweep has come."""
 
@@ -67,6 +102,8 @@ class SweepDone:
 
     time_ns: int
     sweep: Sweep
+    in_map: Pose2 | None = None
+    """Where the robot stood on the map in use when it began; None while nothing ties odometry to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,10 +240,13 @@ Event = (
     Odometry
     | PoseEstimate
     | Status
+    | SweepBegun
+    | SweepReadings
     | SweepProgress
     | SweepDone
     | RangeMeasured
     | MissionProgress
+    | MissionPlan
     | MapChanged
     | StopPlaced
     | LoopHeld

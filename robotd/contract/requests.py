@@ -18,10 +18,11 @@ from robotd.contract.answers import (
     RecordingFile,
     Renewed,
 )
-from robotd.contract.arguments import MapName, Number, PoseArgument
+from robotd.contract.arguments import Coordinate, MapName, Number, PoseArgument
 from robotd.contract.events import MapChanged, Status
 from robotd.contract.missions import MISSIONS
 from robotd.contract.request import Request
+from robotd.contract.ways import Way
 from robotd.core.pose import Pose2
 from robotd.core.text import LONGEST, printable, printable_bytes
 
@@ -135,6 +136,14 @@ class MapShow(Request[MapChanged], frozen=True):
             raise ValueError("a version needs a name")
 
 
+class PlanTo(Request[Way], frozen=True):
+    """Ask for the way from here to a place on the map in use; nothing moves."""
+
+    cmd, result, only_looks, deadline_s = "plan_to", Way, True, 60.0
+    x_m: Coordinate
+    y_m: Coordinate
+
+
 class RecordStart(Request[RecordingFile], frozen=True):
     """Start recording, into a new file of the daemon's or into this one, which lies below its ``recording.dir``."""
 
@@ -160,7 +169,7 @@ REQUESTS: dict[str, type[Request[Any]]] = {
         *(Hello, GetStatus, GetConfig),
         *(Arm, Disarm, Stop, Clear),
         *(*MISSIONS, Renew),
-        *(MapSave, MapLoad, MapDiscard, ListMaps, MapShow),
+        *(MapSave, MapLoad, MapDiscard, ListMaps, MapShow, PlanTo),
         *(RecordStart, RecordStop),
     )
 }

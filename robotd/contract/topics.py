@@ -22,10 +22,13 @@ from robotd.contract.events import (
     Reconciled,
     Status,
     StopPlaced,
+    SweepBegun,
     SweepDone,
     SweepProgress,
+    SweepReadings,
 )
 from robotd.contract.plain import VERSION, from_plain, to_plain
+from robotd.contract.ways import MissionPlan
 from robotd.core.errors import RemoteProtocolError
 from robotd.core.pose import Odometry
 
@@ -66,6 +69,8 @@ Published = Event | LogEntry
 EVENTS: dict[type[Published], tuple[Topic, str]] = {
     PoseEstimate: (Topic.POSE, "pose_estimate"),
     Odometry: (Topic.ODOMETRY, "odometry"),
+    SweepBegun: (Topic.SWEEP, "sweep_begun"),
+    SweepReadings: (Topic.SWEEP, "sweep_readings"),
     SweepProgress: (Topic.SWEEP, "sweep_progress"),
     SweepDone: (Topic.SWEEP, "sweep_done"),
     RangeMeasured: (Topic.SWEEP, "range_measured"),
@@ -75,6 +80,7 @@ EVENTS: dict[type[Published], tuple[Topic, str]] = {
     LoopClosed: (Topic.MAP, "loop_closed"),
     Reconciled: (Topic.MAP, "reconciled"),
     MissionProgress: (Topic.MISSION, "mission_progress"),
+    MissionPlan: (Topic.MISSION, "plan"),
     Status: (Topic.STATUS, "status"),
     LogEntry: (Topic.LOG, "log"),
 }

@@ -4,6 +4,7 @@ import zlib
 from collections.abc import Callable
 from typing import Any
 
+from robotd.contract.ways import Way
 from robotd.core.grid_bytes import unpacked_cells
 from robotd.grid.latest import HIT
 from robotd.grid.map_stops import MapStops
@@ -25,8 +26,8 @@ from robotd.head.jobs import (
     Narrowed,
     PlaceStop,
     Plan,
-    Planned,
     Prepare,
+    PreviewWay,
     ReadMap,
     ShowMap,
     StopLaid,
@@ -112,11 +113,13 @@ def _narrow(desk: Desk, job: Narrow) -> Narrowed:
     return Narrowed(estimate, None, None) if entry is None else Narrowed(estimate, entry.digest, entry.encoded)
 
 
-def _plan(desk: Desk, job: Plan) -> Planned:
+def _plan(desk: Desk, job: Plan | PreviewWay) -> Way:
     held = desk.map(job.map)
     # What was hit last is an obstacle whatever the cell's value: one beam is enough (decision 20).
     way = plan(held.grid, job.start, job.goal_m, desk.settings.planning, held.latest == HIT)
-    return Planned(way.waypoints_m, "") if isinstance(way, Path) else Planned((), way.reason)
+    if isinstance(way, Path):
+        return Way(way.waypoints_m, way.length_m)
+    return Way((), 0.0, way.hindrance, way.reason, way.nearest_m)
 
 
 def _forget(desk: Desk, job: Forget) -> Done:
@@ -136,5 +139,6 @@ _TABLE: dict[type[Job[Any]], Callable[[Desk, Any], Any]] = {
     TakeReadings: _take_readings,
     Narrow: _narrow,
     Plan: _plan,
+    PreviewWay: _plan,
     Forget: _forget,
 }

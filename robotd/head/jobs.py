@@ -12,6 +12,7 @@ import msgspec
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import LoopClosed, LoopHeld, Reconciled, StopPlaced
+from robotd.contract.ways import Point, Way
 from robotd.core.grid_spec import GridSpec
 from robotd.core.motion_error import Travel
 from robotd.core.pose import Pose2
@@ -245,22 +246,22 @@ class Narrow(Job[Narrowed], frozen=True):
         return TakeReadings(self.stop, self.readings)
 
 
-class Planned(msgspec.Struct, frozen=True):
-    """A way, or why there is none."""
+class Plan(Job[Way], frozen=True):
+    """Plan a way on a map, to be driven."""
 
-    waypoints_m: tuple[tuple[float, float], ...]
-    """Corners of the way after the start, map frame; the last is the goal itself. Empty if there is no way."""
-    hindrance: str
-    """For people; empty if there is a way."""
-
-
-class Plan(Job[Planned], frozen=True):
-    """Plan a way on a map."""
-
-    name, answer, is_noted = "plan", Planned, True
+    name, answer, is_noted = "plan", Way, True
     map: MapRef
     start: Pose2
-    goal_m: tuple[float, float]
+    goal_m: Point
+
+
+class PreviewWay(Job[Way], frozen=True):
+    """Plan a way on a map, to be looked at."""
+
+    name, answer = "preview way", Way
+    map: MapRef
+    start: Pose2
+    goal_m: Point
 
 
 class Forget(Job[Done], frozen=True):
@@ -275,7 +276,7 @@ JOBS: dict[str, type[Job[Any]]] = {
     for kind in (
         *(BeginMap, TakeMap, ReadMap, ShowMap, MakeFiles, Insert, PlaceStop),
         *(Prepare, Narrow, TakeReadings),
-        *(Plan, Forget),
+        *(Plan, PreviewWay, Forget),
     )
 }
 """Every job there is, by its name."""

@@ -15,13 +15,14 @@ import msgspec
 from robotd.contract.answers import Done, MapEntryInfo, MapList
 from robotd.contract.events import MapChanged
 from robotd.contract.request import Request
-from robotd.contract.requests import ListMaps, MapDiscard, MapLoad, MapSave, MapShow
+from robotd.contract.requests import ListMaps, MapDiscard, MapLoad, MapSave, MapShow, PlanTo
+from robotd.contract.ways import Hindrance, Way
 from robotd.core.clock import now_ns
 from robotd.core.errors import MapError, MissionError
 from robotd.core.pose import Pose2
 from robotd.head.compute import Compute
 from robotd.head.head import Head
-from robotd.head.jobs import HeldMap, ReadMap, ShowMap, TakeMap
+from robotd.head.jobs import HeldMap, PreviewWay, ReadMap, ShowMap, TakeMap
 from robotd.maps.archive import Archive
 from robotd.maps.entry import MapEntry
 from robotd.maps.packed_content import PackedContent
@@ -64,6 +65,7 @@ class MapRequests:
             MapDiscard: self._discard,
             ListMaps: self._list,
             MapShow: self._show,
+            PlanTo: self._plan,
         }
 
     async def _show(self, request: MapShow) -> MapChanged:
@@ -74,6 +76,14 @@ class MapRequests:
             return whole(now_ns(), place.map_id, ref.generation, await self._head.ask(ShowMap(ref)))
         async with self._read(request.name, request.version) as (entry, _, held):
             return whole(now_ns(), entry.digest, 0, held)
+
+    async def _plan(self, request: PlanTo) -> Way:
+        """Return the way from where the robot is to a place on the map in use; MapError if there is none."""
+        place = self._place()
+        here, tie = self._supervisor.robot.drive.odometry.latest, self._supervisor.whereabouts.believed
+        if here is None or tie is None:
+            return Way((), 0.0, Hindrance.NOT_LOCALIZED, "the robot is not localized on this map")
+        return await self._head.ask(PreviewWay(place.ref, tie.in_map(here.in_odom), (request.x_m, request.y_m)))
 
     async def _list(self, _: ListMaps) -> MapList:
         entries = await self._disk.run("list maps", self._archive.list)

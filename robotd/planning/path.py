@@ -5,13 +5,13 @@ is a way at all is known as soon as the field is. Along every leg, from where th
 disk meets no cell that is taken for an obstacle, whatever clearance is set.
 """
 
-import enum
 import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.contract.ways import Hindrance, Point
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
@@ -25,7 +25,15 @@ _AT_CELLS = 1.0
 """What was hit so near to the goal is where the robot is sent to, not something on its way."""
 
 Cell = tuple[int, int]
-Point = tuple[float, float]
+_WORDS = {
+    Hindrance.OUTSIDE: "the goal lies outside the map",
+    Hindrance.OBSTACLE: "the goal lies in an obstacle",
+    Hindrance.UNKNOWN: "the goal has not been seen",
+    Hindrance.TOO_NEAR: "the goal is too near to an obstacle or to unknown ground for the robot to fit",
+    Hindrance.START_OUTSIDE: "the robot stands outside the map",
+    Hindrance.NO_WAY: "no way leads to the goal",
+}
+"""For people; recordings have them, so they stay."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,17 +55,6 @@ class Path:
         return sum(math.dist(*leg) for leg in self.legs_m)
 
 
-class Hindrance(enum.StrEnum):
-    """Why there is no way."""
-
-    OUTSIDE = "the goal lies outside the map"
-    OBSTACLE = "the goal lies in an obstacle"
-    UNKNOWN = "the goal has not been seen"
-    TOO_NEAR = "the goal is too near to an obstacle or to unknown ground for the robot to fit"
-    START_OUTSIDE = "the robot stands outside the map"
-    NO_WAY = "no way leads to the goal"
-
-
 @dataclass(frozen=True, slots=True)
 class Unreachable:
     """There is no way, and why."""
@@ -69,9 +66,10 @@ class Unreachable:
     @property
     def reason(self) -> str:
         """For people."""
+        words = _WORDS[self.hindrance]
         if self.nearest_m is None:
-            return str(self.hindrance)
-        return f"{self.hindrance}; the nearest reachable point is ({self.nearest_m[0]:.2f}, {self.nearest_m[1]:.2f}) m"
+            return words
+        return f"{words}; the nearest reachable point is ({self.nearest_m[0]:.2f}, {self.nearest_m[1]:.2f}) m"
 
 
 def plan(

@@ -1,15 +1,15 @@
 """The requests under way, and whether there is room for one more.
 
 Stops and renewals have room of their own each, so that what takes long cannot keep one from its answer. Of the rest no
-client may take more than half; and as much again is kept for clients that ask seldom. Maps are megabytes each: two at a
-time.
+client may take more than half; and as much again is kept for clients that ask seldom. Maps are megabytes each, and ways
+are found on all of one: two at a time.
 """
 
 import asyncio
 from typing import Any
 
 from robotd.contract.request import Request
-from robotd.contract.requests import Arm, MapShow, Renew
+from robotd.contract.requests import Arm, MapShow, PlanTo, Renew
 from robotd.contract.stopping import STOPPING
 
 _MAPS = 2
@@ -53,4 +53,4 @@ def _kind(request: Request[Any]) -> str:
     """Return what a request shares room with: stops, renewals, maps, or (empty) all the rest."""
     if isinstance(request, STOPPING):
         return "stop"
-    return "renew" if isinstance(request, Renew) else "map" if isinstance(request, MapShow) else ""
+    return "renew" if isinstance(request, Renew) else "map" if isinstance(request, MapShow | PlanTo) else ""

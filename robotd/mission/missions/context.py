@@ -4,20 +4,20 @@ import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
-from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepDone, SweepProgress
+from robotd.contract.events import MissionPhase, MissionProgress, SweepDone
 from robotd.core.clock import now_ns
-from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.core.reading import Sweep
 from robotd.core.text import printable
 from robotd.head.head import Head
 from robotd.mission.missions.settings import MissionSettings
-from robotd.mission.missions.stop_and_sweep import Sweeper
+from robotd.mission.missions.stop_and_sweep import Sweeper, SweepListener
+from robotd.mission.missions.sweep_told import SweepTold
 from robotd.mission.news import Publish
 from robotd.mission.safety.hold import Hold
 from robotd.mission.three_devices import Robot
 from robotd.mission.whereabouts.whereabouts import Whereabouts
 from robotd.recording.results import result_of
 
-_PROGRESS_EVERY = 10
 _LONGEST_MESSAGE = 500
 """Letters: it may quote what a device said, and that has no end of its own."""
 
@@ -65,35 +65,9 @@ class MissionContext:
             self.robot, settings.head_mount, settings.rangefinder, settings.sweep, settings.driving, self.hold
         )
 
-    async def sweep(
-        self, number: int, on_reading: Callable[[RangeReading], None] | None = None, *, base_turns: bool = True
-    ) -> Sweep:
-        """Take a sweep and publish its progress and its end; arguments as of :meth:`Sweeper.sweep`."""
-        counter = SweepCounter(number, self.settings.sweep.readings, self.publish)
-
-        def note(reading: RangeReading) -> None:
-            counter.note(reading)
-            if on_reading is not None:
-                on_reading(reading)
-
-        sweep = await self.sweeper.sweep(number, note, base_turns=base_turns)
-        self.publish(SweepDone(now_ns(), sweep))
+    async def sweep(self, number: int, *listeners: SweepListener, base_turns: bool = True) -> Sweep:
+        """Take a sweep and publish how it goes; arguments as of :meth:`Sweeper.sweep`."""
+        told = SweepTold(number, self.settings.sweep.readings, self.publish, self.whereabouts.in_map)
+        sweep = await self.sweeper.sweep(number, told, *listeners, base_turns=base_turns)
+        self.publish(SweepDone(now_ns(), sweep, self.whereabouts.in_map(sweep.in_odom)))
         return sweep
-
-
-class SweepCounter:
-    """Counts the readings of a sweep under way and publishes every tenth count."""
-
-    def __init__(self, number: int, total: int, publish: Callable[[Event], None]) -> None:
-        self._number = number
-        self._total = total
-        self._publish = publish
-        self._counts = {"hits": 0, "misses": 0, "rejected": 0}
-
-    def note(self, reading: RangeReading) -> None:
-        """Count one reading."""
-        kind = {ReadingStatus.OK: "hits", ReadingStatus.MISS: "misses"}.get(reading.status, "rejected")
-        self._counts[kind] += 1
-        taken = sum(self._counts.values())
-        if taken % _PROGRESS_EVERY == 0 or taken == self._total:
-            self._publish(SweepProgress(now_ns(), self._number, taken, self._total, **self._counts))

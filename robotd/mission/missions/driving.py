@@ -2,32 +2,46 @@
 
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import DriveTo, Legs
+from robotd.contract.ways import Hindrance, Point
 from robotd.core.errors import MissionError
 from robotd.core.pose import Odometry, Pose2
 from robotd.head.jobs import Plan
 from robotd.mission.missions.context import MissionContext, Reporter
+from robotd.mission.missions.plan_told import PlanTold
 from robotd.mission.motion.legs import drive_leg, next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 
 
-async def drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: float, legs: Legs) -> Odometry:
+class NoWay(MissionError):
+    """A place cannot be driven to; the robot stands where it stood."""
+
+    def __init__(self, message: str, reason: Hindrance, nearest_m: Point | None = None) -> None:
+        super().__init__(message)
+        self.reason = reason
+        self.nearest_m = nearest_m
+        """The reachable point nearest to it, if there is one."""
+
+
+async def drive_to(context: MissionContext, place: MapInUse, plan: PlanTold, goal_m: Point, legs: Legs) -> Odometry:
     """Drive to a point in the map frame and return odometry there; after each hold, from where the robot is then.
 
     Raises:
-        MissionError: the robot is not localized on the map, or the point cannot be reached.
+        NoWay: the robot is not localized on the map, or the point cannot be reached.
         DeviceError, LinkTimeout, TransportError: the base failed on the way.
     """
-    return await context.hold.through(lambda: _drive_to(context, place, x_m, y_m, legs))
+    return await context.hold.through(lambda: _drive_to(context, place, plan, goal_m, legs))
 
 
-async def _drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: float, legs: Legs) -> Odometry:
+async def _drive_to(context: MissionContext, place: MapInUse, plan: PlanTold, goal_m: Point, legs: Legs) -> Odometry:
     # Not the latest, which may be from before a hold: the next.
     here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
     tie = context.whereabouts.believed
     if tie is None:
-        raise MissionError("cannot drive on this map: the robot is not localized on it; first: robotctl localize")
+        message = "cannot drive on this map: the robot is not localized on it; first: robotctl localize"
+        raise NoWay(message, Hindrance.NOT_LOCALIZED)
     start = tie.in_map(here.in_odom)
-    waypoints_m = ((x_m, y_m),) if legs is Legs.STRAIGHT else await _planned(context, place, start, (x_m, y_m))
+    waypoints_m = (goal_m,) if legs is Legs.STRAIGHT else await _planned(context, place, start, goal_m)
+    plan.drives((start.x_m, start.y_m), waypoints_m)
     # One tie for all legs: nothing looks round on the way, and what makes it doubted ends the mission.
     odom_from_map = tie.map_from_odom.inverse()
     for waypoint_m in waypoints_m:
@@ -36,19 +50,19 @@ async def _drive_to(context: MissionContext, place: MapInUse, x_m: float, y_m: f
     return here
 
 
-async def _planned(
-    context: MissionContext, place: MapInUse, start: Pose2, goal_m: tuple[float, float]
-) -> tuple[tuple[float, float], ...]:
-    planned = await context.head.ask(Plan(place.ref, start, goal_m))
-    if planned.hindrance:
-        raise MissionError(f"({goal_m[0]:.2f}, {goal_m[1]:.2f}) m cannot be reached: {planned.hindrance}")
-    return planned.waypoints_m
+async def _planned(context: MissionContext, place: MapInUse, start: Pose2, goal_m: Point) -> tuple[Point, ...]:
+    way = await context.head.ask(Plan(place.ref, start, goal_m))
+    if way.reason is not None:
+        message = f"({goal_m[0]:.2f}, {goal_m[1]:.2f}) m cannot be reached: {way.message}"
+        raise NoWay(message, way.reason, way.nearest_m)
+    return way.waypoints_m
 
 
 async def run_driving(context: MissionContext, place: MapInUse, mission: DriveTo, report: Reporter) -> str:
     """Carry out a :class:`DriveTo`; return what to tell the client."""
     report.at(MissionPhase.DRIVING)
-    arrived = await drive_to(context, place, mission.x_m, mission.y_m, mission.legs)
+    plan = PlanTold(report, place.map_id)
+    arrived = await drive_to(context, place, plan, (mission.x_m, mission.y_m), mission.legs)
     pose = context.whereabouts.pose_of(arrived)
     assert pose is not None  # drive_to refuses to start without
     return f"arrived at ({pose.x_m:.2f}, {pose.y_m:.2f}) m"

@@ -13,9 +13,9 @@ from robotd.contract.missions import Localize, PriorHeading
 from robotd.core.angles import wrap_rad
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
-from robotd.core.pose import Odometry, Pose2
+from robotd.core.pose import IDENTITY, Odometry, Pose2
 from robotd.core.reading import RangeReading
-from robotd.head.jobs import Narrow, Prepare
+from robotd.head.jobs import Narrow, Narrowed, Prepare
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.stop_and_sweep import faults_text, standing
 from robotd.mission.whereabouts.map_in_use import MapInUse
@@ -38,37 +38,24 @@ async def run_localizing(
     stop = context.head.number()
     try:
         await context.head.ask(Prepare(stop, place.ref, place.map_id, headings_rad, mission.within))
-        narrowing = Narrowing(context, stop, _between(context, mission))
-        estimate, in_odom = await _looked_round(context, report, narrowing, number)
+        narrowing = Narrowing(context, stop, _between(context, mission), ties=mission.tie)
+        return await _looked_round(context, report, narrowing, number)
     finally:
         context.head.forget(stop)
-    # Without a base there is no odometry that a tie could be made with.
-    if mission.tie and context.robot.has_base:
-        _learn(context, in_odom, estimate)
-    return estimate
 
 
-async def _looked_round(
-    context: MissionContext, report: Reporter, narrowing: "Narrowing", number: int
-) -> tuple[PoseEstimate, Pose2]:
-    """Sweep, narrow down meanwhile, and return the last word, and where odometry put the robot."""
+async def _looked_round(context: MissionContext, report: Reporter, narrowing: "Narrowing", number: int) -> PoseEstimate:
+    """Sweep, narrow down meanwhile, and return the last word."""
     narrowed = asyncio.create_task(narrowing.run(), name="narrowing")
     try:
-        sweep = await context.sweep(number, narrowing.offer)
+        sweep = await context.sweep(number, narrowing)
         report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
-        narrowing.end(sweep.in_odom)
-        return await narrowed, sweep.in_odom
+        narrowing.end()
+        return await narrowed
     finally:
         # Whatever ended the sweep: a task is not left behind by its owner.
         narrowed.cancel()
         await asyncio.wait((narrowed,))
-
-
-def _learn(context: MissionContext, in_odom: Pose2, estimate: PoseEstimate) -> None:
-    """Let the whereabouts know; what is told apart as two places is not near either."""
-    near_m = context.settings.judgement.second_look.same_within_m
-    near_rad = context.settings.localization.heading_error_rad
-    context.whereabouts.looked(estimate, in_odom, near_m=near_m, near_rad=near_rad)
 
 
 def _headings(context: MissionContext, mission: Localize, here: Odometry) -> tuple[float, ...]:
@@ -97,23 +84,38 @@ def _between(context: MissionContext, mission: Localize) -> int:
 class Narrowing:
     """A sweep under way: takes readings as they come, publishes estimates as they firm up."""
 
-    def __init__(self, context: MissionContext, stop: int, readings_between: int) -> None:
+    def __init__(self, context: MissionContext, stop: int, readings_between: int, *, ties: bool) -> None:
+        """Follow a sweep.
+
+        Args:
+            context: what missions work with.
+            stop: the number that the head knows it by.
+            readings_between: how many there are between two estimates.
+            ties: whether odometry is tied to the map where the robot is found.
+        """
         self._context = context
         self._stop = stop
         self._readings_between = readings_between
+        # Without a base there is no odometry that a tie could be made with, nor one to weigh by.
+        self._has_base = context.robot.has_base
+        self._ties = ties and self._has_base
         self._batches: asyncio.Queue[tuple[RangeReading, ...] | None] = asyncio.Queue()  # bounded by one sweep
         self._batch: list[RangeReading] = []
-        self._in_odom: Pose2 | None = None
+        self._in_odom = IDENTITY
+        """Where odometry put the robot when the sweep began."""
 
-    def offer(self, reading: RangeReading) -> None:
+    def begun(self, in_odom: Pose2) -> None:
+        """Take note of where it begins."""
+        self._in_odom = in_odom
+
+    def read(self, reading: RangeReading) -> None:
         """Take a reading."""
         self._batch.append(reading)
         if len(self._batch) == self._readings_between:
             self._flush()
 
-    def end(self, in_odom: Pose2) -> None:
-        """Say that the sweep is whole, and where odometry put the robot when it began."""
-        self._in_odom = in_odom
+    def end(self) -> None:
+        """Say that the sweep is whole."""
         if self._batch:
             self._flush()
         self._batches.put_nowait(None)
@@ -126,26 +128,38 @@ class Narrowing:
         """Narrow down until the sweep is whole; return the last word."""
         while True:
             batch = await self._batches.get()
-            final = batch is None
             readings = tuple(reading for reading in batch or () if reading.is_measured)
-            narrowed = await self._context.head.ask(Narrow(self._stop, readings, now_ns(), final))
-            estimate, made = narrowed.estimate, narrowed.entry
-            # Here: who does array work sees nothing of the whereabouts (decision 30).
-            told = self._weighed(estimate)
-            # The journal has what was told, so the entry that came along will not do.
-            if told is not estimate:
-                estimate, made = told, result_of(told)
-            self._context.whereabouts.said(estimate)
-            self._context.publish(estimate, made)
-            if final:
+            narrowed = await self._context.head.ask(Narrow(self._stop, readings, now_ns(), batch is None))
+            estimate = self._told(narrowed)
+            if estimate.final:
                 return estimate
+
+    def _told(self, narrowed: Narrowed) -> PoseEstimate:
+        """Learn from an estimate, then tell it, and return it as it was told."""
+        estimate, made = narrowed.estimate, narrowed.entry
+        if estimate.final and self._has_base:
+            # Here: who does array work sees nothing of the whereabouts (decision 30).
+            estimate = self._weighed(estimate)
+            # The journal has what was told, so the entry that came along will not do.
+            made = made if estimate is narrowed.estimate else result_of(estimate)
+        if estimate.final and self._ties:
+            self._learn(estimate)
+        self._context.whereabouts.said(estimate)
+        estimate = self._context.whereabouts.tied(estimate, self._in_odom)
+        self._context.publish(estimate, made)
+        return estimate
 
     def _weighed(self, estimate: PoseEstimate) -> PoseEstimate:
         """Return a final estimate as it may be told: who counts wheels knows how far the robot cannot have come."""
-        if self._in_odom is None or not estimate.final or not self._context.robot.has_base:
-            return estimate
         near_m = self._context.settings.judgement.second_look.same_within_m
         return self._context.whereabouts.weighed(estimate, self._in_odom, near_m=near_m)
+
+    def _learn(self, estimate: PoseEstimate) -> None:
+        """Let the whereabouts know; what is told apart as two places is not near either."""
+        settings = self._context.settings
+        near_m = settings.judgement.second_look.same_within_m
+        near_rad = settings.localization.heading_error_rad
+        self._context.whereabouts.looked(estimate, self._in_odom, near_m=near_m, near_rad=near_rad)
 
 
 def pose_text(pose: Pose2) -> str:

@@ -4,16 +4,17 @@ from dataclasses import dataclass
 
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import MapStart
+from robotd.contract.ways import StopState
 from robotd.core.clock import now_ns
-from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
 from robotd.core.reading import Sweep
 from robotd.head.jobs import Insert, Inserted, PlaceStop
 from robotd.localization.outcome import Outcome
 from robotd.localization.stop_poses import StopPoses
 from robotd.mission.missions.context import MissionContext, Reporter
-from robotd.mission.missions.driving import drive_to
+from robotd.mission.missions.driving import NoWay, drive_to
 from robotd.mission.missions.looking_again import looking_again
+from robotd.mission.missions.plan_told import PlanTold
 from robotd.mission.missions.stop_and_sweep import faults_text
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.results import map_result
@@ -42,14 +43,18 @@ async def run_mapping(context: MissionContext, place: MapInUse, mission: MapStar
     """
     unreachable: list[str] = []
     faulty: list[str] = []
-    for stop, (x_m, y_m) in enumerate(((mission.start.x_m, mission.start.y_m), *mission.stops_m)):
+    stops_m = ((mission.start.x_m, mission.start.y_m), *mission.stops_m)
+    plan = PlanTold(report, place.map_id, stops_m)
+    for stop, stop_m in enumerate(stops_m):
+        plan.stop_is(stop, StopState.UNDER_WAY)
         # At stop 0 the robot stands already: the map begins there.
         if stop:
             report.at(MissionPhase.DRIVING, stop)
             try:
-                await drive_to(context, place, x_m, y_m, mission.legs)
+                await drive_to(context, place, plan, stop_m, mission.legs)
             # No way is an answer; a base that fails raises another error, which ends the mission.
-            except MissionError as error:
+            except NoWay as error:
+                plan.stop_is(stop, StopState.UNREACHED, error.reason, error.nearest_m)
                 unreachable.append(f"stop {stop}: {error}")
                 report.at(MissionPhase.DRIVING, message=unreachable[-1])
                 continue
@@ -61,7 +66,8 @@ async def run_mapping(context: MissionContext, place: MapInUse, mission: MapStar
         place.take(inserted)
         change = place.changes(now_ns(), inserted)
         context.publish(change, map_result(change, inserted.digest))
-    return MappingResult(1 + len(mission.stops_m) - len(unreachable), tuple(unreachable), tuple(faulty))
+        plan.stop_is(stop, StopState.SWEPT)
+    return MappingResult(len(stops_m) - len(unreachable), tuple(unreachable), tuple(faulty))
 
 
 async def _laid_in(context: MissionContext, place: MapInUse, sweep: Sweep) -> Inserted:
@@ -75,7 +81,15 @@ async def _laid_in(context: MissionContext, place: MapInUse, sweep: Sweep) -> In
     context.whereabouts.placed(laid.map_from_robot, sweep.in_odom, is_found=is_found)
     for event in laid.decided:
         context.publish(event)
+    _tell_tie(context)
     return laid
+
+
+def _tell_tie(context: MissionContext) -> None:
+    """Say where the robot is by the new tie, without waiting for it to move."""
+    here = context.robot.drive.odometry.latest
+    if here is not None and (predicted := context.whereabouts.predicted(here)) is not None:
+        context.publish(predicted)
 
 
 _FOUND = frozenset(outcome.value for outcome in Outcome if outcome.is_found)

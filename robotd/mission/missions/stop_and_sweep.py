@@ -5,15 +5,14 @@ and the base turns between them; all readings end up in the frame of where the r
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Protocol
 
 from robotd.core.angles import wrap_rad
 from robotd.core.bounds import Within, refuse_outside
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
-from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
+from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep, goes_clockwise
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
 from robotd.hardware.devices.pantilt import PanTiltLimits
@@ -62,6 +61,16 @@ class SweepSettings:
         refuse_outside(self)
 
 
+class SweepListener(Protocol):
+    """Follows a sweep while it is taken."""
+
+    def begun(self, in_odom: Pose2) -> None:
+        """Hear that the robot stands, and where by odometry: the frame of all readings."""
+
+    def read(self, reading: RangeReading) -> None:
+        """Take a reading, as it is made."""
+
+
 @dataclass(frozen=True, slots=True)
 class Sweeper:
     """Takes sweeps with one robot."""
@@ -73,8 +82,8 @@ class Sweeper:
     driving: DrivingSettings
     hold: Hold
 
-    async def sweep(self, number: int, on_reading: Callable[[RangeReading], None], *, base_turns: bool = True) -> Sweep:
-        """Take sweep ``number`` here; ``on_reading`` sees each reading as it is made.
+    async def sweep(self, number: int, *listeners: SweepListener, base_turns: bool = True) -> Sweep:
+        """Take sweep ``number`` here.
 
         Without a base, or if it is not to turn, only the directions are read that the head reaches by itself.
 
@@ -87,6 +96,8 @@ class Sweeper:
         if not (base_turns and self.robot.has_base):
             parts = parts[:1]
         start = await self.hold.through(lambda: standing(self.robot, self.settings.settle_s, self.driving))
+        for listener in listeners:
+            listener.begun(start.in_odom)
         readings: list[RangeReading] = []
         for part in parts:
             here = await self._turn_base(start, part)
@@ -97,7 +108,8 @@ class Sweeper:
             for bearing_rad in part.bearings_rad:
                 reading = await self._read_through_holds(bearing_rad - turned_rad, self._lag_rad(number), start, here)
                 readings.append(reading)
-                on_reading(reading)
+                for listener in listeners:
+                    listener.read(reading)
                 await self._check_enough(readings)
             await self.robot.rangefinder.switch_laser(on=False)
         return Sweep(number, start.in_odom, tuple(readings))

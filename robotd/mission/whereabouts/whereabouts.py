@@ -11,6 +11,8 @@ same comes to the same. What is believed beyond one tie, as the places that a ro
 belongs here too.
 """
 
+from dataclasses import replace
+
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.angles import wrap_rad
 from robotd.core.motion_error import Travel
@@ -58,8 +60,17 @@ class Whereabouts:
 
     def pose_of(self, odometry: Odometry) -> Pose2 | None:
         """Return where odometry places the robot on the map, if anything ties them that is believed."""
+        return self.in_map(odometry.in_odom)
+
+    def in_map(self, in_odom: Pose2) -> Pose2 | None:
+        """Return where a pose in the odometry frame lies on the map, if anything ties them that is believed."""
         believed = self.believed
-        return None if believed is None else believed.in_map(odometry.in_odom)
+        return None if believed is None else believed.in_map(in_odom)
+
+    def tied(self, estimate: PoseEstimate, in_odom: Pose2 | None) -> PoseEstimate:
+        """Return an estimate of a robot at ``in_odom`` with how odometry lies on the map: as it is told."""
+        believed = self.believed
+        return replace(estimate, in_odom=in_odom, map_from_odom=None if believed is None else believed.map_from_odom)
 
     def heading_of(self, odometry: Odometry) -> float | None:
         """Return the robot's heading in the map frame [rad], if anything ever tied odometry to the map.
@@ -106,6 +117,7 @@ class Whereabouts:
         is_doubted = self._tie is not None and self._tie.is_doubted and not is_found
         tie = Tie.between(map_from_robot, in_odom)
         self._tie = tie.doubted() if is_doubted else tie
+        self._said = None  # the tie is another, which is news however little it moves the robot
         self._jumps.forget()
 
     def doubt(self) -> bool:
@@ -120,11 +132,16 @@ class Whereabouts:
         """Return the estimate that odometry leads to, if the robot has moved since the last one said, else None."""
         self._jumps.moved(odometry.in_odom)
         self._travelled.moved(odometry.in_odom)
+        return self.predicted(odometry)
+
+    def predicted(self, odometry: Odometry) -> PoseEstimate | None:
+        """Return where odometry places the robot, if that is news."""
         pose = self.pose_of(odometry)
         if self._map is None or pose is None or not self._has_moved(pose):
             return None
         self._said = pose
-        return PoseEstimate(odometry.time_ns, PoseState.PREDICTED, pose, (), 0, 0, True, self._map.map_id)
+        predicted = PoseEstimate(odometry.time_ns, PoseState.PREDICTED, pose, (), 0, 0, True, self._map.map_id)
+        return self.tied(predicted, odometry.in_odom)
 
     def _has_moved(self, pose: Pose2) -> bool:
         if self._said is None:

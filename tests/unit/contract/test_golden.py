@@ -31,6 +31,7 @@ from robotd.contract.modes import MODE_WORDS
 from robotd.contract.plain import from_plain
 from robotd.contract.requests import REQUESTS
 from robotd.contract.topics import EVENTS, Topic, decode_frame, encode_frame, to_wire
+from robotd.contract.ways import Hindrance, StopState
 from robotd.core.errors import ServerError
 from robotd.core.reading import ReadingStatus
 from tests.unit.contract.messages import GOLDEN, LIMIT, golden_request, message, names, packed
@@ -44,6 +45,8 @@ WORDS: list[type[StrEnum]] = [
     ReadingStatus,
     ErrorCode,
     Topic,
+    Hindrance,
+    StopState,
 ]
 
 

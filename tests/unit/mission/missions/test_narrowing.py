@@ -4,7 +4,7 @@ from types import SimpleNamespace
 from typing import cast
 
 from robotd.contract.estimate import PoseEstimate, PoseState
-from robotd.core.pose import IDENTITY
+from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.head.desk import Desk
@@ -13,6 +13,7 @@ from robotd.head.near import HeadAtHand
 from robotd.head.settings import HeadSettings
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.localizing import Narrowing
+from robotd.mission.whereabouts.whereabouts import Whereabouts
 from tests.support.living import AtOnce
 from tests.support.places import held, place_of, unpaced
 
@@ -38,15 +39,16 @@ async def test_another_estimator_is_asked_after_each_batch_and_given_what_was_me
     await head.ask(Prepare(stop, here.ref, here.map_id, (0.0,), None))
     context = SimpleNamespace(
         head=head,
-        whereabouts=SimpleNamespace(said=lambda estimate: None),
+        whereabouts=Whereabouts(),
         robot=SimpleNamespace(has_base=False),
         publish=lambda estimate, made: published.append(estimate),
     )
-    narrowing = Narrowing(cast("MissionContext", context), stop, 4)
+    narrowing = Narrowing(cast("MissionContext", context), stop, 4, ties=True)
+    narrowing.begun(Pose2(1.0, 2.0, 0.5))
     for number in range(10):
         status = ReadingStatus.WEAK if number == 5 else ReadingStatus.OK
-        narrowing.offer(RangeReading(number, 0.1 * number, status, None if number == 5 else 1.0))
-    narrowing.end(IDENTITY)
+        narrowing.read(RangeReading(number, 0.1 * number, status, None if number == 5 else 1.0))
+    narrowing.end()
     last = await narrowing.run()
     assert [(estimate.readings, estimate.final) for estimate in published] == [
         (4, False),
@@ -55,3 +57,4 @@ async def test_another_estimator_is_asked_after_each_batch_and_given_what_was_me
         (9, True),
     ]
     assert last is published[-1]
+    assert {estimate.in_odom for estimate in published} == {Pose2(1.0, 2.0, 0.5)}
