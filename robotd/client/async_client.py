@@ -84,11 +84,16 @@ class AsyncClient(Methods, Awaiting):
     """
 
     def __init__(
-        self, runtime_dir: str | Path | None = None, *, retry_s: float = 0.5, deadline_s: float | None = None
+        self,
+        runtime_dir: str | Path | None = None,
+        *,
+        name: str = "",
+        retry_s: float = 0.5,
+        deadline_s: float | None = None,
     ) -> None:
         """Prepare to connect; see :class:`robotd.client.Client`."""
         self._endpoints = Endpoints(Path(runtime_dir or runtime_dir_of_user()))
-        self._exchanges = Exchanges(str(self._endpoints), retry_s=retry_s, deadline_s=deadline_s)
+        self._exchanges = Exchanges(str(self._endpoints), name, retry_s=retry_s, deadline_s=deadline_s)
         self._retry_s = retry_s
         self._patience_s = GetStatus.deadline_s if deadline_s is None else deadline_s
         self._waiting: dict[int, asyncio.Future[None]] = {}
@@ -151,9 +156,9 @@ class AsyncClient(Methods, Awaiting):
         """Run a mission to its end and return what is wanted of what happened; ``MissionError`` if it was not done."""
         return value([event async for event in self.run_mission(mission)])
 
-    async def call(self, request: Request[R]) -> R:
-        """Send a request and return its answer."""
-        exchange = self._exchanges.begin(request, _now_s())
+    async def call(self, request: Request[R], client: str | None = None) -> R:
+        """Send a request and return its answer; ``client`` names who wants it, if that is not this program itself."""
+        exchange = self._exchanges.begin(request, _now_s(), client)
         answered = self._waiting[exchange.id] = asyncio.get_running_loop().create_future()
         try:
             while not exchange.is_answered:

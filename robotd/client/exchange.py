@@ -27,6 +27,7 @@ class Exchange(Generic[R]):
         request_id: int,
         request: Request[R],
         *,
+        client: str,
         whom: str,
         now_s: float,
         retry_s: float,
@@ -36,7 +37,7 @@ class Exchange(Generic[R]):
         self.id = request_id
         self._request = request
         self._whom = whom
-        self._data = encode_request(request_id, request)
+        self._data = encode_request(request_id, request, client)
         self._retry_s = retry_s
         self._deadline_s = now_s + deadline_s
         self._next_s = now_s
@@ -106,21 +107,23 @@ class Exchange(Generic[R]):
 class Exchanges:
     """The requests of one client, by number."""
 
-    def __init__(self, whom: str, *, retry_s: float, deadline_s: float | None) -> None:
-        """Ask ``whom``, as complaints shall call it."""
+    def __init__(self, whom: str, name: str = "", *, retry_s: float, deadline_s: float | None) -> None:
+        """Ask ``whom``, as complaints shall call it; ``name`` is what the client calls itself, if anything."""
         self._whom = whom
+        self._name = name
         self._retry_s = retry_s
         self._deadline_s = deadline_s
         self._number = 0
         self._open: dict[int, Exchange[Any]] = {}
 
-    def begin(self, request: Request[R], now_s: float) -> Exchange[R]:
-        """Open an exchange."""
+    def begin(self, request: Request[R], now_s: float, client: str | None = None) -> Exchange[R]:
+        """Open an exchange; ``client`` is another name than the usual, of somebody who is asked for."""
         self._number += 1
         given_s = self._deadline_s
         exchange = Exchange(
             self._number,
             request,
+            client=self._name if client is None else client,
             whom=self._whom,
             now_s=now_s,
             retry_s=self._retry_s,

@@ -80,12 +80,18 @@ class Client(Methods, Blocking):
     """
 
     def __init__(
-        self, runtime_dir: str | Path | None = None, *, retry_s: float = 0.5, deadline_s: float | None = None
+        self,
+        runtime_dir: str | Path | None = None,
+        *,
+        name: str = "",
+        retry_s: float = 0.5,
+        deadline_s: float | None = None,
     ) -> None:
         """Connect; the daemon need not run yet.
 
         Args:
             runtime_dir: where its sockets are; ``ROBOTD_RUNTIME_DIR`` or ``/run/robotd`` if None.
+            name: what the daemon shall call this client; what it sees of its process if empty.
             retry_s: a request is repeated after this long without an answer.
             deadline_s: give up after this long; None leaves each command its own time.
 
@@ -93,7 +99,7 @@ class Client(Methods, Blocking):
             TransportError: the directory's path is too long for a Unix socket.
         """
         self._endpoints = Endpoints(Path(runtime_dir or runtime_dir_of_user()))
-        self._exchanges = Exchanges(str(self._endpoints), retry_s=retry_s, deadline_s=deadline_s)
+        self._exchanges = Exchanges(str(self._endpoints), name, retry_s=retry_s, deadline_s=deadline_s)
         self._context = zmq.Context()
         self._patience_s = GetStatus.deadline_s if deadline_s is None else deadline_s
         self._commands = self._context.socket(zmq.DEALER)
@@ -142,9 +148,9 @@ class Client(Methods, Blocking):
         """Run a mission to its end and return what is wanted of what happened; ``MissionError`` if it was not done."""
         return value(list(self.run_mission(mission)))
 
-    def call(self, request: Request[R]) -> R:
-        """Send a request and return its answer."""
-        exchange = self._exchanges.begin(request, _now_s())
+    def call(self, request: Request[R], client: str | None = None) -> R:
+        """Send a request and return its answer; ``client`` names who wants it, if that is not this program itself."""
+        exchange = self._exchanges.begin(request, _now_s(), client)
         try:
             while not exchange.is_answered:
                 if data := exchange.due(_now_s()):

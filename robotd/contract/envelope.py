@@ -1,9 +1,9 @@
 """Requests and replies as bytes, both ways, pure.
 
-A request is the msgpack map ``{v, id, cmd, args}``; a reply is ``{v, id, ok: true, result}`` or ``{v, id, ok: false,
-error: {code, message}}``. What comes from a client is never trusted: size, nesting, duplicate keys, types, ranges and
-finiteness are checked before anything sees it, and what fails is answered, not raised. A stop is what
-:mod:`robotd.contract.stopping` takes for one, whatever else is wrong with it.
+A request is the msgpack map ``{v, id, cmd, args}``, and may have a ``client``, who asks; a reply is ``{v, id, ok: true,
+result}`` or ``{v, id, ok: false, error: {code, message}}``. What comes from a client is never trusted: size, nesting,
+duplicate keys, types, ranges and finiteness are checked before anything sees it, and what fails is answered, not
+raised. A stop is what :mod:`robotd.contract.stopping` takes for one, whatever else is wrong with it.
 """
 
 import math
@@ -30,6 +30,7 @@ _MAX_ID = 2**63 - 1
 _LONGEST_MESSAGE = 1000
 """Letters of an error's message: what it quotes may be anything, and endless."""
 _KEYS = {"v", "id", "cmd", "args"}
+LONGEST_CLIENT = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +39,8 @@ class NumberedRequest:
 
     id: int
     request: Request[Any]
+    client: str = ""
+    """Who asks, as it calls itself, printable; empty if it does not say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,13 +70,13 @@ def decode_request(data: bytes, max_bytes: int) -> NumberedRequest | BadRequest:
         request_id = _id_of(fields)
         # After the number: so what is refused from here on names the request that it answers.
         _check(fields, _MAX_DEPTH)
-        request = _request_of(fields)
+        request, client = _request_of(fields), _client_of(fields)
     except ServerError as error:
         return _stop_for_an_odd_reason(data) or _bad(request_id, error, means_stop=means_stop(data))
     if request_id is None:
         nameless = ServerError(ErrorCode.MALFORMED, "id must be a whole number from 0 to 2^63 - 1")
         return _bad(None, nameless, means_stop=means_stop(data))
-    return NumberedRequest(request_id, request)
+    return NumberedRequest(request_id, request, client)
 
 
 def refuse_frames(frames: Sequence[bytes]) -> BadRequest:
@@ -90,10 +93,12 @@ def _bad(request_id: int | None, error: ServerError, *, means_stop: bool) -> Bad
 def _stop_for_an_odd_reason(data: bytes) -> NumberedRequest | None:
     """Return a stop that is as it should be but for its reason: too long, bytes, no text at all."""
     top = unpacked(data)
-    if not isinstance(top, Pairs) or len(top) != len(_KEYS):
+    if not isinstance(top, Pairs):
         return None
     try:
-        fields = {key.decode(): value for key, value in top}
+        fields = {key.decode(): value for key, value in top if key != b"client"}
+        if len(fields) != len(_KEYS):
+            return None
         request_id, arguments = _id_of(fields), dict(fields["args"])
     except (AttributeError, KeyError, TypeError, ValueError):
         return None
@@ -103,9 +108,10 @@ def _stop_for_an_odd_reason(data: bytes) -> NumberedRequest | None:
     return NumberedRequest(request_id, Stop.because(arguments[b"reason"]))
 
 
-def encode_request(request_id: int, request: Request[Any]) -> bytes:
-    """Return a request."""
-    return _pack({"v": VERSION, "id": request_id, "cmd": request.cmd, "args": to_plain(request)})
+def encode_request(request_id: int, request: Request[Any], client: str = "") -> bytes:
+    """Return a request; ``client`` says who asks, if it is to be said."""
+    named = {"client": client} if client else {}
+    return _pack({"v": VERSION, "id": request_id, "cmd": request.cmd, "args": to_plain(request), **named})
 
 
 def encode_result(request_id: int, result: object) -> bytes:
@@ -190,8 +196,9 @@ def _request_of(fields: dict[str, Any]) -> Request[Any]:
     version = fields.get("v")
     if type(version) is not int or version != VERSION:
         raise ServerError(ErrorCode.UNSUPPORTED_VERSION, f"this server speaks version {VERSION}, got {_shown(version)}")
-    if unknown := [key for key in fields if key not in _KEYS]:
-        raise ServerError(ErrorCode.MALFORMED, f"unknown key {_shown(unknown[0])}: a request has v, id, cmd and args")
+    if unknown := [key for key in fields if key not in _KEYS and key != "client"]:
+        known = "a request has v, id, cmd and args, and may have a client"
+        raise ServerError(ErrorCode.MALFORMED, f"unknown key {_shown(unknown[0])}: {known}")
     name = fields.get("cmd")
     kind = REQUESTS.get(name) if isinstance(name, str) else None
     if kind is None:
@@ -201,6 +208,14 @@ def _request_of(fields: dict[str, Any]) -> Request[Any]:
     except msgspec.ValidationError as error:
         raise ServerError(ErrorCode.BAD_ARGUMENT, f"{name}: {_in_words(error)}") from error
     return Stop.because(request.reason) if isinstance(request, Stop) else request
+
+
+def _client_of(fields: dict[str, Any]) -> str:
+    client = fields.get("client") or ""
+    if not isinstance(client, str) or len(client) > LONGEST_CLIENT:
+        expected = f"client must be a text of up to {LONGEST_CLIENT} letters"
+        raise ServerError(ErrorCode.BAD_ARGUMENT, f"{expected}, got {_shown(client)}")
+    return printable(client, LONGEST_CLIENT)
 
 
 def _arguments_of(fields: dict[str, Any]) -> Any:

@@ -15,6 +15,18 @@ from robotd.core.reading import ReadingStatus, Sweep
 
 
 @dataclass(frozen=True, slots=True)
+class Commander:
+    """Who started the mission under way, and keeps it alive."""
+
+    client: str
+    """As it calls itself; as the daemon sees it, if it does not."""
+    kind: str
+    """What the request calls its missions, as in :class:`MissionProgress`."""
+    since_ns: int
+    lease_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class Status:
     """The whole robot in one look; published on every change and once a second."""
 
@@ -44,6 +56,8 @@ class Status:
     """When it came into this mode; None from a daemon that does not tell."""
     started_ns: int | None = None
     """When the daemon started."""
+    commander: Commander | None = None
+    """Whose mission is under way; None between missions."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from typing import Any
 import msgspec
 
 from robotd.contract.answers import ErrorCode
+from robotd.contract.envelope import LONGEST_CLIENT
 from robotd.contract.events import MapChanged
 from robotd.contract.map_wire import MapPayload
 from robotd.contract.plain import VERSION
@@ -18,6 +19,7 @@ from robotd.contract.topics import EVENTS
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _ID = {"type": "integer", "minimum": 0, "maximum": 2**63 - 1}
 _VERSION = {"const": VERSION}
+_CLIENT = {"type": "string", "maxLength": LONGEST_CLIENT}
 
 
 def wire_schema() -> dict[str, Any]:
@@ -54,7 +56,7 @@ def _on_the_wire(kind: Any) -> Any:
 
 
 def _request(name: str, arguments: dict[str, Any]) -> dict[str, Any]:
-    fields = {"v": _VERSION, "id": _ID, "cmd": {"const": name}, "args": arguments}
+    fields = {"v": _VERSION, "id": _ID, "cmd": {"const": name}, "args": arguments, "client": _CLIENT}
     # Requests alone are closed: what the daemon does not know it refuses.
     return {"type": "object", "properties": fields, "required": ["v", "id", "cmd"], "additionalProperties": False}
 

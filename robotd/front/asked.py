@@ -52,8 +52,8 @@ class Heart(Protocol):
     async def stopped(self) -> None:
         """Wait until the mission that was stopped has ended."""
 
-    async def perform(self, request: Request[R]) -> R:
-        """Carry out a request, every one but ``hello``, and return its answer; RobotdError says why it was not done."""
+    async def perform(self, request: Request[R], client: str = "") -> R:
+        """Carry out what a client requests, all but ``hello``, and answer it; RobotdError says why it was not done."""
 
 
 class Asked:
@@ -134,7 +134,7 @@ class Asked:
 
     async def _carried_out(self, numbered: NumberedRequest) -> Parts:
         try:
-            return answer(numbered.id, await self._perform(numbered.request))
+            return answer(numbered.id, await self._perform(numbered))
         except asyncio.CancelledError:
             if asyncio.current_task() not in self._overtaken:
                 raise
@@ -145,11 +145,14 @@ class Asked:
             log.exception("request %s", numbered.request.cmd)
             return refusal(numbered.id, ServerError(ErrorCode.INTERNAL, f"internal error: {type(error).__name__}"))
 
-    async def _perform(self, request: Request[Any]) -> object:
+    async def _perform(self, numbered: NumberedRequest) -> object:
+        request = numbered.request
         if isinstance(request, STOPPING):
             await self._heart.stopped()
             return Done()
-        return await self._renewed(request) if isinstance(request, Renew) else await self._heart.perform(request)
+        if isinstance(request, Renew):
+            return await self._renewed(request)
+        return await self._heart.perform(request, numbered.client)
 
     async def _renewed(self, request: Renew) -> Renewed:
         try:

@@ -44,9 +44,9 @@ class FrontSide:
         if stopping := tuple(self._stopping):
             await asyncio.wait(stopping)
 
-    async def perform(self, request: Request[R]) -> R:
-        """Have a request carried out; ServerError if it was not."""
-        answer: Any = await self._ask(self._requests, request)
+    async def perform(self, request: Request[R], client: str = "") -> R:
+        """Have a request of a client carried out; ServerError if it was not."""
+        answer: Any = await self._ask(self._requests, request, client)
         if isinstance(answer, dict):
             answer = from_plain(request.result, answer)
         return answer  # type: ignore[no-any-return]  # the heart answers a request by what it promises
@@ -62,11 +62,11 @@ class FrontSide:
                 case happened:
                     self.events.publish(happened)
 
-    def _ask(self, lane: Channel, request: Request[Any]) -> "asyncio.Future[Any]":
+    def _ask(self, lane: Channel, request: Request[Any], client: str = "") -> "asyncio.Future[Any]":
         self._number += 1
         number = self._number
         answered = asyncio.get_running_loop().create_future()
-        if not lane.send(encode_request(number, request)):
+        if not lane.send(encode_request(number, request, client)):
             answered.set_exception(_STUCK)
             return answered
         self._waiting[number] = answered

@@ -83,8 +83,12 @@ class Control:
         """The whole robot in one look."""
         return self._supervisor.status
 
-    async def perform(self, request: Request[R]) -> R:
+    async def perform(self, request: Request[R], client: str = "") -> R:
         """Carry out a request and return its answer; a new map waits until the one in use is kept.
+
+        Args:
+            request: any but ``hello``.
+            client: who asks; a mission is then this client's.
 
         Raises:
             MissionError: not now, says why; also what was stopped while it waited.
@@ -93,6 +97,9 @@ class Control:
         # Here and not in its row: a replay keeps nothing, and asks by the rows (map_load makes way by itself).
         if isinstance(request, MapStart):
             await self._make_way()
+        if isinstance(request, Mission):
+            started: R = await self._start(request, client)  # type: ignore[assignment]  # what missions are answered
+            return started
         return await self._carry_out(request)
 
     async def repeat(self, name: str, arguments: dict[str, Any]) -> None:
@@ -123,11 +130,11 @@ class Control:
         """Wait until the mission that was stopped has ended."""
         await self._supervisor.mission.ended()
 
-    def start(self, mission: Mission, lease_s: float) -> int:
-        """Start a mission under a lease, whatever becomes of the map in use."""
+    def start(self, mission: Mission, lease_s: float, client: str = "") -> int:
+        """Start a client's mission under a lease, whatever becomes of the map in use."""
         begun_ns = now_ns()
         mission_id = self._supervisor.mission.start(
-            mission, lease_s
+            mission, lease_s, client
         )  # which takes its first step later: nothing is noted yet
         self._note(with_lease(mission, lease_s), begun_ns)
         return mission_id
@@ -162,11 +169,11 @@ class Control:
         await self._supervisor.arming.clear()
         return Done()
 
-    async def _start(self, mission: Mission) -> MissionStarted:
+    async def _start(self, mission: Mission, client: str = "") -> MissionStarted:
         # The server fills in its own where a client names none; without any nothing may move.
         if mission.lease_s is None:
             raise MissionError(f"{mission.cmd} needs a lease")
-        return MissionStarted(self.start(mission, mission.lease_s), mission.lease_s)
+        return MissionStarted(self.start(mission, mission.lease_s, client), mission.lease_s)
 
     async def _make_way(self) -> None:
         halts = self._supervisor.halts

@@ -111,6 +111,7 @@ class Supervisor:
             map_kept_version=place.kept_as if place else None,
             since_ns=self._current.since_ns,
             started_ns=self._started_ns,
+            commander=self.mission.commander,
         )
 
     def publish_status(self) -> None:

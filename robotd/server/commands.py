@@ -12,6 +12,7 @@ from typing import Any, Protocol
 
 from robotd.contract.answers import Done, ErrorCode
 from robotd.contract.envelope import (
+    LONGEST_CLIENT,
     BadRequest,
     NumberedRequest,
     decode_request,
@@ -25,6 +26,7 @@ from robotd.contract.request import Request
 from robotd.contract.requests import Disarm, Renew, Stop
 from robotd.contract.stopping import STOPPING
 from robotd.core.errors import RobotdError, ServerError
+from robotd.core.text import printable
 from robotd.server.handlers import Handlers
 from robotd.server.letters import Letter
 from robotd.server.rates import ALTOGETHER_HZ, PER_CLIENT_HZ, Often, Rates
@@ -84,6 +86,7 @@ class Commands:
                 self._obey(_UNREADABLE, letter)
             self._letters.answer(letter.route, encode_error(numbered.id, numbered.error))
             return False
+        letter = letter.signed(numbered.client)
         if is_stop := isinstance(numbered.request, STOPPING):
             self._obey(numbered.request, letter)
         reply = self._answer_at_once(numbered, letter, is_stop=is_stop)
@@ -149,7 +152,9 @@ class Commands:
 
     async def _carry_out(self, numbered: NumberedRequest, letter: Letter) -> bytes:
         try:
-            result = await self._handlers.carry_out(numbered.request)
+            result = await self._handlers.carry_out(
+                numbered.request, numbered.client or printable(letter.sender, LONGEST_CLIENT)
+            )
             if isinstance(result, MapChanged):
                 reply = await asyncio.to_thread(encode_result, numbered.id, result)  # megabytes
             else:

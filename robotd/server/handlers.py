@@ -24,8 +24,8 @@ class Handlers:
         """Obey a request that stops the robot, at once; :meth:`carry_out` then waits for the mission's end."""
         self._control.halt(request)
 
-    async def carry_out(self, request: Request[Any]) -> object:
-        """Return what a request is answered.
+    async def carry_out(self, request: Request[Any], client: str) -> object:
+        """Return what a request of this client is answered.
 
         Raises:
             RobotdError: why it was not done.
@@ -38,7 +38,7 @@ class Handlers:
                 return Done()
         if isinstance(request, Mission) and request.lease_s is None:
             request = with_lease(request, self._lease_s)
-        return await self._control.perform(request)
+        return await self._control.perform(request, client)
 
     def _hello(self) -> HelloResult:
         return HelloResult(

@@ -6,7 +6,7 @@ for one thing, and a stop waits for no more than one request of each other clien
 
 import asyncio
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 
 from robotd.server.client_connection import Connection
@@ -33,6 +33,10 @@ class Letter:
     def identity(self) -> bytes:
         """What tells this client from the others."""
         return self.route[0]
+
+    def signed(self, name: str) -> "Letter":
+        """Return it as one whose sender has a name, or as it is if that is empty."""
+        return replace(self, sender=f"{name}, {self.sender}") if name else self
 
 
 class Letters:

@@ -26,8 +26,8 @@ class MissionPort(Protocol):
     async def stopped(self) -> None:
         """Wait until the mission that was stopped has ended."""
 
-    async def perform(self, request: Request[R]) -> R:
-        """Carry out a request, every one but ``hello``, and return its answer.
+    async def perform(self, request: Request[R], client: str = "") -> R:
+        """Carry out a request, every one but ``hello``, and return its answer; ``client`` says who asks.
 
         A mission comes with its lease, and an ``arm`` is cancelled when a stop overtakes it.
 

@@ -8,8 +8,16 @@ import pytest
 
 from robotd.config import Config
 from robotd.contract.estimate import PoseEstimate, PoseState
-from robotd.contract.events import Event, MapChanged, MissionPhase, SweepBegun, SweepDone, SweepReadings
-from robotd.contract.missions import DriveTo, Localize, MapStart, PriorHeading
+from robotd.contract.events import (
+    Event,
+    MapChanged,
+    MissionPhase,
+    MissionProgress,
+    SweepBegun,
+    SweepDone,
+    SweepReadings,
+)
+from robotd.contract.missions import DriveTo, Localize, MapStart, PriorHeading, Scan, with_lease
 from robotd.contract.requests import MapLoad, MapSave, PlanTo
 from robotd.contract.sweep_columns import from_columns
 from robotd.contract.ways import Hindrance, MissionPlan, StopState
@@ -142,3 +150,17 @@ async def test_a_way_that_is_asked_for_is_the_way_that_is_driven(live: Live) -> 
     assert plan.start_m is not None
     assert way.length_m == pytest.approx(sum(math.dist(*leg) for leg in pairwise((plan.start_m, *way.waypoints_m))))
     assert (plan.mission_id, plan.stops) == (end.mission_id, ())
+
+
+async def test_the_status_says_whose_mission_is_under_way(live: Live) -> None:
+    async with live(office(), QUICK) as it:
+        before = it.daemon.control.status
+        await it.daemon.control.perform(with_lease(Scan(), 5.0), "anna")
+        meanwhile = it.daemon.control.status
+        while not (isinstance(event := await it.events.get(), MissionProgress) and event.is_last):
+            pass
+        after = it.daemon.control.status
+    assert (before.commander, after.commander) == (None, None)
+    assert meanwhile.commander is not None
+    assert (meanwhile.commander.client, meanwhile.commander.kind) == ("anna", "scan")
+    assert (meanwhile.commander.since_ns, meanwhile.commander.lease_s) == (meanwhile.since_ns, 5.0)

@@ -4,9 +4,10 @@ import asyncio
 import logging
 from collections.abc import Callable
 
-from robotd.contract.events import MissionPhase, MissionProgress
+from robotd.contract.events import Commander, MissionPhase, MissionProgress
 from robotd.contract.missions import Mission
 from robotd.contract.modes import Mode
+from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError, RobotdError
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.rows import MISSION_ROWS, Host, MissionRow
@@ -64,6 +65,7 @@ class MissionUnderWay:
         self._row: MissionRow | None = None
         """Of the mission that is under way, or was last."""
         self._lease: Lease | None = None
+        self._commander: Commander | None = None
         self._stopped_by = ""
         """Why the mission that is ending, or ended last, was stopped."""
 
@@ -82,8 +84,13 @@ class MissionUnderWay:
         """Whether what the mission finds is a better word on where the robot is than odometry."""
         return self._current.mode is Mode.UNDER_WAY and self._row is not None and self._row.pauses_prediction
 
-    def start(self, mission: Mission, lease_s: float) -> int:
-        """Start a mission under a lease and return its number.
+    @property
+    def commander(self) -> Commander | None:
+        """Whose mission the robot is allowed to carry out now."""
+        return self._commander if self._current.mode is Mode.UNDER_WAY else None
+
+    def start(self, mission: Mission, lease_s: float, client: str = "") -> int:
+        """Start a client's mission under a lease and return its number.
 
         Raises:
             MissionError: not armed, or another mission is under way.
@@ -106,6 +113,7 @@ class MissionUnderWay:
         report = Reporter(number, mission.kind, row.stops(mission), self._context.publish, self._advised)
         lease = self._lease = self._make_lease(lease_s, lambda: self.lease_expired(number))
         self._row = row
+        self._commander = Commander(client, mission.kind, now_ns(), lease_s)
         self._current.start(mission.doing, f"mission {number}")
         self._task = asyncio.create_task(self._run(row, mission, report), name=f"mission {number}")
         self._task.add_done_callback(lambda task: self._ended(task, lease, report))

@@ -25,6 +25,7 @@ from robotd.contract.missions import DriveTo, Legs, Localize, MapStart, Mission,
 from robotd.contract.request import Request
 from robotd.contract.requests import (
     REQUESTS,
+    Arm,
     GetStatus,
     MapLoad,
     MapShow,
@@ -69,6 +70,21 @@ def test_a_mission_survives_the_way(mission: Mission) -> None:
     assert isinstance(decoded.request, Mission)
     assert (decoded.request.lease_s, mission.lease_s) == (0.5, None)
     assert msgspec.structs.replace(decoded.request, lease_s=None) == mission
+
+
+def test_who_asks_goes_along_if_it_is_said() -> None:
+    assert decode_request(encode_request(7, Arm(), "anna"), LIMIT) == NumberedRequest(7, Arm(), "anna")
+    assert b"client" not in encode_request(7, Arm())
+    named = decode_request(encode_request(7, Arm(), "anna\n"), LIMIT)
+    assert isinstance(named, NumberedRequest)
+    assert named.client == r"anna\n"
+
+
+@pytest.mark.parametrize("client", ["x" * 65, 7, b"anna", ["anna"]])
+def test_a_name_that_is_none_is_refused(client: object) -> None:
+    refused = decode_request(request(client=client), LIMIT)
+    assert isinstance(refused, BadRequest)
+    assert refused.error.code in {"bad_argument", "malformed"}
 
 
 def test_whole_numbers_do_for_metres() -> None:

@@ -269,7 +269,7 @@ async def test_a_renewal_between_the_last_step_and_the_word_of_it_is_answered_wi
     end = MissionProgress(7, 4, "localize", MissionPhase.DONE, 1, 1, "localized")
     async with fronted() as front:
 
-        async def just_ended(request: Request[Any]) -> Any:
+        async def just_ended(request: Request[Any], client: str = "") -> Any:
             if tells:
                 asyncio.get_running_loop().call_soon(front.control.events.publish, end)
             raise MissionError("mission 4 is not under way any more")

@@ -76,6 +76,8 @@ class FakeControl:
         self.events: Broadcast[Event] = Broadcast()
         self.calls: list[str] = []
         self.performed: list[Request[Any]] = []
+        self.clients: list[str] = []
+        """Who asked for each."""
         self.release = asyncio.Event()
         self.release.set()
         self.arming = asyncio.Event()
@@ -123,8 +125,9 @@ class FakeControl:
         if self._mission is not None:
             await asyncio.wait((self._mission,))
 
-    async def perform(self, request: Request[R]) -> R:
+    async def perform(self, request: Request[R], client: str = "") -> R:
         self.performed.append(request)
+        self.clients.append(client)
         answer: R = await self._answer(request)
         return answer
 

@@ -124,6 +124,36 @@ async def test_a_stop_for_an_odd_reason_is_a_good_one(make_control: Any, args: A
         assert len(control.calls[0]) <= len("stop: ") + LONGEST_REASON
 
 
+async def test_a_named_stop_for_an_odd_reason_is_a_good_one(make_control: Any) -> None:
+    control = make_control()
+    control.armed = True
+    async with served(control) as socket:
+        socket.requests.put_nowait([b"A", stop_with(args={"reason": b"\xff"}, client="anna")])
+        await asyncio.sleep(0.1)
+        assert (control.armed, socket.outcome) == (False, {7: "ok"})
+
+
+async def test_a_stop_by_a_client_of_an_odd_name_is_obeyed(make_control: Any) -> None:
+    control = make_control()
+    control.armed = True
+    async with served(control) as socket:
+        socket.requests.put_nowait([b"A", stop_with(client="x" * 65)])
+        await asyncio.sleep(0.1)
+        assert (control.armed, socket.outcome) == (False, {7: "bad_argument"})
+
+
+async def test_what_moves_the_robot_hears_who_asks(make_control: Any, caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level("INFO")
+    control = make_control()
+    async with served(control) as socket:
+        socket.requests.put_nowait([b"A", encode_request(1, Arm(), "anna")])
+        await asyncio.sleep(0.1)
+        socket.ask(2, RecordStop(), client=b"B")
+        await asyncio.sleep(0.1)
+        assert control.clients == ["anna", "client 42"]
+    assert caplog.messages == ["anna, client 41: arm: done", "client 42: record_stop: there was no recording"]
+
+
 async def test_what_is_no_stop_stops_nothing(make_control: Any) -> None:
     control = make_control()
     control.armed = True
