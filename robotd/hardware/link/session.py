@@ -28,7 +28,7 @@ from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.wire.board import EMERGENCY_SEQ, STOP_BYTES, BoardWire, Received
 
 TRIES = 3
-"""As PROTOCOL.md has it; all bear the same seq, so a board does once what it hears three times."""
+"""At least, as PROTOCOL.md has it; all bear the same seq, so a board does once what it hears three times."""
 _PING_EVERY_S = 1.0
 """As PROTOCOL.md has it; between two the clocks run apart by far less than a round trip is uncertain."""
 _NS_PER_US = 1000
@@ -190,30 +190,27 @@ class Session:
 
     async def _repeat_until_answered(self, request: PendingRequest, takes_s: float) -> Received:
         data = self._wire.encode(request.message, request.seq)
-        began_ns, unheard = now_ns(), 0
-        attempt = 0
-        while attempt < TRIES + unheard:
+        began_ns, attempt = now_ns(), 0
+        while attempt < TRIES or self._may_answer_late(began_ns):
             self._counters.retries += attempt > 0
-            sent_ns = now_ns()
             self._line.write(data)
-            # A slow answer is waited for after the last try only: the board is at work on it, to ask again does no
+            # A slow answer is waited for after the last sure try only: the board is at work on it, to ask again does no
             # harm, and a request that was lost is found out sooner.
-            patience_s = takes_s if attempt >= TRIES + unheard - 1 else 0.0
+            patience_s = takes_s if attempt >= TRIES - 1 else 0.0
             reply = await request.wait(self._round_trip(request.message).timeout_s(attempt) + patience_s)
             if reply is not None:
                 return reply
-            unheard += self._is_line_silent(sent_ns, began_ns)
             attempt += 1
         self._counters.timeouts += 1
         raise LinkTimeout(f"{self.device}: no answer to {type(request.message).__name__} in {attempt} tries")
 
-    def _is_line_silent(self, sent_ns: int, began_ns: int) -> bool:
-        """Say whether nothing at all came since a try: then it is not the request that goes unanswered.
+    def _may_answer_late(self, began_ns: int) -> bool:
+        """Say whether to ask on: for as long as the line may be silent, a request may stay without its answer.
 
-        Such a try does not count while the line may be silent: whether the board is lost is for the reader to say.
+        A board that gets no processor for a while is late with both, and to be late is no failure. One that is lost is
+        found out by the reader, sooner.
         """
-        within_s = (now_ns() - began_ns) / NS_PER_S < self._silence_s
-        return self._serving and self.heard_ns < sent_ns and within_s
+        return self._serving and (now_ns() - began_ns) / NS_PER_S < self._silence_s
 
     def _round_trip(self, message: Message) -> RoundTrip:
         return self._round_trips.setdefault(type(message), RoundTrip())

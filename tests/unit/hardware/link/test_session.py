@@ -347,7 +347,29 @@ async def test_a_result_that_we_do_not_know_is_named_by_its_number() -> None:
             await arming
 
 
-async def test_tries_on_a_line_on_which_nothing_is_heard_do_not_count_until_it_is_lost() -> None:
+async def test_a_request_is_repeated_for_as_long_as_a_board_may_be_late_though_its_telemetry_comes() -> None:
+    async with bench(BoardKind.PANTILT) as b:
+        serving = asyncio.create_task(b.session.serve())
+        await asyncio.sleep(0.1)
+        b.line.from_board = lambda frame: frame.type != Limits.TYPE
+        asking = asyncio.create_task(b.session.ask(ReadLimits(), Limits))
+        await asyncio.sleep(0.7)
+        assert not asking.done()
+        b.line.from_board = lambda _frame: True
+        assert isinstance(await asking, Limits)
+        assert b.counters.retries >= TRIES
+        b.line.from_board = lambda frame: frame.type != Limits.TYPE
+        began_ns = now_ns()
+        with pytest.raises(LinkTimeout, match="no answer to ReadLimits"):
+            await b.session.ask(ReadLimits(), Limits)
+        assert 1.0 <= (now_ns() - began_ns) / NS_PER_S <= TRIES * TIMEOUT_MAX_S
+        assert b.counters.timeouts == 1
+        assert not serving.done()
+        serving.cancel()
+        await asyncio.wait({serving})
+
+
+async def test_a_request_on_a_line_on_which_nothing_is_heard_is_repeated_until_it_is_lost() -> None:
     async with bench(BoardKind.PANTILT) as b:
         serving = asyncio.create_task(b.session.serve())
         await asyncio.sleep(0.1)
