@@ -75,11 +75,8 @@ def replay_recording(path: Path) -> ReplayReport:
         RecordingError: the file is no recording, nothing of it can be read, or it holds what no daemon wrote.
         ConfigError: the recording's configuration is not one of this version.
     """
-    recording = read(path)
-    check_recorded(recording)
-    config = recorded_config(recording.header.config_text)
-    journal = PrerollJournal(recording.header, _NO_LIMIT)
-    replayed = run_recorded(_play(recording, config, journal), start_ns=recording.header.started_ns)
+    recording, config = _repeatable(path)
+    replayed = _played(recording, config)
     return ReplayReport(
         digest=results_digest(replayed),
         recorded_digest=results_digest(recording.entries),
@@ -98,12 +95,20 @@ def replay_events(path: Path, hear: Callable[[Event], None]) -> RecordingHeader:
         RecordingError: the file is no recording, nothing of it can be read, or it holds what no daemon wrote.
         ConfigError: the recording's configuration is not one of this version.
     """
+    recording, config = _repeatable(path)
+    _played(recording, config, hear)
+    return recording.header
+
+
+def _repeatable(path: Path) -> tuple[Recording, Config]:
     recording = read(path)
     check_recorded(recording)
-    config = recorded_config(recording.header.config_text)
-    journal = PrerollJournal(recording.header, _NO_LIMIT)
-    run_recorded(_play(recording, config, journal, hear), start_ns=recording.header.started_ns)
-    return recording.header
+    return recording, recorded_config(recording.header.config_text)
+
+
+def _played(recording: Recording, config: Config, hear: Callable[[Event], None] | None = None) -> tuple[Entry, ...]:
+    """Return what a daemon notes when it is given once more what came to the recorded one."""
+    return run_recorded(_play(recording, config, hear), start_ns=recording.header.started_ns)
 
 
 def check_recorded(recording: Recording) -> None:
@@ -145,10 +150,9 @@ def _check_device(device: str) -> None:
         raise RecordingError(f"expected one of the devices {', '.join(DEVICES)}, got {device[:40]!r}")
 
 
-async def _play(
-    recording: Recording, config: Config, journal: PrerollJournal, hear: Callable[[Event], None] | None = None
-) -> tuple[Entry, ...]:
+async def _play(recording: Recording, config: Config, hear: Callable[[Event], None] | None) -> tuple[Entry, ...]:
     """Let the daemon live through the recording and return what its journal noted until it ended."""
+    journal = PrerollJournal(recording.header, _NO_LIMIT)
     requests: set[asyncio.Task[None]] = set()
 
     def carry_out(entry: CommandEntry) -> None:

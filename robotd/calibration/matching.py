@@ -52,11 +52,6 @@ class Match:
     share: float
     """Of the heads that come near walls, how many lie on them."""
 
-    @property
-    def sigma_m(self) -> float:
-        """Root of the mean squared residual."""
-        return float(np.sqrt((self.residuals_m**2).mean()))
-
 
 def match(reference: SweepHeads, moved: SweepHeads, starts: Sequence[Pose2], *, at_one_place: bool = False) -> Match:
     """Return where ``moved`` was taken in the frame of ``reference``, begun from the best of some starts.

@@ -5,7 +5,7 @@ A method is sugar: ``client.arm()`` is ``client.call(Arm())``. A request without
 
 from collections.abc import Awaitable, Callable, Coroutine
 from functools import wraps
-from typing import Any, Generic, ParamSpec, Self, TypeVar, overload
+from typing import Any, Generic, ParamSpec, Self, TypeVar, cast, overload
 
 from robotd.client.mission_run import MissionEvent, final_estimate, last_sweep, ranges_measured
 from robotd.contract.missions import (
@@ -69,12 +69,12 @@ class Awaiting:
         raise NotImplementedError
 
 
-class Asks(Generic[P, A, V]):
-    """A method that sends one request."""
+class Method(Generic[P, V]):
+    """A method of both clients: its arguments make what is sent, and the client says how its caller waits."""
 
-    def __init__(self, make: Callable[P, Request[A]], value: Callable[[A], V]) -> None:
+    def __init__(self, make: Callable[P, Any], send: Callable[[Blocking | Awaiting, Any], Any]) -> None:
         self._make = make
-        self._value = value
+        self._send = send
         self.__doc__ = make.__doc__
 
     @overload
@@ -90,35 +90,19 @@ class Asks(Generic[P, A, V]):
 
         @wraps(self._make)
         def method(*arguments: P.args, **named: P.kwargs) -> V | Awaitable[V]:
-            return client.ask(self._make(*arguments, **named), self._value)
+            return cast("V | Awaitable[V]", self._send(client, self._make(*arguments, **named)))
 
         return method
 
 
-class CarriesOut(Generic[P, V]):
-    """A method that runs a mission to its end."""
+def asks(make: Callable[P, Request[A]], value: Callable[[A], V]) -> Method[P, V]:
+    """Return the method that sends one request."""
+    return Method(make, lambda client, request: client.ask(request, value))
 
-    def __init__(self, make: Callable[P, Mission], value: Callable[[list[MissionEvent]], V]) -> None:
-        self._make = make
-        self._value = value
-        self.__doc__ = make.__doc__
 
-    @overload
-    def __get__(self, client: None, owner: type) -> Self: ...
-    @overload
-    def __get__(self, client: Blocking, owner: type) -> Callable[P, V]: ...
-    @overload
-    def __get__(self, client: Awaiting, owner: type) -> Callable[P, Coroutine[Any, Any, V]]: ...
-    def __get__(self, client: Blocking | Awaiting | None, owner: type) -> Any:
-        """Return the method of this client."""
-        if client is None:
-            return self
-
-        @wraps(self._make)
-        def method(*arguments: P.args, **named: P.kwargs) -> V | Awaitable[V]:
-            return client.carry_out(self._make(*arguments, **named), self._value)
-
-        return method
+def carries_out(make: Callable[P, Mission], value: Callable[[list[MissionEvent]], V]) -> Method[P, V]:
+    """Return the method that runs a mission to its end."""
+    return Method(make, lambda client, mission: client.carry_out(mission, value))
 
 
 def _all(answer: A) -> A:
@@ -132,28 +116,28 @@ def _nothing(_: object) -> None:
 class Methods:
     """Whatever a client can be asked in one call."""
 
-    hello = Asks(Hello, _all)
-    status = Asks(GetStatus, _all)
-    config = Asks(GetConfig, lambda answer: answer.text)
-    arm = Asks(Arm, _nothing)
-    disarm = Asks(Disarm, _nothing)
-    stop = Asks(Stop.because, _nothing)
-    clear = Asks(Clear, _nothing)
-    start = Asks(with_lease, _all)
-    renew = Asks(Renew, _all)
-    make_map = CarriesOut(MapStart.of, _all)
-    localize = CarriesOut(Localize, final_estimate)
-    drive_to = CarriesOut(DriveTo, _all)
-    drive = CarriesOut(DriveStraight, _all)
-    turn = CarriesOut(Turn, _all)
-    look = CarriesOut(Look, _all)
-    measure = CarriesOut(Measure, ranges_measured)
-    scan = CarriesOut(Scan, last_sweep)
-    map_save = Asks(MapSave, _all)
-    map_load = Asks(MapLoad.of, _all)
-    map_discard = Asks(MapDiscard, _nothing)
-    map_list = Asks(ListMaps, lambda answer: answer.maps)
-    map_show = Asks(MapShow, _all)
-    plan_to = Asks(PlanTo, _all)
-    record_start = Asks(RecordStart, lambda answer: answer.path)
-    record_stop = Asks(RecordStop, lambda answer: answer.path)
+    hello = asks(Hello, _all)
+    status = asks(GetStatus, _all)
+    config = asks(GetConfig, lambda answer: answer.text)
+    arm = asks(Arm, _nothing)
+    disarm = asks(Disarm, _nothing)
+    stop = asks(Stop.because, _nothing)
+    clear = asks(Clear, _nothing)
+    start = asks(with_lease, _all)
+    renew = asks(Renew, _all)
+    make_map = carries_out(MapStart.of, _all)
+    localize = carries_out(Localize, final_estimate)
+    drive_to = carries_out(DriveTo, _all)
+    drive = carries_out(DriveStraight, _all)
+    turn = carries_out(Turn, _all)
+    look = carries_out(Look, _all)
+    measure = carries_out(Measure, ranges_measured)
+    scan = carries_out(Scan, last_sweep)
+    map_save = asks(MapSave, _all)
+    map_load = asks(MapLoad.of, _all)
+    map_discard = asks(MapDiscard, _nothing)
+    map_list = asks(ListMaps, lambda answer: answer.maps)
+    map_show = asks(MapShow, _all)
+    plan_to = asks(PlanTo, _all)
+    record_start = asks(RecordStart, lambda answer: answer.path)
+    record_stop = asks(RecordStop, lambda answer: answer.path)

@@ -161,8 +161,3 @@ class PoseEstimate:
             return f"{self.state}{where}; {explained}"
         places = len(self.regions) + self.regions_left_out
         return f"{self.state}{f': {places} places' if places else ''}; {explained}"
-
-    def unexplained_rad(self, region: Region) -> tuple[float, ...]:
-        """Return the directions of the readings that a region does not explain, robot frame."""
-        pairs = zip(self.bearings_rad, region.explained, strict=True)
-        return tuple(bearing_rad for bearing_rad, explained in pairs if not explained)

@@ -49,7 +49,6 @@ class Protocol:
         return halves(log, cases, seed) if self.name == "half" else interleaved(log, cases, seed)
 
 
-INTERLEAVED = Protocol("interleaved")
 WORDS = ("interleaved", "half", "other=LOG", *(f"degrade={kind}" for kind in KINDS))
 """What may be typed."""
 

@@ -173,19 +173,6 @@ def near_prior(
     )
 
 
-def place_in_box(
-    ground: Ground, readings: Readings, around: Pose2, half: tuple[float, float], settings: PlacingSettings
-) -> Believed | None:
-    """Return where a sweep was taken, by the map alone, within some metres and radians of a pose.
-
-    None where the map does not explain it.
-    """
-    found = _in_box(ground, readings, PoseBox.around(around, *half), settings)
-    if found is None or not _is_explained(found[1], settings):
-        return None
-    return Believed(found[0].pose, np.array(found[0].covariance))
-
-
 def _in_box(
     ground: Ground, readings: Readings, box: PoseBox, settings: PlacingSettings
 ) -> tuple[Tracked, Agreement] | None:

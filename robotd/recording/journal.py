@@ -93,14 +93,3 @@ class Journal(ABC):
             return
         if loop.turn - before <= TURNS_MAX:
             self.note(TurnEntry(time_ns, loop.turn - before))
-
-
-class MemoryJournal(Journal):
-    """Keeps the entries in a list."""
-
-    def __init__(self) -> None:
-        self.entries: list[Entry] = []
-
-    def note(self, entry: Entry) -> None:
-        """Keep an entry."""
-        self.entries.append(entry)

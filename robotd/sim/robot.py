@@ -6,11 +6,10 @@ from typing import Protocol
 
 from robotd.core.errors import ConfigError
 from robotd.core.pose import Pose2
-from robotd.sim.boards.emulated_board import Board
 from robotd.sim.buildings.world import World
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.hosting.board_clock import BoardClock, DriveOnClock, HeadOnClock, LaserOnClock
-from robotd.sim.hosting.host import HostedBoard, OwnBoard
+from robotd.sim.hosting.host import HostedBoard
 from robotd.sim.physics.body import Body, BodySettings
 from robotd.sim.physics.laser import Laser, LaserSettings
 from robotd.sim.physics.noise import NoiseSettings, stream
@@ -137,27 +136,3 @@ def board_by_device(
         "pantilt": dialects.pantilt_on(HeadOnClock(head, clocks["pantilt"]), boot_ids["pantilt"]),
         "rangefinder": dialects.rangefinder_on(LaserOnClock(laser, clocks["rangefinder"]), boot_ids["rangefinder"]),
     }
-
-
-def board_of(robot: EmulatedRobot, device: str) -> OwnBoard:
-    """Return a board that speaks our own protocol, whatever its firmware is written in.
-
-    Raises:
-        ConfigError: the device speaks another dialect.
-    """
-    board = robot.boards[device]
-    if not isinstance(board, OwnBoard):
-        raise ConfigError("the device speaks its maker's protocol", key=device)
-    return board
-
-
-def own_board(robot: EmulatedRobot, device: str) -> Board:
-    """Return a board that speaks our own protocol, in Python: for tests that look inside.
-
-    Raises:
-        ConfigError: the device speaks another dialect.
-    """
-    board = robot.boards[device]
-    if not isinstance(board, Board):
-        raise ConfigError("the device speaks its maker's protocol", key=device)
-    return board

@@ -24,8 +24,6 @@ class EdgeKind(enum.StrEnum):
     """The wheels."""
     LOOP = "loop"
     """A sweep that was found on stops of long ago."""
-    RELAX = "relax"
-    """A sweep that was placed on all stops about it."""
 
     @property
     def is_robust(self) -> bool:

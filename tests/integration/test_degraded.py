@@ -24,10 +24,11 @@ from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.emulators.emulated_ptu import PtuEmulator
 from robotd.sim.faults.laid import cables, connects_of
 from robotd.sim.physics.plant import ShotAnswer
-from robotd.sim.robot import SimulatedRobot, own_board
+from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live
 from tests.integration.test_dialects import config_for
 from tests.support.living import AtOnce, Living, in_directory, until_ready
+from tests.support.own_boards import own_board
 from tests.support.places import head_on, unpaced
 
 QUICK = replace(Config(), sweep=SweepSettings(readings=120))

@@ -21,9 +21,10 @@ from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.sim.buildings.world import load_world
-from robotd.sim.robot import SimulatedRobot, own_board
+from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.living import Living, until_ready
+from tests.support.own_boards import own_board
 from tests.support.places import cells_in_use
 
 pytestmark = pytest.mark.slow

@@ -17,9 +17,10 @@ from robotd.core.errors import MapError, MissionError, RecordingError
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.recording.entries import CommandEntry
 from robotd.sim.buildings.world import load_world
-from robotd.sim.robot import SimulatedRobot, own_board
+from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.living import Living
+from tests.support.own_boards import own_board
 
 QUICK = replace(Config(), sweep=SweepSettings(readings=120))
 

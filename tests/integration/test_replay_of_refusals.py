@@ -27,9 +27,10 @@ from robotd.core.pose import IDENTITY
 from robotd.recording.entries import CommandEntry
 from robotd.recording.reader import read
 from robotd.sim.buildings.world import load_world
-from robotd.sim.robot import SimulatedRobot, own_board
+from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.living import Living
+from tests.support.own_boards import own_board
 from tests.support.replayed import check, replayed
 
 pytestmark = pytest.mark.slow

@@ -45,9 +45,10 @@ from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects, Firmware
 from robotd.sim.physics.body import Body
 from robotd.sim.physics.steppers import StepperHead
-from robotd.sim.robot import DEVICES, SimulatedRobot, board_of, own_board
+from robotd.sim.robot import DEVICES, SimulatedRobot
 from robotd.sim.runtime import connectors
 from tests.support.living import in_directory, until_ready
+from tests.support.own_boards import board_of, own_board
 from tests.support.places import head_of, head_on, place_of, unpaced
 
 LEASE_S = 0.5

@@ -13,8 +13,8 @@ from robotd.core.pose import Odometry
 from robotd.grid.settings import GridSettings
 from robotd.mission.map_requests import use_map
 from robotd.mission.motion.legs import next_odometry
-from robotd.sim.robot import own_board
 from tests.support.bench import Bench
+from tests.support.own_boards import own_board
 from tests.support.places import held
 
 _FAST_MPS = 0.2

@@ -22,16 +22,3 @@ class Tap(Protocol):
 
     def line_broke(self, device: str, time_ns: int, reason: str) -> None:
         """Note that a read from, or a write to, the line of ``device`` failed, and how; it is given up after that."""
-
-
-class NoTap:
-    """Nobody looks."""
-
-    def bytes_passed(self, device: str, direction: Direction, time_ns: int, data: bytes) -> None:
-        """Ignore the bytes."""
-
-    def line_changed(self, device: str, time_ns: int, *, up: bool) -> None:
-        """Ignore the change."""
-
-    def line_broke(self, device: str, time_ns: int, reason: str) -> None:
-        """Ignore the failure."""

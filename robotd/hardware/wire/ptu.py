@@ -14,7 +14,6 @@ from robotd.hardware.wire.word import Word, typed
 LINE_MAX_BYTES = 256
 """What is longer without a line end is noise."""
 
-_LIMIT = re.compile(r"!([PT])")
 _NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?")
 _ENDS = re.compile(rb"[\r\n]")
 

@@ -20,11 +20,11 @@ from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.tie import Tie
-from robotd.sim.robot import own_board
 from tests.studies.liars.liar import Liar
 from tests.studies.liars.lies import Tongue
 from tests.support.bench import Bench
 from tests.support.living import until_ready
+from tests.support.own_boards import own_board
 from tests.support.places import head_of, place_of
 
 LOOK_S = 0.1

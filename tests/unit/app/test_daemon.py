@@ -28,9 +28,10 @@ from robotd.mission.whereabouts.keeping import Keeping
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import read
 from robotd.sim.buildings.world import load_world
-from robotd.sim.robot import SimulatedRobot, own_board
+from robotd.sim.robot import SimulatedRobot
 from robotd.sim.runtime import connectors
 from tests.support.living import until_ready
+from tests.support.own_boards import own_board
 from tests.support.places import head_of, place_of
 
 

@@ -15,7 +15,6 @@ from robotd.localization.placing import (
     PlacingSettings,
     found_within,
     place,
-    place_in_box,
 )
 from robotd.localization.settings import LocalizationSettings
 from tests.support.surveyed_room import SPEC, room, sweep_at
@@ -100,14 +99,6 @@ def test_along_a_corridor_odometry_has_the_say() -> None:
     assert placed.believed.pose.x_m == pytest.approx(3.43, abs=0.05)
     assert placed.believed.pose.y_m == pytest.approx(4.0, abs=0.03)
     assert placed.believed.covariance[0, 0] > 4.0 * placed.believed.covariance[1, 1]
-
-
-def test_within_a_box_the_map_alone_has_the_say_or_says_nothing() -> None:
-    ground, start = ground_of(HERE, Pose2(3.0, 2.0, 0.0)), HERE @ Pose2(0.1, 0.1, -0.05)
-    found = place_in_box(ground, seen_from(HERE), start, (0.25, 0.08), USUAL)
-    assert found is not None
-    assert off(found.pose, HERE)[0] < 0.03
-    assert place_in_box(ground, seen_from(Pose2(9.0, 6.5, 2.0)), start, (0.25, 0.08), USUAL) is None
 
 
 def test_a_place_is_found_within_a_disk_or_not_at_all() -> None:

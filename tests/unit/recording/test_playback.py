@@ -27,11 +27,12 @@ from robotd.recording.entries import (
     LineEntry,
     RecordingHeader,
 )
-from robotd.recording.journal import Journal, MemoryJournal
+from robotd.recording.journal import Journal
 from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback, RecordedCompute
 from robotd.recording.reader import Recording, read
 from robotd.recording.recorder import Recorder
+from tests.support.memory_journal import MemoryJournal
 
 START_NS = 5_000_000_000
 HEADER = RecordingHeader("0.1.0", "", 1, 0, START_NS)

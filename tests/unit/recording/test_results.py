@@ -12,8 +12,8 @@ from robotd.head.jobs import Inserted
 from robotd.mission.news import News
 from robotd.mission.whereabouts.whereabouts import unlocalized
 from robotd.recording.entries import ResultEntry
-from robotd.recording.journal import MemoryJournal
 from robotd.recording.results import map_result, result_of
+from tests.support.memory_journal import MemoryJournal
 from tests.support.places import place
 
 READING = RangeReading(10, 0.5, ReadingStatus.OK, 2.0)

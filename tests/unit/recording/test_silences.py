@@ -11,10 +11,11 @@ from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.recording.entries import CauseEntry, Entry, RecordingHeader
-from robotd.recording.journal import Journal, MemoryJournal
+from robotd.recording.journal import Journal
 from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback
 from robotd.recording.reader import Recording
+from tests.support.memory_journal import MemoryJournal
 
 HEADER = RecordingHeader("0.1.0", "", 1, 0, 0)
 PATIENCE_S = 0.1

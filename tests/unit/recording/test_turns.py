@@ -14,11 +14,12 @@ from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.recording.encoding import decode, encode
 from robotd.recording.entries import BytesEntry, Entry, RecordingHeader, TurnEntry
-from robotd.recording.journal import Journal, MemoryJournal
+from robotd.recording.journal import Journal
 from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback
 from robotd.recording.reader import Recording, read
 from robotd.recording.recorder import Recorder
+from tests.support.memory_journal import MemoryJournal
 
 HEADER = RecordingHeader("0.1.0", "", 1, 0, 0)
 STEPS = 4

@@ -21,14 +21,15 @@ from robotd.hardware.devices.board_pantilt import BoardPanTilt, BoardPanTiltSett
 from robotd.hardware.devices.board_rangefinder import BoardRangefinder, BoardRangefinderSettings
 from robotd.hardware.devices.device import Device
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.serial_port import open_serial
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.sim.buildings.world import load_world
 from robotd.sim.physics.noise import NOISELESS
-from robotd.sim.robot import EmulatedRobot, SimSettings, SimulatedRobot, own_board
+from robotd.sim.robot import EmulatedRobot, SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors, run_on_ptys
+from tests.support.own_boards import own_board
+from tests.support.taps import NoTap
 
 
 def office_robot(seed: int = 1) -> SimulatedRobot:

@@ -18,14 +18,15 @@ from robotd.hardware.devices.board_pantilt import BoardPanTilt, BoardPanTiltSett
 from robotd.hardware.devices.board_rangefinder import BoardRangefinder, BoardRangefinderSettings
 from robotd.hardware.devices.device import Device
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects, Firmware
 from robotd.sim.hosting.host import OwnBoard
 from robotd.sim.physics.noise import NOISELESS
-from robotd.sim.robot import SimSettings, SimulatedRobot, board_of
+from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
+from tests.support.own_boards import board_of
+from tests.support.taps import NoTap
 from tests.unit.hardware.conftest import FaultyLine
 
 BOARDS = Firmware.PYTHON

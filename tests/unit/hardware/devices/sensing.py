@@ -12,13 +12,13 @@ from robotd.hardware.devices.catalogue import RANGEFINDERS as DIALECTS
 from robotd.hardware.devices.catalogue import rangefinder
 from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
 from robotd.sim.emulators.catalogue import RANGEFINDERS
 from robotd.sim.hosting.board_clock import BoardClock
 from robotd.sim.hosting.host import HostedBoard, serve
 from robotd.sim.physics.plant import ShotAnswer
+from tests.support.taps import NoTap
 
 
 class Wall:

@@ -24,10 +24,10 @@ from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.physics.steppers import StepperSettings
 from robotd.sim.robot import SimSettings
+from tests.support.taps import NoTap
 from tests.unit.hardware.conftest import lose
 from tests.unit.hardware.devices.conftest import nowhere, rig
 

@@ -14,13 +14,13 @@ from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.dimetix_rangefinder import DimetixRangefinder, DimetixSettings
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
 from robotd.sim.emulators.emulated_dimetix import DimetixEmulator
 from robotd.sim.hosting.board_clock import BoardClock
 from robotd.sim.hosting.host import serve
 from robotd.sim.physics.plant import ShotAnswer
+from tests.support.taps import NoTap
 
 
 class Wall:

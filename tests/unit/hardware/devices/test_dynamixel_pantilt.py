@@ -12,7 +12,6 @@ from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError
 from robotd.hardware.devices.dynamixel_pantilt import DynamixelPanTilt, DynamixelSettings
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.dynamixel import Instruction
 from robotd.sim.buildings.world import load_world
@@ -22,6 +21,7 @@ from robotd.sim.emulators.paced import Paced
 from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
+from tests.support.taps import NoTap
 
 PAN, TILT = 1, 2
 OVERLOADED, OVERHEATED = 0x20, 0x04

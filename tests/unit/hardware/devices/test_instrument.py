@@ -18,12 +18,12 @@ from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Rangefinder, Shot
 from robotd.hardware.devices.tfmini_rangefinder import TfminiSettings
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire import tfmini
 from robotd.hardware.wire.tfmini import Model
 from robotd.sim.physics.plant import ShotAnswer
+from tests.support.taps import NoTap
 from tests.unit.hardware.devices.conftest import nowhere, rig
 from tests.unit.hardware.devices.sensing import sensor
 

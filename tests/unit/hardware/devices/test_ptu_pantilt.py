@@ -15,7 +15,6 @@ from robotd.hardware.devices.pantilt import LOST_STEPS
 from robotd.hardware.devices.ptu_pantilt import PtuPanTilt
 from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Transport
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
@@ -24,6 +23,7 @@ from robotd.sim.emulators.paced import Paced
 from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
+from tests.support.taps import NoTap
 
 STEP_RAD = math.radians(185.142857 / 3600)
 

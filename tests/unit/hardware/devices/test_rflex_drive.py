@@ -16,7 +16,6 @@ from robotd.core.pose import STANDSTILL, Twist2
 from robotd.hardware.devices.device import PAST_LOOP_S
 from robotd.hardware.devices.rflex_drive import NO_WATCHDOG, RflexDrive, RflexSettings
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.rflex import OtherFrame, RflexWire
 from robotd.sim.buildings.world import load_world
@@ -27,6 +26,7 @@ from robotd.sim.emulators.paced import Paced
 from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
+from tests.support.taps import NoTap
 
 SETTINGS = RflexSettings(counts_per_m=emulated_rflex.COUNTS_PER_M, counts_per_rad=emulated_rflex.COUNTS_PER_RAD)
 TTL_S = 0.4

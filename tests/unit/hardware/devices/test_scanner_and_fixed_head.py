@@ -18,7 +18,6 @@ from robotd.hardware.devices.gaze import Fan, Gaze
 from robotd.hardware.devices.scip_rangefinder import ScipRangefinder
 from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
@@ -27,6 +26,7 @@ from robotd.sim.emulators.paced import Paced
 from robotd.sim.hosting.board_clock import BoardClock
 from robotd.sim.hosting.host import serve
 from robotd.sim.physics.plant import ShotAnswer
+from tests.support.taps import NoTap
 
 STEP_RAD = math.tau / 1440
 

@@ -21,11 +21,11 @@ from robotd.hardware.devices.fixed_pantilt import FixedHeadSettings
 from robotd.hardware.devices.rflex_drive import RflexSettings
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
 from robotd.sim.emulators.paced import Paced
 from robotd.sim.robot import SimulatedRobot
+from tests.support.taps import NoTap
 from tests.unit.hardware.devices.conftest import nowhere
 
 NAMES = [(device, name) for device, dialects in catalogue.DIALECTS.items() for name in dialects]

@@ -13,10 +13,10 @@ from robotd.core.errors import DeviceError, LinkTimeout, TransportError
 from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.lw20 import Lw20Answer, Lw20Wire
+from tests.support.taps import NoTap
 
 
 class Thing(VendorDevice[Lw20Answer]):

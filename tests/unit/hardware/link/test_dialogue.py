@@ -10,9 +10,9 @@ import pytest
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
 from robotd.hardware.link.dialogue import Dialogue, DialogueCounters, Heard
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
+from tests.support.taps import NoTap
 
 QUIET_S = 0.05
 STOP = b"stop\n"

@@ -12,10 +12,10 @@ from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError, RobotdError, TransportError
 from robotd.core.together import together
 from robotd.hardware.link.keep_up import BACKOFF_MAX_S, BACKOFF_MIN_S, keep_up
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport
+from tests.support.taps import NoTap
 
 
 class Talker:

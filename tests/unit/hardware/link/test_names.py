@@ -10,12 +10,12 @@ import pytest
 from robotd.contract.device_status import LinkState
 from robotd.hardware.devices.board_drive import BoardDrive, BoardDriveSettings
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.transport.address import connector
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.sim.buildings.world import load_world
 from robotd.sim.faults.laid import cables_on_ptys
 from robotd.sim.robot import SimulatedRobot
+from tests.support.taps import NoTap
 
 
 async def until(device: BoardDrive, link: LinkState, detail: str = "") -> None:

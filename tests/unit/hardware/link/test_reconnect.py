@@ -34,8 +34,9 @@ from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES, BoardWire
 from robotd.sim.boards.emulated_board import Board
 from robotd.sim.buildings.world import load_world
-from robotd.sim.robot import SimulatedRobot, own_board
+from robotd.sim.robot import SimulatedRobot
 from robotd.sim.runtime import connectors
+from tests.support.own_boards import own_board
 
 
 class Tape:

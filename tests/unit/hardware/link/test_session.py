@@ -19,15 +19,16 @@ from robotd.hardware.link.clock_sync import ClockSync
 from robotd.hardware.link.handshake import Terms, shake_hands
 from robotd.hardware.link.round_trip import TIMEOUT_MAX_S
 from robotd.hardware.link.session import TRIES, LinkCounters, Session
-from robotd.hardware.link.tap import NoTap
 from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.wire.board import STOP_BYTES, BoardWire, Received
 from robotd.sim.boards.emulated_board import Board, Outcome
 from robotd.sim.buildings.world import load_world
 from robotd.sim.physics.laser import LaserSettings
-from robotd.sim.robot import SimSettings, SimulatedRobot, own_board
+from robotd.sim.robot import SimSettings, SimulatedRobot
 from robotd.sim.runtime import connectors
+from tests.support.own_boards import own_board
+from tests.support.taps import NoTap
 from tests.unit.hardware.conftest import FaultyLine, lose, never, once
 
 MS = 1_000_000

@@ -1,0 +1,30 @@
+"""The boards of a simulated robot that speak our own protocol, to look inside."""
+
+from robotd.core.errors import ConfigError
+from robotd.sim.boards.emulated_board import Board
+from robotd.sim.hosting.host import OwnBoard
+from robotd.sim.robot import EmulatedRobot
+
+
+def board_of(robot: EmulatedRobot, device: str) -> OwnBoard:
+    """Return a board that speaks our own protocol, whatever its firmware is written in.
+
+    Raises:
+        ConfigError: the device speaks another dialect.
+    """
+    board = robot.boards[device]
+    if not isinstance(board, OwnBoard):
+        raise ConfigError("the device speaks its maker's protocol", key=device)
+    return board
+
+
+def own_board(robot: EmulatedRobot, device: str) -> Board:
+    """Return a board that speaks our own protocol, in Python: for tests that look inside.
+
+    Raises:
+        ConfigError: the device speaks another dialect.
+    """
+    board = robot.boards[device]
+    if not isinstance(board, Board):
+        raise ConfigError("the device speaks its maker's protocol", key=device)
+    return board
