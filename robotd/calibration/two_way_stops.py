@@ -30,7 +30,7 @@ class TwoWayStop:
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
+class SeenMove:
     """How the robot got from one stop to another, by what it saw."""
 
     pose: Pose2
@@ -53,7 +53,7 @@ def stop(words: str) -> Generator[Step, Seen, TwoWayStop]:
     raise CalibrationError("the head swept only one way round")
 
 
-def way(before: TwoWayStop, after: TwoWayStop, starts: Sequence[Pose2]) -> Way:
+def way(before: TwoWayStop, after: TwoWayStop, starts: Sequence[Pose2]) -> SeenMove:
     """Match each sweep with the one that went the same way round, and take the middle."""
     matches = (
         match(before.counter_clockwise, after.counter_clockwise, starts),
@@ -64,7 +64,7 @@ def way(before: TwoWayStop, after: TwoWayStop, starts: Sequence[Pose2]) -> Way:
     turned_rad = math.remainder(second.heading_rad - first.heading_rad, math.tau)
     middle = Pose2((first.x_m + second.x_m) / 2.0, (first.y_m + second.y_m) / 2.0, first.heading_rad + turned_rad / 2.0)
     place_error_m = math.sqrt(float(np.trace(covariance[:2, :2])) / 2.0)
-    return Way(middle, place_error_m, math.sqrt(float(covariance[2, 2])), matches)
+    return SeenMove(middle, place_error_m, math.sqrt(float(covariance[2, 2])), matches)
 
 
 def along(distance_m: float) -> list[Pose2]:

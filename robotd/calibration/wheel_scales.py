@@ -7,7 +7,7 @@ import numpy as np
 
 from robotd.calibration.found import Calibration, Constants, Found, Procedure, Residuals, Seen, Step
 from robotd.calibration.scale import Scale, fit_scale
-from robotd.calibration.two_way_stops import TwoWayStop, Way, along, round_about, stop, way
+from robotd.calibration.two_way_stops import SeenMove, TwoWayStop, along, round_about, stop, way
 from robotd.contract.missions import DriveStraight, Turn
 from robotd.core.pose import Pose2
 
@@ -55,7 +55,7 @@ def calibrate_heading(now: Constants) -> Procedure:
 class _Led:
     """A leg: what was counted, and where it led."""
 
-    def __init__(self, before: TwoWayStop, after: TwoWayStop, led: Way) -> None:
+    def __init__(self, before: TwoWayStop, after: TwoWayStop, led: SeenMove) -> None:
         self.counts = (after.counts[0] - before.counts[0], after.counts[1] - before.counts[1])
         self.way = led
         self.pose = led.pose
