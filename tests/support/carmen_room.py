@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
+from robotd.logs.carmen import parse_carmen
 from robotd.logs.scan import RecordedLog, Scan
 
 WIDTH_M, DEPTH_M = 7.0, 5.0
@@ -79,3 +80,8 @@ def assert_the_room_is_seen(log: RecordedLog, scans: int = len(POSES), within_m:
         assert scan.hit.sum() > 20
         assert np.all(np.diff(scan.angles_rad) > 0.0)
         assert wall_errors_m(scan).max() < within_m
+
+
+def remarks(lines: list[str]) -> str:
+    """Return what a reader of the log is told of it."""
+    return "\n".join(parse_carmen(lines).remarks())

@@ -1,7 +1,6 @@
 """Logs as other programs write them: each strange thing that was met, and those that are like it."""
 
 import math
-import re
 
 import numpy as np
 import pytest
@@ -17,13 +16,10 @@ from tests.support.carmen_room import (
     flaser,
     newer,
     ranges_m,
+    remarks,
     robotlaser,
     text,
 )
-
-
-def remarks(lines: list[str]) -> str:
-    return "\n".join(parse_carmen(lines).remarks())
 
 
 def with_range(line: str, beam: int, value: str) -> str:
@@ -284,91 +280,6 @@ def test_a_rear_scanner_looks_back() -> None:
 def test_of_front_and_rear_the_front_one_is_taken() -> None:
     log = parse_carmen([line for pair in zip(flaser("RLASER", 60), flaser(), strict=True) for line in pair])
     assert {len(scan.ranges_m) for scan in log.scans} == {180}
-
-
-CUTS = {
-    "the last line is cut": lambda lines: [*lines[:-1], lines[-1][: len(lines[-1]) // 2]],
-    "a line is cut in the middle": lambda lines: [*lines[:4], lines[4][: len(lines[4]) // 2], *lines[5:]],
-    "two lines are one": lambda lines: [*lines[:4], lines[4][:300] + lines[5], *lines[6:]],
-    "a line is torn in two": lambda lines: [
-        *lines[:4],
-        lines[4][:300].rsplit(" ", 1)[0],
-        lines[4][300:].split(" ", 1)[1],
-        *lines[5:],
-    ],
-    "a pose is cut": lambda lines: [*lines[:4], " ".join(lines[4].split()[:-4]), *lines[5:]],
-    "host and time are cut": lambda lines: [*lines[:4], " ".join(lines[4].split()[:-2]), *lines[5:]],
-    "the times are cut": lambda lines: [*lines[:4], " ".join(lines[4].split()[:-3]), *lines[5:]],
-    "a number is missing": lambda lines: [
-        *lines[:4],
-        " ".join(lines[4].split()[:9] + lines[4].split()[10:]),
-        *lines[5:],
-    ],
-    "a number is doubled": lambda lines: [
-        *lines[:4],
-        " ".join([*lines[4].split()[:9], *lines[4].split()[8:]]),
-        *lines[5:],
-    ],
-    "two numbers are missing": lambda lines: [
-        *lines[:4],
-        " ".join(lines[4].split()[:9] + lines[4].split()[11:]),
-        *lines[5:],
-    ],
-    "letters": lambda lines: [*lines[:4], lines[4].replace("1", "l"), *lines[5:]],
-    "decimal commas": lambda lines: [*lines[:4], lines[4].replace(".", ","), *lines[5:]],
-    "a pose is no place": lambda lines: [*lines[:4], lines[4].replace(text(POSES[4]), "nan 0 0"), *lines[5:]],
-    "a pose is beyond the earth": lambda lines: [*lines[:4], lines[4].replace(text(POSES[4]), "1e300 0 0"), *lines[5:]],
-}
-
-
-@pytest.mark.parametrize("cut", CUTS.values(), ids=CUTS)
-def test_damaged_lines_are_left_out_counted_and_named(cut: object) -> None:
-    assert callable(cut)
-    lines = cut(flaser())
-    log = parse_carmen(lines)
-    assert_the_room_is_seen(log, len(log.scans))
-    assert len(POSES) - 2 <= len(log.scans) <= len(POSES) - 1
-    assert 1 <= len(log.problems) <= 2
-    at = len(lines) if lines[-1] == cut(flaser())[-1] != flaser()[-1] else 5
-    assert log.problems[0].line == at
-    assert re.search(rf"left out: line {at}: ", remarks(lines))
-
-
-@pytest.mark.parametrize("by", [1, 2, 3, -1, -2, -3, 100, -100])
-def test_a_count_that_is_wrong_never_makes_a_range_of_a_pose(by: int) -> None:
-    lines = flaser()
-    lines[6] = lines[6].replace("FLASER 180", f"FLASER {180 + by}")
-    log = parse_carmen(lines)
-    assert_the_room_is_seen(log, len(POSES) - 1)
-    assert [problem.line for problem in log.problems] == [7]
-
-
-def test_where_every_count_is_wrong_the_log_is_refused_and_the_first_named() -> None:
-    with pytest.raises(RecordingError) as caught:
-        parse_carmen([line.replace("FLASER 180", "FLASER 181") for line in flaser()])
-    assert "the first of 12 damaged lines is line 1: FLASER: 181 ranges are announced, and 8 fields" in str(
-        caught.value
-    )
-
-
-def test_of_many_damaged_lines_only_some_are_named() -> None:
-    lines = [line for whole in flaser() for line in (whole, "FLASER 4 1 2")]
-    said = remarks(lines)
-    assert said.startswith("12 damaged lines were left out: line 2: FLASER: 4 numbers are announced, 2 follow")
-    assert said.count("line ") == 5
-    assert said.endswith("; ...")
-
-
-def test_very_many_damaged_lines_cost_no_memory() -> None:
-    log = parse_carmen([*flaser(), *["FLASER 4 1 2"] * 5000])
-    assert log.damaged_lines == 5000
-    assert len(log.problems) == 100
-
-
-def test_a_damaged_setting_is_left_out_and_named() -> None:
-    log = parse_carmen(["PARAM robot_frontlaser_offset far 1 h 1", "PARAM robot_name far", *flaser()])
-    assert_the_room_is_seen(log)
-    assert [str(problem)[:30] for problem in log.problems] == ["line 1: PARAM: 'far' is no num"]
 
 
 def test_comments_blank_lines_and_other_records_are_no_damage() -> None:

@@ -11,7 +11,7 @@ import pytest
 from robotd.contract.events import Status
 from robotd.contract.modes import Mode
 from robotd.mission import supervisor as supervising
-from tests.unit.mission.test_supervisor import Rig, rig
+from tests.unit.mission.scripted_rig import Rig, rig
 
 ERRORS = [
     *(OSError(number, os.strerror(number)) for number in (errno.EMFILE, errno.ENOSPC, errno.EACCES)),

@@ -26,124 +26,28 @@ from firmware_proto.common import (
     Result,
     Stop,
 )
-from firmware_proto.dictionary import answers_for, dictionary_for
-from firmware_proto.drive_messages import DriveReport, OdometryReport, SetVelocity
-from firmware_proto.framing import Deframer, RawFrame, encode_frame
-from firmware_proto.pantilt_messages import Aim, AimReadback, AimReport, Limits, Motion, ReadAim, ReadLimits
+from firmware_proto.dictionary import dictionary_for
+from firmware_proto.drive_messages import DriveReport, OdometryReport
+from firmware_proto.framing import RawFrame, encode_frame
+from firmware_proto.pantilt_messages import Aim, AimReport, Motion
 from firmware_proto.rangefinder_messages import SetLaser, Shoot, Shot, ShotStatus
-from firmware_proto.schema import REPLY, Message
+from firmware_proto.schema import Message
 from robotd.core.errors import RecordingError
-from robotd.hardware.link.tap import Direction
-from robotd.recording.entries import BytesEntry, Entry, LineEntry, RecordingHeader
+from robotd.recording.entries import BytesEntry, Entry
 from robotd.recording.reader import Recording
 from robotd.sim.fakes.fake_boards import FakeBoard, fake_boards
-
-MS = 1000
-HEADER = RecordingHeader("0.1.0", "", 1, 0, 0)
-PERIOD_MS = 50
-
-
-class Tape:
-    """Writes a recording of one line by hand, in milliseconds."""
-
-    def __init__(self, device: str) -> None:
-        self.device = device
-        self.entries: list[Entry] = []
-
-    def asks(self, at_ms: float, message: Message, seq: int) -> "Tape":
-        return self._put(at_ms, Direction.TO_BOARD, RawFrame(message.TYPE, seq, message.to_payload()))
-
-    def says(self, at_ms: float, message: Message, seq: int = 0, to: type[Message] | None = None) -> "Tape":
-        code = to.TYPE | REPLY if to else message.TYPE
-        return self._put(at_ms, Direction.FROM_BOARD, RawFrame(code, seq, message.to_payload()))
-
-    def cut(self, at_ms: float) -> "Tape":
-        self.entries += [LineEntry(round(at_ms * 1e6), self.device, up=up) for up in (False, True)]
-        return self
-
-    def opens(self, at_ms: float = 0.0, nonce: int = 77, boot_id: int = 5) -> "Tape":
-        self.asks(at_ms, Hello(1, 0, nonce), 0)
-        self.says(at_ms + 1, HelloReply(1, 0, nonce, 10, 20, boot_id, 1_000_000))
-        self.asks(at_ms + 2, Configure(PERIOD_MS, 500), 0)
-        return self.says(at_ms + 3, ConfigureReply(Result.OK, 1)).says(at_ms + 3, status(BoardState.CONFIGURED))
-
-    def arms(self, at_ms: float, seq: int = 0) -> "Tape":
-        self.asks(at_ms, Arm(), seq)
-        return self.says(at_ms + 1, Ack(Result.OK), seq, to=Arm).says(at_ms + 1, status(BoardState.ARMED))
-
-    def board(self) -> FakeBoard:
-        return FakeBoard(Recording(HEADER, tuple(self.entries)), self.device)
-
-    def _put(self, at_ms: float, direction: Direction, frame: RawFrame) -> "Tape":
-        self.entries.append(BytesEntry(round(at_ms * 1e6), self.device, direction, encode_frame(frame)))
-        return self
-
-
-def status(state: BoardState, faults: Fault = Fault.NONE) -> BoardStatus:
-    return BoardStatus(0, state, faults, 0, 0, 0)
-
-
-class Host:
-    """A living host, as far as a test needs one."""
-
-    def __init__(self, board: FakeBoard, kind: BoardKind, now_ms: float = 10_000.0) -> None:
-        self.board = board
-        self.now_us = round(now_ms * MS)
-        self._deframer = Deframer()
-        self._layouts = answers_for(kind)
-        self._seqs: dict[type[Message], int] = {}
-        self.frames: list[RawFrame] = []
-
-    def ask(self, message: Message, seq: int | None = None) -> list[Message]:
-        """Send a request and return what is said at once."""
-        if seq is None:
-            seq = self._seqs.get(type(message), 0)
-            self._seqs[type(message)] = seq + 1
-        self.seq = seq
-        self.board.receive(encode_frame(RawFrame(message.TYPE, seq, message.to_payload())), self.now_us)
-        return self.heard()
-
-    def open(self, nonce: int = 1234) -> list[Message]:
-        self._seqs.clear()
-        hello = self.ask(Hello(1, 0, nonce))[-1]  # what comes before it is of the session before
-        assert isinstance(hello, HelloReply)
-        return [hello, *self.ask(Configure(PERIOD_MS, 500))]
-
-    def wait(self, ms: float) -> list[Message]:
-        """Let time pass, waking the board when it wants to be woken."""
-        until_us = self.now_us + round(ms * MS)
-        said: list[Message] = []
-        while (due_us := self.board.next_event_us) is not None and due_us <= until_us:
-            assert due_us >= self.now_us
-            self.now_us = due_us
-            self.board.advance(due_us)
-            said += self.heard()
-        self.now_us = until_us
-        self.board.advance(until_us)
-        return said + self.heard()
-
-    def heard(self) -> list[Message]:
-        frames = self._deframer.feed(self.board.take_output())
-        self.frames += frames
-        return [self._layouts[frame.type].from_payload(frame.payload) for frame in frames]
-
-
-def only(kind: type[Message], said: list[Message]) -> list[Message]:
-    return [message for message in said if type(message) is kind]
-
-
-def shot(range_mm: int, board_us: int = 0) -> Shot:
-    return Shot(board_us, range_mm, 9, ShotStatus.OK)
-
-
-def laser_tape(ranges_mm: tuple[int, ...] = (100, 200, 300)) -> Tape:
-    tape = Tape("rangefinder").opens().arms(1000)
-    tape.asks(1100, SetLaser(1), 0).says(1101, Ack(Result.OK), 0, to=SetLaser)
-    for number, range_mm in enumerate(ranges_mm):
-        at_ms = 1200 + 100 * number
-        tape.asks(at_ms, Shoot(500), number).says(at_ms + 7, shot(range_mm, board_us=999), number)
-        tape.says(at_ms + 50, status(BoardState.ARMED))
-    return tape
+from tests.unit.sim.fakes.tapes import (
+    HEADER,
+    MS,
+    PERIOD_MS,
+    Host,
+    Tape,
+    laser_tape,
+    odometry,
+    only,
+    shot,
+    status,
+)
 
 
 def test_the_handshake_is_its_own_and_the_identity_is_the_recorded_one() -> None:
@@ -259,119 +163,6 @@ def test_repeats_in_the_recording_are_one_request() -> None:
         host.ask(Shoot(500))
         ranges += [message.range_mm for message in host.wait(100) if isinstance(message, Shot)]
     assert ranges == [1, 2]
-
-
-def aim_report(pan: int, seq: int, motion: Motion) -> AimReport:
-    return AimReport(0, pan, 0, seq, motion)
-
-
-def head_tape() -> Tape:
-    tape = Tape("pantilt").opens()
-    tape.asks(500, ReadLimits(), 0).says(501, Limits(-9, 9, -5, 5), 0)
-    tape.arms(600)
-    for number, pan in enumerate((100, 200, 300)):
-        at_ms, seq = 1000 + 300 * number, 40 + number
-        tape.asks(at_ms, Aim(pan, 0, 900), seq).says(at_ms + 1, Ack(Result.OK), seq, to=Aim)
-        tape.says(at_ms + 50, aim_report(pan - 50, seq, Motion.TURNING))
-        tape.says(at_ms + 90, aim_report(pan + number, seq, Motion.DONE))
-    return tape
-
-
-def test_motion_done_carries_the_seq_of_the_living_aim() -> None:
-    board = head_tape().board()
-    host = Host(board, BoardKind.PANTILT)
-    host.open()
-    host.ask(Arm())
-    host.wait(10)
-    for number, pan in enumerate((100, 200, 300)):
-        host.ask(Aim(pan, 0, 900))
-        seq = host.seq
-        reports = [message for message in host.wait(200) if isinstance(message, AimReport)]
-        assert (reports[0].moving, reports[0].aim_seq) == (Motion.TURNING, seq)
-        assert {(r.moving, r.aim_seq, r.pan_tenth_mrad) for r in reports[1:]} == {(Motion.DONE, seq, pan + number)}
-        (readback,) = host.ask(ReadAim())
-        assert readback == AimReadback(host.now_us, pan + number, 0, seq, Motion.DONE)
-    assert board.mismatches == []
-    assert board.finished
-
-
-def test_whoever_asks_during_a_motion_hears_of_this_motion() -> None:
-    tape = Tape("pantilt").opens().says(60, aim_report(0, 0, Motion.HALTED)).arms(600)
-    tape.asks(1000, Aim(100, 0, 900), 0).says(1001, aim_report(0, 0, Motion.HALTED))  # sent before the Aim came
-    tape.says(1002, Ack(Result.OK), 0, to=Aim).says(1050, aim_report(100, 0, Motion.DONE))
-    host = Host(tape.board(), BoardKind.PANTILT)
-    host.open()
-    host.ask(Arm())
-    host.wait(100)
-    assert host.ask(ReadAim()) == [AimReadback(host.now_us, 0, 0, 0, Motion.HALTED)]
-    host.ask(Aim(100, 0, 900))
-    host.wait(5)
-    assert host.ask(ReadAim()) == [AimReadback(host.now_us, 100, 0, 0, Motion.TURNING)]
-    host.wait(50)
-    assert host.ask(ReadAim()) == [AimReadback(host.now_us, 100, 0, 0, Motion.DONE)]
-
-
-def test_limits_are_answered_whenever_they_are_asked_for() -> None:
-    host = Host(head_tape().board(), BoardKind.PANTILT)
-    host.open()
-    for _ in range(3):
-        assert host.ask(ReadLimits()) == [Limits(-9, 9, -5, 5)]
-
-
-def odometry(counts: int, speed: int = 0) -> OdometryReport:
-    return OdometryReport(0, counts, 0, speed, 0)
-
-
-def drive_tape() -> Tape:
-    """Two motions: the counts stand at 10 before, 20, 30 and 40 in the first, and so on."""
-    tape = Tape("drive").opens().arms(100).says(150, odometry(10))
-    for first, seq in ((20, 0), (50, 10)):
-        at_ms = 100.0 * first
-        tape.asks(at_ms, SetVelocity(300, 0, 400), seq).says(at_ms + 1, Ack(Result.OK), seq, to=SetVelocity)
-        tape.says(at_ms + 50, odometry(first, 300))
-        tape.asks(at_ms + 51, SetVelocity(200, 0, 400), seq + 1)
-        tape.says(at_ms + 100, odometry(first + 10, 200))
-        tape.asks(at_ms + 101, SetVelocity(0, 0, 400), seq + 2)
-        tape.says(at_ms + 150, odometry(first + 20))
-    return tape
-
-
-def test_the_base_stands_until_it_is_set_in_motion_and_then_goes_where_it_went() -> None:
-    board = drive_tape().board()
-    host = Host(board, BoardKind.DRIVE)
-    host.open()
-    host.ask(Arm())
-    counts: list[int] = []
-
-    def listen(ms: float) -> None:
-        counts.extend(message.translate_counts for message in host.wait(ms) if isinstance(message, OdometryReport))
-
-    for _ in range(2):
-        listen(500)
-        assert set(counts[-5:]) == {counts[-1]}, "it stands"
-        assert host.ask(SetVelocity(0, 0, 400)) == [Ack(Result.OK)], "to stand is no motion"
-        listen(100)
-        assert host.ask(SetVelocity(300, 0, 400)) == [Ack(Result.OK)]
-        listen(60)
-        assert host.ask(SetVelocity(222, 0, 400)) == [Ack(Result.OK)], "how it is renewed does not matter"
-        listen(45)
-        host.ask(SetVelocity(0, 0, 400))
-        listen(100)
-    assert list(dict.fromkeys(counts)) == [10, 20, 30, 40, 50, 60, 70]
-    assert board.mismatches == []
-    assert board.finished
-
-
-def test_a_deviating_request_is_told_and_answered_as_recorded() -> None:
-    board = head_tape().board()
-    host = Host(board, BoardKind.PANTILT)
-    host.open()
-    host.ask(Arm())
-    host.ask(Aim(111, 0, 900))
-    (difference,) = board.mismatches
-    expected, got = str(Aim(100, 0, 900)), str(Aim(111, 0, 900))
-    assert str(difference) == f"1.000000 s pantilt: expected {expected}, got {got}"
-    assert [m.pan_tenth_mrad for m in host.wait(95) if isinstance(m, AimReport)][-1] == 100
 
 
 def test_bookkeeping_that_the_host_leaves_out_is_passed_over_and_told() -> None:
