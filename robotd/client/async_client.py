@@ -29,7 +29,7 @@ from robotd.contract.events import Status
 from robotd.contract.missions import Mission
 from robotd.contract.request import Request
 from robotd.contract.requests import GetStatus
-from robotd.contract.topics import Published, Topic
+from robotd.contract.topics import Frame, Published, Topic
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.endpoints import Endpoints, runtime_dir_of_user
 from robotd.core.errors import RequestTimeout, RobotdError, ServerError
@@ -141,12 +141,26 @@ class AsyncClient(Methods, Awaiting):
                     await self._abandon()
         run.check()
 
+    async def frames(self, *topics: str) -> AsyncGenerator[Frame | Gap, None]:
+        """Yield the messages of these topics, of all if none is named, as they are: to hand on, not to look into.
+
+        Each comes once, and a :class:`Gap` stands where some were missed. Put it into ``contextlib.aclosing``.
+        """
+        feed = Feed()
+        with self._subscriber(topics) as socket:
+            while True:
+                for item in feed.sort(await socket.recv()):
+                    yield item
+
     def subscribe(self, *topics: str) -> AsyncSubscription:
         """Return the events of these topics, of all if none is named, from the last one of each on."""
+        return AsyncSubscription(self._subscriber(topics))
+
+    def _subscriber(self, topics: tuple[str, ...]) -> zmq.asyncio.Socket:
         wanted = as_topics(topics)
         socket = self._context.socket(zmq.SUB)
         connect_subscriber(socket, self._endpoints, wanted)
-        return AsyncSubscription(socket)
+        return socket
 
     async def ask(self, request: Request[R], value: Callable[[R], V]) -> V:
         """Send a request and return what is wanted of its answer."""

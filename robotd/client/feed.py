@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from robotd.contract.topics import Published, Topic, decode_frame
+from robotd.contract.topics import Frame, Published, Topic
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,6 +18,8 @@ class Gap:
 class _Place:
     session: str
     seq: int
+    heard: set[str]
+    """Events of this topic of which a message came."""
 
 
 class Feed:
@@ -26,24 +28,39 @@ class Feed:
     def __init__(self) -> None:
         self._places: dict[str, _Place] = {}
 
-    def accept(self, frame: bytes) -> list[Published | Gap]:
+    def accept(self, data: bytes) -> list[Published | Gap]:
         """Return what a frame brings: nothing if it was seen, else the event, after the gap before it if there is one.
 
         Raises:
             RemoteProtocolError: the frame is no message of ours.
         """
-        message = decode_frame(frame)
-        # What was said before this reader came is no gap: the first message is the next one, whatever its number.
-        place = self._places.setdefault(message.topic, _Place(message.session, message.seq - 1))
         items: list[Published | Gap] = []
-        if place.session != message.session:
-            items.append(Gap(message.topic, None))
-        elif message.seq <= place.seq:
-            return []  # a greeting for somebody who joined later, which reaches all
-        elif message.seq > place.seq + 1:
-            items.append(Gap(message.topic, message.seq - place.seq - 1))
-        self._places[message.topic] = _Place(message.session, message.seq)
-        return items if message.event is None else [*items, message.event]
+        for item in self.sort(data):
+            found = item if isinstance(item, Gap) else item.published
+            items += [] if found is None else [found]
+        return items
+
+    def sort(self, data: bytes) -> list[Frame | Gap]:
+        """Return the same with the frame as it is.
+
+        Raises:
+            RemoteProtocolError: it is no message of ours.
+        """
+        frame = Frame.of(data)
+        # What was said before this reader came is no gap: the first message is the next one, whatever its number.
+        place = self._places.setdefault(frame.topic, _Place(frame.session, frame.seq - 1, set()))
+        if place.session != frame.session:
+            self._places[frame.topic] = _Place(frame.session, frame.seq, {frame.event})
+            return [Gap(frame.topic, None), frame]
+        if frame.seq <= place.seq:
+            # Who joins is told the last of each event, the latest first; what was heard since is seen already.
+            is_news = frame.event not in place.heard
+            place.heard.add(frame.event)
+            return [frame] if is_news else []
+        missed = frame.seq - place.seq - 1
+        place.seq = frame.seq
+        place.heard.add(frame.event)
+        return [Gap(frame.topic, missed), frame] if missed else [frame]
 
 
 def as_topics(names: tuple[str, ...]) -> tuple[Topic, ...]:

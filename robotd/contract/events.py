@@ -13,6 +13,9 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import ReadingStatus, Sweep
 
+_UNKNOWN = 128
+"""The value of a cell of which nothing is known."""
+
 
 @dataclass(frozen=True, slots=True)
 class Commander:
@@ -174,7 +177,8 @@ class MapChanged:
     """Cells that changed in the map in use, or all of them."""
 
     time_ns: int
-    map_id: str
+    map_id: str | None
+    """None if no map is in use: then it is one cell of which nothing is known."""
     generation: int
     """Counts the changes of this map: a reader that missed one asks for the whole."""
     spec: GridSpec
@@ -188,6 +192,12 @@ class MapChanged:
     packed: bytes | None = None
     """The whole grid as :mod:`robotd.core.grid_bytes` packs it, where it was packed already; then ``values`` is empty.
     """
+
+    @classmethod
+    def none(cls, time_ns: int) -> "MapChanged":
+        """Return what is told where no map is in use."""
+        spec, nothing = GridSpec(1.0, 0.0, 0.0, (1, 1)), np.empty(0, np.intp)
+        return cls(time_ns, None, 0, spec, True, nothing, np.full(spec.shape, _UNKNOWN, np.uint8))
 
 
 @dataclass(frozen=True, slots=True)

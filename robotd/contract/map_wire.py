@@ -17,7 +17,7 @@ class MapPayload(msgspec.Struct, frozen=True):
     """A :class:`MapChanged` on the wire."""
 
     time_ns: int
-    map_id: str
+    map_id: str | None
     generation: int
     whole: bool
     resolution_m: float

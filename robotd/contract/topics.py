@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import msgpack
+import msgspec
 
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import (
@@ -89,17 +90,50 @@ EVENTS: dict[type[Published], tuple[Topic, str]] = {
 _KINDS = {name: kind for kind, (_, name) in EVENTS.items()}
 
 
+class _Envelope(msgspec.Struct, frozen=True):
+    v: int
+    session: str = ""
+    seq: int = -1
+    event: str = ""
+
+
 @dataclass(frozen=True, slots=True)
-class Message:
-    """A published message, decoded."""
+class Frame:
+    """A published message as it came, of which the envelope alone was read."""
 
     topic: str
     session: str
     """Changes with each start of the daemon: then ``seq`` begins again."""
     seq: int
     """Counts the messages of its topic; a number left out is a message missed."""
-    event: Published | None
-    """None for a type of event that this version does not know."""
+    event: str
+    """The name of its event."""
+    data: bytes
+    """All of it, topic and envelope included."""
+
+    @classmethod
+    def of(cls, data: bytes) -> "Frame":
+        """Return the message of these bytes; RemoteProtocolError if it is none, or of another version."""
+        topic, _, packed = data.partition(_END_OF_TOPIC)
+        try:
+            envelope = msgspec.msgpack.decode(packed, type=_Envelope)
+            name = topic.decode()
+        except ValueError as error:
+            raise RemoteProtocolError(f"not a message: {error!r}") from error
+        if envelope.v != VERSION:
+            raise RemoteProtocolError(f"the server speaks version {envelope.v}, this client {VERSION}")
+        if envelope.seq < 0:
+            raise RemoteProtocolError("not a message: it has no number")
+        return cls(name, envelope.session, envelope.seq, envelope.event, data)
+
+    @property
+    def published(self) -> Published | None:
+        """What it says; None for a type of event that this version does not know. RemoteProtocolError if it lies."""
+        try:
+            fields = msgpack.unpackb(memoryview(self.data)[len(self.topic.encode()) + 1 :])
+        except ValueError as error:
+            raise RemoteProtocolError(f"not a message: {error!r}") from error
+        return from_wire(fields)
 
 
 def to_wire(event: Published) -> tuple[Topic, dict[str, Any]]:
@@ -127,19 +161,3 @@ def encode_frame(topic: Topic, session: str, seq: int, fields: dict[str, Any]) -
     """Return the one frame of a message."""
     packed: bytes = msgpack.packb({"v": VERSION, "session": session, "seq": seq, **fields})
     return topic.prefix + packed
-
-
-def decode_frame(frame: bytes) -> Message:
-    """Return the message of a frame.
-
-    Raises:
-        RemoteProtocolError: it is none, or of another version.
-    """
-    topic, _, packed = frame.partition(_END_OF_TOPIC)
-    try:
-        fields = msgpack.unpackb(packed)
-        if fields["v"] != VERSION:
-            raise RemoteProtocolError(f"the server speaks version {fields['v']}, this client {VERSION}")
-        return Message(topic.decode(), fields["session"], fields["seq"], from_wire(fields))
-    except (ValueError, KeyError, TypeError) as error:
-        raise RemoteProtocolError(f"not a message: {error!r}") from error

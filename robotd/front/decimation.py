@@ -8,21 +8,29 @@ from robotd.core.pose import Odometry
 
 
 class Decimator:
-    """Lets routine events of each type through at most ``rate_hz``, by their own time stamps."""
+    """Lets routine events of each type through at most ``rate_hz`` in the mean, by their own time stamps."""
 
     def __init__(self, rate_hz: float) -> None:
         self._period_ns = round(NS_PER_S / rate_hz)
-        self._passed_ns: dict[type[Published], int] = {}
+        self._last_ns: dict[type[Published], int] = {}
+        """Of each type that passed."""
+        self._due_ns: dict[type[Published], int] = {}
+        """When the next one of each type passes."""
 
     def passes(self, event: Published) -> bool:
         """Return whether an event is to be published."""
         if not is_routine(event):
             return True
-        before_ns = self._passed_ns.get(type(event))
+        kind, at_ns = type(event), event.time_ns
+        due_ns = self._due_ns.get(kind, at_ns)
         # An event older than the last passes: one time stamp far ahead would else silence its type for as long.
-        if before_ns is not None and 0 <= event.time_ns - before_ns < self._period_ns:
+        is_older = at_ns < self._last_ns.get(kind, at_ns)
+        if at_ns < due_ns and not is_older:
             return False
-        self._passed_ns[type(event)] = event.time_ns
+        # From when it was due: from now on, of events each 40 ms only every second one would come 50 ms after another.
+        is_on_time = not is_older and at_ns - due_ns < self._period_ns
+        self._due_ns[kind] = (due_ns if is_on_time else at_ns) + self._period_ns
+        self._last_ns[kind] = at_ns
         return True
 
 

@@ -33,7 +33,7 @@ class _MapHead(msgspec.Struct, frozen=True, array_like=True):
     number: int
     """Of the request that it answers; :data:`_NO_NUMBER` if it is an event."""
     time_ns: int
-    map_id: str
+    map_id: str | None
     generation: int
     resolution_m: float
     origin_x_m: float

@@ -29,19 +29,27 @@ class Outlet:
         self._asked_for = asked_for
         self._loop = asyncio.get_running_loop()
         self._seq: dict[Topic, int] = {}
-        self._last: dict[Topic, bytes] = {}
+        self._last: dict[str, tuple[Topic, int, bytes]] = {}
+        """By the name of each event what was said last: its topic, its number there, and the message."""
         self._readers: dict[Connection, set[bytes]] = {}
         """What each is subscribed to, as prefixes."""
         self._new: dict[Connection, set[Topic]] = {}
 
-    def send(self, topic: Topic, fields: dict[str, object]) -> None:
+    def send(self, event: Published) -> None:
         """Publish; a reader that is too slow misses it and sees the gap."""
-        self._send(topic, encode_frame(topic, self._session, self._number(topic), fields))
+        topic, name = EVENTS[type(event)]
+        fields = to_wire(event)[1]  # before it is numbered: what has no form is no message missed
+        seq = self._number(topic)
+        data = self._send(encode_frame(topic, self._session, seq, fields))
+        self._last[name] = topic, seq, data
 
     async def send_large(self, event: Published) -> None:
-        """Publish what takes long to encode; one call at a time, or the numbers may come out of order."""
+        """Publish what takes long to encode; one call at a time, or the numbers may come out of order.
+
+        It is not kept: who joins is told it anew.
+        """
         topic, _ = EVENTS[type(event)]
-        self._send(topic, await asyncio.to_thread(_frame_of, event, self._session, self._number(topic)))
+        self._send(await asyncio.to_thread(_frame_of, event, self._session, self._number(topic)))
 
     def joined(self, connection: Connection) -> None:
         """Let a client subscribe."""
@@ -76,18 +84,21 @@ class Outlet:
         self._new.setdefault(connection, set()).update(topics)
 
     def _greet(self) -> None:
-        """Tell every new subscriber the last message of each topic.
+        """Tell every new subscriber the last message of each event, the latest of each topic first.
 
-        The status comes last: when it arrives, every subscription made before it is in force.
+        So a reader that goes by numbers alone takes the older ones for seen, and misses none. The status comes last:
+        when it arrives, every subscription made before it is in force.
         """
         new, self._new = self._new, {}
         if self._asked_for is not None:
             for topic in set().union(*new.values()):
                 self._asked_for(topic)
             return
+        latest_first = sorted(self._last.values(), key=lambda kept: (kept[0] is Topic.STATUS, -kept[1]))
         for connection, topics in new.items():
-            for topic in sorted(topics & self._last.keys(), key=lambda topic: topic is Topic.STATUS):
-                connection.send(self._last[topic])
+            for topic, _, data in latest_first:
+                if topic in topics:
+                    connection.send(data)
 
     def _number(self, topic: Topic) -> int:
         seq = self._seq.get(topic, 0)
@@ -95,12 +106,12 @@ class Outlet:
         self._seq[topic] = seq + 1
         return seq
 
-    def _send(self, topic: Topic, frame: bytes) -> None:
+    def _send(self, frame: bytes) -> bytes:
         data = message(frame)  # made once: what waits for many readers is one and the same
-        self._last[topic] = data
         for connection, prefixes in tuple(self._readers.items()):
             if any(frame.startswith(prefix) for prefix in prefixes):
                 connection.send(data)
+        return data
 
 
 def _frame_of(event: Published, session: str, seq: int) -> bytes:

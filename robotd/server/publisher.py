@@ -4,10 +4,13 @@ import asyncio
 import logging
 from typing import NoReturn
 
+from robotd.contract.answers import ErrorCode
 from robotd.contract.events import MapChanged
+from robotd.contract.refusal import as_refusal
 from robotd.contract.requests import GetStatus, MapShow
-from robotd.contract.topics import Published, Topic, to_wire
+from robotd.contract.topics import EVENTS, Published, Topic
 from robotd.core.broadcast import Subscription
+from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError, ServerError
 from robotd.core.log_limit import LogLimit
 from robotd.server.map_queue import MapQueue
@@ -51,15 +54,14 @@ class Publisher:
             self._complain("the first status", error)
         while True:
             event = await self._events.get()
-            if isinstance(event, MapChanged):
+            if EVENTS[type(event)][0] is Topic.MAP:
                 self._map_queue.put(event)
             else:
                 self._publish(event)
 
     def _publish(self, event: Published) -> None:
         try:
-            topic, fields = to_wire(event)
-            self.state.send(topic, fields)
+            self.state.send(event)
         except Exception as error:  # one event that has no form on the wire must not end those that have one
             self._complain(type(event).__name__, error)
 
@@ -73,22 +75,23 @@ class Publisher:
 
     async def _follow_maps(self) -> NoReturn:
         while True:
-            change = await self._map_queue.get()
-            change = await self._whole() if change is None else change
-            if change is not None:
-                await self._publish_map(change)
+            event = await self._map_queue.get()
+            event = await self._whole() if event is None else event
+            if event is not None:
+                await self._publish_map(event)
 
-    async def _publish_map(self, change: MapChanged) -> None:
+    async def _publish_map(self, event: Published) -> None:
         try:
-            await self.maps.send_large(change)
+            await self.maps.send_large(event)
         except Exception as error:  # no memory, no thread: the next one may have them
-            self._complain(type(change).__name__, error)
+            self._complain(type(event).__name__, error)
 
     async def _whole(self) -> MapChanged | None:
         try:
             return await self._control.perform(MapShow())
-        except RobotdError:  # no map in use: anyone who joined hears of the first one when it comes
-            return None
+        except RobotdError as error:
+            # Who has a map of the daemon before this one must not go on with it. Busy: the next who joins asks again.
+            return MapChanged.none(now_ns()) if as_refusal(error).code == ErrorCode.NOT_FOUND else None
         except Exception as error:  # the next who joins asks again
             self._complain("the map in use", error)
             return None

@@ -67,7 +67,9 @@ class Dashboard:
         return Group(self._drawn(width, room, ink), lines)
 
     def _map(self, event: MapChanged) -> None:
-        if event.whole:
+        if event.map_id is None:
+            self.spec, self.values = None, None
+        elif event.whole:
             self.spec, self.values = event.spec, event.values.copy()
         elif self.values is not None and self.values.size > (event.cells.max(initial=0)):
             self.values.reshape(-1)[event.cells] = event.values

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
@@ -12,10 +13,14 @@ from robotd.contract.events import (
     RangeMeasured,
     Status,
     StopPlaced,
+    SweepBegun,
     SweepDone,
     SweepProgress,
+    SweepReadings,
 )
+from robotd.contract.sweep_columns import from_columns
 from robotd.contract.topics import EVENTS, LogEntry, Published
+from robotd.contract.ways import MissionPlan, StopState
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import ReadingStatus
 
@@ -28,6 +33,15 @@ def as_json(event: Published) -> dict[str, Any]:
         spec = dataclasses.asdict(event.spec)
         plain = {"map_id": event.map_id, "generation": event.generation, "whole": event.whole}
         return {"event": name, "time_ns": event.time_ns, **plain, "spec": spec, "cells": int(count)}
+    if isinstance(event, SweepReadings):
+        readings = [dataclasses.asdict(reading) for reading in from_columns(event)]
+        return {
+            "event": name,
+            "time_ns": event.time_ns,
+            "number": event.number,
+            "first": event.first,
+            "readings": readings,
+        }
     return {"event": name, **dataclasses.asdict(event)}
 
 
@@ -141,6 +155,16 @@ def mission_in_words(step: MissionProgress) -> str:
     return f"{step.kind}{where}: {step.phase}" + (f", {step.message}" if step.message else "")
 
 
+def _plan_in_words(plan: MissionPlan) -> str:
+    """Return what a mission intends."""
+    way = (
+        "" if plan.goal_m is None else "way to ({:.2f}, {:.2f}) m, {} legs".format(*plan.goal_m, len(plan.waypoints_m))
+    )
+    counts = Counter(stop.state for stop in plan.stops)
+    stops = [f"{counts[state]} {state.replace('_', ' ')}" for state in StopState if counts[state]]
+    return f"plan of mission {plan.mission_id}: " + "; ".join(filter(None, (way, ", ".join(stops))))
+
+
 _WORDS: dict[type[Published], Callable[[Any], str]] = {
     PoseEstimate: estimate_in_words,
     SweepProgress: sweep_in_words,
@@ -155,6 +179,15 @@ _WORDS: dict[type[Published], Callable[[Any], str]] = {
     SweepDone: lambda event: (
         f"sweep {event.sweep.number} done: {len(event.sweep.measured)} of {len(event.sweep.readings)} measured"
     ),
-    MapChanged: lambda event: f"map {event.map_id[:12]} generation {event.generation}: {event.values.size} cells",
+    MapChanged: lambda event: (
+        "no map is in use"
+        if event.map_id is None
+        else f"map {event.map_id[:12]} generation {event.generation}: {event.values.size} cells"
+    ),
+    SweepBegun: lambda event: f"sweep {event.number} of {event.total} readings begun",
+    SweepReadings: lambda event: (
+        f"sweep {event.number}: readings {event.first + 1} to {event.first + len(event.status_u8)}"
+    ),
+    MissionPlan: _plan_in_words,
     LogEntry: lambda event: f"{event.level.lower()} {event.logger}: {event.message}",
 }

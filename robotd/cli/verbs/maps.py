@@ -174,7 +174,7 @@ def _show(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _newest_pose(client: "Client", map_id: str) -> PoseEstimate | None:
+def _newest_pose(client: "Client", map_id: str | None) -> PoseEstimate | None:
     """Return where the robot is believed to be, if that is told, and told of this map."""
     with client.subscribe(Topic.POSE) as events:
         event = events.next(_PATIENCE_S)

@@ -15,7 +15,7 @@ from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.contract.request import Request
 from robotd.contract.requests import Arm, GetStatus, Hello, RecordStop, Renew, Stop
-from robotd.contract.topics import LogEntry, Topic, encode_frame, to_wire
+from robotd.contract.topics import Frame, LogEntry, Topic, encode_frame, to_wire
 from robotd.core.errors import MissionError, RemoteProtocolError, RequestTimeout, ServerError
 
 
@@ -129,6 +129,29 @@ def test_what_was_seen_is_not_told_again() -> None:
     feed.accept(frame(3))
     assert feed.accept(frame(3)) == []
     assert feed.accept(frame(4)) == [entry(4)]
+
+
+def counted(seq: int) -> bytes:
+    """Of another event of the same topic."""
+    fields = to_wire(SweepProgress(seq, 0, 1, 2, 1, 0, 0))[1]
+    return encode_frame(Topic.LOG, "s", seq, fields)
+
+
+def test_who_joins_is_told_the_last_of_each_event_and_each_is_news_once() -> None:
+    feed = Feed()
+    assert feed.accept(frame(9)) == [entry(9)]
+    assert feed.accept(counted(4)) == [SweepProgress(4, 0, 1, 2, 1, 0, 0)]
+    assert feed.accept(counted(4)) == []
+    assert feed.accept(frame(9)) == []
+    assert feed.accept(frame(10)) == [entry(10)]
+
+
+def test_frames_are_sorted_as_they_are() -> None:
+    feed = Feed()
+    data = [frame(1), frame(1), frame(4), frame(0, "later"), encode_frame(Topic.LOG, "later", 1, {"event": "of then"})]
+    sorted_ = [item for one in data for item in feed.sort(one)]
+    assert [item.data for item in sorted_ if isinstance(item, Frame)] == [data[0], data[2], data[3], data[4]]
+    assert [item for item in sorted_ if isinstance(item, Gap)] == [Gap("log", 2), Gap("log", None)]
 
 
 def test_topics_are_counted_apart() -> None:

@@ -30,7 +30,7 @@ from robotd.contract.missions import Legs, PriorHeading
 from robotd.contract.modes import MODE_WORDS
 from robotd.contract.plain import from_plain
 from robotd.contract.requests import REQUESTS
-from robotd.contract.topics import EVENTS, Topic, decode_frame, encode_frame, to_wire
+from robotd.contract.topics import EVENTS, Frame, Topic, encode_frame, to_wire
 from robotd.contract.ways import Hindrance, StopState
 from robotd.core.errors import ServerError
 from robotd.core.reading import ReadingStatus
@@ -113,9 +113,9 @@ def test_a_refusal_is_understood_and_given_byte_for_byte() -> None:
 def test_an_event_is_understood_and_published_byte_for_byte(name: str) -> None:
     fields = message(f"events/{name}")
     (topic,) = {topic for topic, kind in EVENTS.values() if kind == fields["event"]}
-    heard = decode_frame(topic.prefix + packed(fields))
-    assert heard.event is not None
-    frame = encode_frame(topic, heard.session, heard.seq, to_wire(heard.event)[1])
+    heard = Frame.of(topic.prefix + packed(fields))
+    assert heard.published is not None
+    frame = encode_frame(topic, heard.session, heard.seq, to_wire(heard.published)[1])
     assert frame.startswith(topic.prefix)
     assert in_order(inflated(frame.removeprefix(topic.prefix))) == in_order(inflated(packed(fields)))
 

@@ -16,10 +16,10 @@ from robotd.contract.map_wire import MapPayload, pack_map, unpack_map
 from robotd.contract.modes import MODE_WORDS
 from robotd.contract.topics import (
     EVENTS,
+    Frame,
     LogEntry,
     Published,
     Topic,
-    decode_frame,
     encode_frame,
     from_wire,
     to_wire,
@@ -28,6 +28,7 @@ from robotd.core.errors import RemoteProtocolError
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry, Pose2, Twist2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.grid.tables import NO_INFORMATION
 from tests.unit.server.conftest import whole_map
 
 numbers = st.floats(-1e6, 1e6)
@@ -110,8 +111,9 @@ events: st.SearchStrategy[Published] = st.one_of(
 @settings(max_examples=200)
 def test_an_event_survives_the_wire(event: Published, seq: int) -> None:
     topic, fields = to_wire(event)
-    message = decode_frame(encode_frame(topic, "session", seq, fields))
-    assert (message.topic, message.session, message.seq, message.event) == (topic, "session", seq, event)
+    message = Frame.of(encode_frame(topic, "session", seq, fields))
+    assert (message.topic, message.session, message.seq, message.published) == (topic, "session", seq, event)
+    assert message.event == EVENTS[type(event)][1]
 
 
 @given(st.integers(1, 9), st.integers(1, 9), st.booleans(), st.randoms(use_true_random=False))
@@ -123,12 +125,21 @@ def test_a_map_survives_the_wire(rows: int, cols: int, whole: bool, random: Any)
     cells = np.array(random.sample(range(rows * cols), 0 if whole else shape[0]), dtype=np.intp)
     change = MapChanged(7, "d", 3, spec, whole, cells, values, random.choice([None, 0, 7]))
     topic, fields = to_wire(change)
-    found = decode_frame(encode_frame(topic, "s", 0, fields)).event
+    found = Frame.of(encode_frame(topic, "s", 0, fields)).published
     assert isinstance(found, MapChanged)
     assert replace(found, cells=cells, values=values) == replace(change, cells=cells, values=values)
     np.testing.assert_array_equal(found.cells, cells)
     np.testing.assert_array_equal(found.values, values)
     assert (found.cells.dtype, found.values.dtype) == (np.dtype(np.intp), np.dtype(np.uint8))
+
+
+def test_that_no_map_is_in_use_survives_the_wire() -> None:
+    topic, fields = to_wire(MapChanged.none(7))
+    assert (fields["map_id"], fields["whole"]) == (None, True)
+    found = Frame.of(encode_frame(topic, "s", 0, fields)).published
+    assert isinstance(found, MapChanged)
+    assert found.map_id is None
+    assert found.values.tolist() == [[NO_INFORMATION]]
 
 
 def test_every_event_of_the_mission_has_a_topic() -> None:
@@ -159,12 +170,12 @@ def test_no_topic_begins_another() -> None:
 def test_numpy_numbers_are_numbers_on_the_wire() -> None:
     pose = Pose2(np.float64(1.5), float(np.float32(0.5)), 0.0)
     topic, fields = to_wire(Odometry(int(np.int64(3)), pose, Twist2(np.float64(0.0), 0.0)))
-    assert decode_frame(encode_frame(topic, "s", 0, fields)).event == Odometry(3, pose, Twist2(0.0, 0.0))
+    assert Frame.of(encode_frame(topic, "s", 0, fields)).published == Odometry(3, pose, Twist2(0.0, 0.0))
 
 
 def test_an_event_of_a_newer_daemon_is_nothing_to_us() -> None:
     frame = encode_frame(Topic.POSE, "s", 3, {"event": "pose_in_space", "z_m": 1.0})
-    assert decode_frame(frame).event is None
+    assert Frame.of(frame).published is None
 
 
 def test_a_field_of_a_newer_daemon_is_ignored() -> None:
@@ -172,15 +183,17 @@ def test_a_field_of_a_newer_daemon_is_ignored() -> None:
     assert from_wire({**fields, "host": "x"}) == LogEntry(1, "INFO", "robotd", "hello")
 
 
-@pytest.mark.parametrize("frame", [b"", b"pose", b"pose\0", b"pose\0\xc0", b"pose\0\x80", b"\xff\0\x80"])
+@pytest.mark.parametrize(
+    "frame", [b"", b"pose", b"pose\0", b"pose\0\xc0", b"pose\0\x80", b"\xff\0\x80", b"pose\0\x81\xa1v\x01"]
+)
 def test_what_is_no_message_is_the_servers_fault(frame: bytes) -> None:
     with pytest.raises(RemoteProtocolError):
-        decode_frame(frame)
+        Frame.of(frame)
 
 
 def test_a_message_of_another_version_is_refused() -> None:
     with pytest.raises(RemoteProtocolError, match="version 2"):
-        decode_frame(b"pose\0" + msgpack.packb({"v": 2}))
+        Frame.of(b"pose\0" + msgpack.packb({"v": 2}))
 
 
 def test_a_missing_field_is_named() -> None:

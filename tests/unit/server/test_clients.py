@@ -20,8 +20,9 @@ from robotd.client.mission_run import MissionEvent
 from robotd.contract.estimate import PoseState
 from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import DriveStraight, DriveTo, Legs, Localize, Look, MapStart, Measure, Scan, Turn
+from robotd.contract.topics import Frame
 from robotd.core.errors import MissionError, RequestTimeout, ServerError, TransportError
-from robotd.core.pose import Pose2
+from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
 from tests.unit.server.conftest import stored_map
 
 pytestmark = pytest.mark.real_clock
@@ -174,6 +175,23 @@ async def test_an_async_client_that_dawdles_over_an_event_keeps_its_lease(servin
             await asyncio.sleep(0.6)
             control.release.set()
             assert phases([event async for event in events]) == ["done"]
+
+
+async def test_frames_are_handed_on_as_they_are(serving: Serving, tmp_path: Path) -> None:
+    async with serving() as control, AsyncClient(tmp_path) as robot:
+        control.events.publish(Odometry(1, IDENTITY, STANDSTILL))
+        heard: list[Frame] = []
+        async with asyncio.timeout(5), aclosing(robot.frames("odometry", "status", "map")) as frames:
+            async for frame in frames:
+                assert isinstance(frame, Frame)
+                if frame.event not in {one.event for one in heard}:
+                    heard.append(frame)
+                if len(heard) == 3:
+                    break
+    assert {one.event for one in heard} == {"odometry", "status", "map_changed"}
+    for one in heard:
+        assert one.data.startswith(f"{one.topic}\0".encode())
+        assert Frame.of(one.data) == one
 
 
 async def test_a_mission_whose_client_falls_silent_is_stopped(serving: Serving, tmp_path: Path) -> None:

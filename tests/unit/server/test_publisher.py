@@ -9,12 +9,14 @@ from typing import Any
 
 import pytest
 
-from robotd.contract.events import MapChanged
+from robotd.client.feed import Feed, Gap
+from robotd.contract.events import MapChanged, StopPlaced, SweepDone, SweepProgress
 from robotd.contract.request import Request
 from robotd.contract.requests import GetStatus, MapShow
-from robotd.contract.topics import Message, Topic, decode_frame
+from robotd.contract.topics import Frame, Topic
 from robotd.core.errors import LinkTimeout
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
+from robotd.core.reading import Sweep
 from robotd.server.client_connection import PeerProcess
 from robotd.server.publisher import Publisher
 from robotd.server.zmtp import GREETING, Reader, ready
@@ -29,18 +31,23 @@ class AConnection:
     process = PeerProcess(1, 2)
 
     def __init__(self) -> None:
-        self.sent: list[Message] = []
+        self.sent: list[Frame] = []
         self._reader = Reader(longest_bytes=2**20, most_frames=1)
         assert len(list(self._reader.feed(GREETING + ready(b"XPUB")))) == 1
 
     def send(self, data: bytes) -> bool:
         for said in self._reader.feed(data):
             assert isinstance(said, Sent)
-            self.sent.append(decode_frame(said.frames[0]))
+            self.sent.append(Frame.of(said.frames[0]))
         return True
 
     def events(self, topic: Topic) -> list[Any]:
-        return [message.event for message in self.sent if message.topic == topic]
+        return [message.published for message in self.sent if message.topic == topic]
+
+    @property
+    def generations(self) -> list[int]:
+        """Of maps; that none is in use, as who joins is told, is of none."""
+        return [event.generation for event in self.events(Topic.MAP) if event.map_id is not None]
 
 
 @asynccontextmanager
@@ -74,7 +81,7 @@ async def test_an_event_that_has_no_form_on_the_wire_is_dropped_and_logged(
         await asyncio.sleep(1)
         assert not task.done()
         assert [event.time_ns for event in state.events(Topic.ODOMETRY)] == [1]
-        assert [event.generation for event in maps.events(Topic.MAP)] == [2]
+        assert maps.generations == [2]
     assert "Odometry was not published" in caplog.text
     assert "MapChanged was not published" in caplog.text
 
@@ -119,6 +126,7 @@ async def test_a_map_that_cannot_be_packed_now_does_not_end_what_publishes(
 
     control = make_control()
     async with published(control) as (task, _, maps, _):
+        await asyncio.sleep(1)
         with monkeypatch.context() as broken:
             broken.setattr(asyncio, "to_thread", fail)
             control.events.publish(make_map(1))
@@ -126,5 +134,54 @@ async def test_a_map_that_cannot_be_packed_now_does_not_end_what_publishes(
         control.events.publish(make_map(2))
         await asyncio.sleep(1)
         assert not task.done()
-        assert [event.generation for event in maps.events(Topic.MAP)] == [2]
+        assert maps.generations == [2]
     assert [record.levelno for record in caplog.records] == [logging.ERROR]
+
+
+async def test_who_joins_hears_the_last_of_each_event_and_a_reader_misses_nothing(make_control: Any) -> None:
+    control = make_control()
+    sweep = Sweep(3, IDENTITY, ())
+    async with published(control) as (_, _, _, publisher):
+        for event in (
+            SweepDone(1, sweep),
+            SweepProgress(2, 4, 10, 300, 10, 0, 0),
+            SweepProgress(3, 4, 20, 300, 20, 0, 0),
+            Odometry(4, IDENTITY, STANDSTILL),
+        ):
+            control.events.publish(event)
+        await asyncio.sleep(1)
+        late = AConnection()
+        publisher.state.joined(late)  # type: ignore[arg-type]  # what it uses of it
+        publisher.state.heard(late, (b"\x01sweep\0",))  # type: ignore[arg-type]  # as above
+        publisher.state.heard(late, (b"\x01status\0",))  # type: ignore[arg-type]  # as above
+        await asyncio.sleep(1)
+        control.events.publish(SweepProgress(5, 4, 30, 300, 30, 0, 0))
+        await asyncio.sleep(1)
+    assert [frame.event for frame in late.sent] == ["sweep_progress", "sweep_done", "status", "sweep_progress"]
+    assert late.sent[0].seq > late.sent[1].seq
+    feed = Feed()
+    heard = [item for frame in late.sent for item in feed.accept(frame.data)]
+    assert [item.time_ns for item in heard if isinstance(item, SweepDone | SweepProgress)] == [3, 1, 5]
+    assert not any(isinstance(item, Gap) for item in heard)
+
+
+async def test_what_is_told_of_stops_goes_where_maps_go_in_one_order(
+    make_control: Any, make_map: Callable[..., MapChanged]
+) -> None:
+    control = make_control()
+    placed = StopPlaced(7, "m", 3, "placed", IDENTITY, 0.0, 0.0, 1.0, 0.0)
+    async with published(control) as (_, state, maps, _):
+        await asyncio.sleep(1)
+        for event in (make_map(2), placed, make_map(3)):
+            control.events.publish(event)
+            await asyncio.sleep(1)
+    assert state.events(Topic.MAP) == []
+    assert [frame.event for frame in maps.sent[-3:]] == ["map_changed", "stop_placed", "map_changed"]
+    assert [frame.seq for frame in maps.sent] == list(range(len(maps.sent)))
+
+
+async def test_who_joins_while_no_map_is_in_use_is_told_so(make_control: Any) -> None:
+    async with published(make_control()) as (_, _, maps, _):
+        await asyncio.sleep(1)
+    (change,) = maps.events(Topic.MAP)
+    assert (change.map_id, change.whole) == (None, True)

@@ -4,11 +4,13 @@ import asyncio
 import logging
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
+import pytest
 
 from robotd.contract.estimate import PoseEstimate, PoseState
-from robotd.contract.events import Event, MapChanged, MissionPhase, MissionProgress, SweepProgress
+from robotd.contract.events import Event, MapChanged, MissionPhase, MissionProgress, StopPlaced, SweepProgress
 from robotd.contract.topics import LogEntry
 from robotd.core.broadcast import Broadcast
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
@@ -29,6 +31,22 @@ def test_odometry_is_thinned_to_the_rate() -> None:
     decimator = Decimator(20.0)
     passed = [time_ns for time_ns in range(0, 1000 * MS, 10 * MS) if decimator.passes(odometry(time_ns))]
     assert passed == list(range(0, 1000 * MS, 50 * MS))
+
+
+@pytest.mark.parametrize("period_ms", [10, 20, 33, 40, 49, 50, 70])
+def test_the_rate_is_kept_in_the_mean_whatever_the_period_of_what_comes(period_ms: int) -> None:
+    decimator = Decimator(20.0)
+    times_ms = range(0, 10_000, period_ms)
+    passed = [at_ms for at_ms in times_ms if decimator.passes(odometry(at_ms * MS))]
+    assert len(passed) == pytest.approx(min(len(times_ms), 200), rel=0.03)
+    # Never two at once to make up for a silence.
+    assert min(after - before for before, after in pairwise(passed)) >= min(period_ms, 50) // period_ms * period_ms
+
+
+def test_what_comes_after_a_silence_is_not_made_up_for() -> None:
+    decimator = Decimator(20.0)
+    times_ms = [0, *range(5000, 5100, 10)]
+    assert [at_ms for at_ms in times_ms if decimator.passes(odometry(at_ms * MS))] == [0, 5000, 5050]
 
 
 def test_time_that_steps_back_starts_anew() -> None:
@@ -73,6 +91,32 @@ async def test_too_many_changes_become_one_whole_map(make_map: Callable[..., Map
     later = change(100, make_map)
     queue.put(later)
     assert await waiting is later
+
+
+def placed(stop: int) -> StopPlaced:
+    return StopPlaced(7, "m", stop, "placed", IDENTITY, 0.0, 0.0, 1.0, 0.0)
+
+
+async def test_what_is_told_of_stops_leaves_in_its_place_and_is_not_lost_with_the_changes(
+    make_map: Callable[..., MapChanged],
+) -> None:
+    queue = MapQueue()
+    events: list[Event] = [placed(0), change(1, make_map), placed(1), change(2, make_map)]
+    for event in events:
+        queue.put(event)
+    assert [await queue.get() for _ in range(4)] == events
+    for event in events:
+        queue.put(event)
+    queue.ask_for_whole()
+    assert [await queue.get() for _ in range(3)] == [None, placed(0), placed(1)]
+
+
+async def test_of_too_many_stops_the_latest_are_told(make_map: Callable[..., MapChanged]) -> None:
+    queue = MapQueue()
+    for stop in range(100):
+        queue.put(placed(stop))
+    queue.put(change(1, make_map))
+    assert [await queue.get() for _ in range(64)] == [placed(stop) for stop in range(36, 100)]
 
 
 async def test_a_whole_map_replaces_what_waits(make_map: Callable[..., MapChanged]) -> None:

@@ -197,9 +197,11 @@ async def test_map_readers_get_the_whole_map_then_its_changes(
             assert (changed.whole, changed.generation) == (False, 5)
 
 
-async def test_without_a_map_its_readers_wait(serving: Serving, tmp_path: Path) -> None:
+async def test_without_a_map_its_readers_are_told_so(serving: Serving, tmp_path: Path) -> None:
     async with serving(), AsyncClient(tmp_path) as client:
         with client.subscribe("map") as maps:
+            (change,) = await take(maps, 1)
+            assert change.map_id is None
             assert await quiet(maps)
         with pytest.raises(ServerError, match="not_found"):
             await client.map_show()
