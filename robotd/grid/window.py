@@ -61,6 +61,16 @@ class CellWindow:
             min(shape[1], self.end_col + by_cells),
         )
 
+    def moved(self, by_cells: int) -> "CellWindow":
+        """Return the window of the same cells where rows and columns are counted from ``by_cells`` cells before.
+
+        >>> CellWindow(2, 4, 0, 9).moved(3)
+        CellWindow(first_row=5, end_row=7, first_col=3, end_col=12)
+        """
+        return CellWindow(
+            self.first_row + by_cells, self.end_row + by_cells, self.first_col + by_cells, self.end_col + by_cells
+        )
+
     def joined(self, other: "CellWindow") -> "CellWindow":
         """Return the smallest window that holds this one and another.
 

@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from robotd.contract.area import Area
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
@@ -87,7 +90,7 @@ class ReadyMap:
             before_cores=cores.before_cores(),
         )
         meanings = tuple(
-            Meaning.of(grid.spec, cells, levels.obstacles.blocking, errors) for cells in cores.readings_of(grid.cells)
+            Meaning.of(grid.spec, cells, _blocking(levels), errors) for cells in cores.readings_of(grid.cells)
         )
         return cls(ternary, cores, settings, levels, SearchMap.of(levels), meanings, _sure(ternary, settings))
 
@@ -107,10 +110,15 @@ class ReadyMap:
         levels = self.prepared.updated(ternary, self.settings.unknown, changed, cores.before_cores())
         searched = self.searched.updated(levels, levels.reach(changed))
         meanings = tuple(
-            meaning.updated(cells, levels.obstacles.blocking, changed)
+            meaning.updated(cells, _blocking(levels), changed)
             for meaning, cells in zip(self.meanings, cores.readings_of(grid.cells), strict=True)
         )
         return ReadyMap(ternary, cores, self.settings, levels, searched, meanings, _sure(ternary, self.settings))
+
+
+def _blocking(levels: Levels) -> NDArray[np.bool_]:
+    """Return the cells of the map that stop a beam, ``bool[rows, cols]``."""
+    return levels.obstacles.on_map(levels.obstacles.blocking)
 
 
 def _sure(ternary: TernaryMap, settings: LocalizationSettings) -> ConservativeMap | None:

@@ -26,7 +26,7 @@ def explained_at(levels: Levels, readings: Readings, cell: tuple[int, int], head
     """
     explained = np.zeros(len(readings), np.bool_)
     # Only free cells are poses, for counting and search as well: the three have to agree.
-    if levels.obstacles.free[cell]:
+    if levels.obstacles.on_map(levels.obstacles.free)[cell]:
         for the_map, which in levels.parted(readings):
             explained[which] = _explained(the_map, readings[which], cell, heading_rad)
     return explained
@@ -39,9 +39,10 @@ def _explained(
     obstacles = the_map.obstacles
     drawn = Drawn.of(readings, turned(np.array([heading_rad])), the_map.spec.resolution_m)
     body, beam = drawn.bodies(drawn.body_lengths(the_map.error_radius_cells, 2 * max(the_map.spec.shape)))
-    is_met = _look_up(obstacles.blocking, np.array(cell) + body, outside=obstacles.outside_blocks)
+    at = np.array(cell) + obstacles.rim
+    is_met = _look_up(obstacles.blocking, at + body, outside=obstacles.outside_blocks)
     met = np.bincount(beam[is_met], minlength=len(readings))
-    ends = _look_up(obstacles.grown, np.array(cell) + drawn.head_cells, outside=obstacles.outside_ends) | drawn.is_miss
+    ends = _look_up(obstacles.grown, at + drawn.head_cells, outside=obstacles.outside_ends) | drawn.is_miss
     explained: NDArray[np.bool_] = ends & (met < obstacles.blocked_by)
     return explained
 

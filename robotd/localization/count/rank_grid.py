@@ -58,6 +58,8 @@ class RankGrid:
         self._threads = threads
         self._the_map = the_map
         self._map = the_map.packed
+        row, col = the_map.packed.origin
+        self._first_cell = row + the_map.obstacles.rim, col + the_map.obstacles.rim
         self._refuse_if_too_large(bits_of(0))
         self._counters = self._map.blank_counters(len(self.headings_rad), bits_of(0))
 
@@ -138,7 +140,7 @@ class RankGrid:
         rank = np.zeros((len(self.headings_rad), *self.spec.shape), np.uint16)
         tiled = np.zeros((len(self.headings_rad), self._map.rows, self._map.words), np.uint64)
         blocks = tiled.reshape(len(self.headings_rad), -1, TILE_ROWS, self._map.words)
-        (top, left), (rows, cols) = self._map.origin, self.spec.shape
+        (top, left), (rows, cols) = self._first_cell, self.spec.shape
         for bit in range(self._counters.shape[2]):
             blocks[:, self._map.tiles[:, 1] // TILE_ROWS, :, self._map.tiles[:, 0]] = self._counters[:, :, bit]
             cells = unpack(tiled[:, top : top + rows], left + cols)[:, :, left:]
@@ -163,7 +165,7 @@ class RankGrid:
         heading, row, word = np.nonzero(reached)
         which, bit = np.nonzero(unpack(reached[heading, row, word][:, None], WORD_CELLS))
         poses = np.stack((heading[which], row[which], word[which] * WORD_CELLS + bit), axis=1)
-        poses -= np.array([0, *self._map.origin])
+        poses -= np.array([0, *self._first_cell])
         return poses
 
     def count_of_rank(self, least: int) -> int:
@@ -174,7 +176,7 @@ class RankGrid:
     def rank_at(self, poses: NDArray[np.intp]) -> NDArray[np.uint16]:
         """Return the counts ``uint16[n]`` of poses that :meth:`cells_of_rank` returned."""
         heading, row, col = poses.T
-        row, col = row + self._map.origin[0], col + self._map.origin[1]
+        row, col = row + self._first_cell[0], col + self._first_cell[1]
         number = np.zeros((self._map.words, self._map.rows // TILE_ROWS), np.intp)
         number[self._map.tiles[:, 0], self._map.tiles[:, 1] // TILE_ROWS] = np.arange(len(self._map.tiles))
         tile = number[col // WORD_CELLS, row // TILE_ROWS]

@@ -6,6 +6,9 @@
   known behind it"), or not be there at all; :class:`UnknownCells` names the three readings.
 - A beam that grazes along a wall meets a cell of it by rounding. A body may therefore count as blocked only if it
   meets ``blocked_by`` obstacle cells, 1 being the paper's definition.
+
+A head may lie outside the grid and within the error radius of a wall at its border, as on a map that was cropped there.
+So where nothing ends outside, the cells of a rim as wide as that radius are kept all round.
 """
 
 from dataclasses import dataclass, replace
@@ -21,7 +24,7 @@ from robotd.localization.obstacles.unknown_cells import UnknownCells
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Obstacles:
-    """A map as localization needs it, made once for all readings."""
+    """A map as localization needs it, made once for all readings; ``rows`` and ``cols`` are its own and two rims."""
 
     free: NDArray[np.bool_]
     """``bool[rows, cols]``: the cells where the robot may stand; elsewhere nothing is feasible."""
@@ -35,6 +38,8 @@ class Obstacles:
     """Whether a reading can end outside the grid."""
     blocked_by: int = 1
     """How many blocking cells a body must meet to be blocked, 1 or 2."""
+    rim: int = 0
+    """How many cells of what lies outside are kept on each side of the map, for heads to end in."""
 
     def __post_init__(self) -> None:
         """Refuse what contradicts itself."""
@@ -59,20 +64,36 @@ class Obstacles:
         *,
         blocked_by: int = 1,
         before_cores: NDArray[np.bool_] | None = None,
+        rim: int = 0,
     ) -> "Obstacles":
         """Read a three-valued map; ``OCCUPIED`` with ``blocked_by = 1`` is the paper's.
 
-        ``before_cores``, ``bool[rows, cols]``, are cells of thick walls that stop no beam, but may end one.
+        ``before_cores``, ``bool[rows, cols]``, are cells of thick walls that stop no beam, but may end one. ``rim`` is
+        as wide as the error radius where nothing ends outside; elsewhere nothing is gained by one.
         """
-        unseen_ends = unknown is UnknownCells.OCCUPIED
+        unseen_ends, unseen_blocks = unknown is UnknownCells.OCCUPIED, unknown is not UnknownCells.FREE
+        ending = np.pad(_ending(ternary, unknown), rim, constant_values=unseen_ends)
         return cls(
-            free=ternary.vacant,
-            blocking=_blocking(ternary, unknown, before_cores),
-            grown=grown_by_disk(_ending(ternary, unknown), error_radius_cells, outside=unseen_ends),
-            outside_blocks=unknown is not UnknownCells.FREE,
+            free=np.pad(ternary.vacant, rim),
+            blocking=np.pad(_blocking(ternary, unknown, before_cores), rim, constant_values=unseen_blocks),
+            grown=grown_by_disk(ending, error_radius_cells, outside=unseen_ends),
+            outside_blocks=unseen_blocks,
             outside_ends=unseen_ends,
             blocked_by=blocked_by,
+            rim=rim,
         )
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """``(rows, cols)`` of the map, without the rim."""
+        rows, cols = self.free.shape
+        return rows - 2 * self.rim, cols - 2 * self.rim
+
+    def on_map(self, mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return a mask of these without its rim: one cell for each of the map's; a view."""
+        rows, cols = self.shape
+        on_map: NDArray[np.bool_] = mask[self.rim : self.rim + rows, self.rim : self.rim + cols]
+        return on_map
 
     def updated(
         self,
@@ -86,10 +107,16 @@ class Obstacles:
 
         The obstacles differ in no cell that is farther than the error radius from the window.
         """
-        grown = grown_by_disk_updated(
-            self.grown, _ending(ternary, unknown), changed, error_radius_cells, outside=self.outside_ends
+        ending = np.pad(_ending(ternary, unknown), self.rim, constant_values=self.outside_ends)
+        blocking = _blocking(ternary, unknown, before_cores)
+        return replace(
+            self,
+            free=np.pad(ternary.vacant, self.rim),
+            blocking=np.pad(blocking, self.rim, constant_values=self.outside_blocks),
+            grown=grown_by_disk_updated(
+                self.grown, ending, changed.moved(self.rim), error_radius_cells, outside=self.outside_ends
+            ),
         )
-        return replace(self, free=ternary.vacant, blocking=_blocking(ternary, unknown, before_cores), grown=grown)
 
 
 def _blocking(ternary: TernaryMap, unknown: UnknownCells, before_cores: NDArray[np.bool_] | None) -> NDArray[np.bool_]:

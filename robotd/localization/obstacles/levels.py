@@ -44,10 +44,12 @@ class Levels:
         before_cores: NDArray[np.bool_] | None = None,
     ) -> "Levels":
         """Read and prepare a three-valued map; arguments as of :meth:`.Obstacles.of_map`. O(cells x levels)."""
+        # One rim for all levels: heads of each are counted in the same cells. Along a row a disk reaches whole cells.
+        rim = 0 if unknown is UnknownCells.OCCUPIED else int(radii.greatest)
 
         def prepared(radius_cells: float) -> PreparedMap:
             obstacles = Obstacles.of_map(
-                ternary, unknown, radius_cells, blocked_by=blocked_by, before_cores=before_cores
+                ternary, unknown, radius_cells, blocked_by=blocked_by, before_cores=before_cores, rim=rim
             )
             return PreparedMap.of(obstacles, ternary.spec, radius_cells)
 
@@ -74,9 +76,9 @@ class Levels:
         return self.maps[0].obstacles
 
     def reach(self, changed: CellWindow) -> CellWindow:
-        """Return the window in which maps may differ after a change in another."""
+        """Return the window in which obstacles may differ, counted with their rim, after a change of the map."""
         # A disk reaches whole cells along a row or a column, so rounding its radius down loses none of them.
-        return changed.grown(int(self.radii.greatest), self.spec.shape)
+        return changed.moved(self.obstacles.rim).grown(int(self.radii.greatest), self.obstacles.free.shape)
 
     def parted(self, readings: Readings) -> Iterator[tuple[PreparedMap, NDArray[np.intp]]]:
         """Yield the map of each level that has a reading, and which readings they are, in order."""

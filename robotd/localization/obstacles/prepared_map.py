@@ -33,8 +33,8 @@ class PreparedMap:
         Raises:
             ValueError: they do not fit there.
         """
-        if obstacles.free.shape != spec.shape:
-            raise ValueError(f"expected obstacles of shape {spec.shape}, got {obstacles.free.shape}")
+        if obstacles.shape != spec.shape:
+            raise ValueError(f"expected obstacles of shape {spec.shape}, got {obstacles.shape}")
         packed = PackedMap.of(
             obstacles.free,
             obstacles.blocking,
@@ -61,7 +61,7 @@ class PreparedMap:
         radius_cells = self.error_radius_cells
         obstacles = self.obstacles.updated(ternary, unknown, radius_cells, changed, before_cores)
         # A disk reaches whole cells along a row or a column, so rounding its radius down loses none of them.
-        return self.updated(obstacles, changed.grown(int(radius_cells), self.spec.shape))
+        return self.updated(obstacles, changed.moved(obstacles.rim).grown(int(radius_cells), obstacles.free.shape))
 
     def updated(self, obstacles: Obstacles, changed: CellWindow) -> "PreparedMap":
         """Return this map with obstacles that differ from its own in a window alone; this one stays as it is.
@@ -70,7 +70,8 @@ class PreparedMap:
 
         Args:
             obstacles: the new ones, of the same map and read in the same way.
-            changed: holds all cells in which they differ: those that changed in the map, grown by the error radius.
+            changed: holds all cells in which they differ, counted with the rim: those that changed in the map, grown by
+                the error radius.
         """
         packed = repacked(self.packed, obstacles.free, obstacles.blocking, obstacles.grown, changed)
         return replace(self, obstacles=obstacles, packed=packed)

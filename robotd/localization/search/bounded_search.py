@@ -7,7 +7,7 @@ it; and a cell is given up as soon as it has missed too many.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,18 +36,20 @@ class SearchMap:
 
     spec: GridSpec
     planes: Planes
+    rim: int
+    """How many cells of the planes lie before the map's first, and after its last."""
 
     @classmethod
     def of(cls, levels: Levels) -> "SearchMap":
         """Prepare a map; O(cells x levels)."""
-        return cls(levels.spec, kernels.in_use().search.make_planes(_ground(levels)))
+        return cls(levels.spec, kernels.in_use().search.make_planes(_ground(levels)), levels.obstacles.rim)
 
     def updated(self, levels: Levels, window: CellWindow) -> "SearchMap":
         """Return the map after cells changed on some level, all of them in a window; this one stays as it is.
 
-        O(cells near the window), and a copy.
+        The window is one of the obstacles, counted with their rim. O(cells near the window), and a copy.
         """
-        return SearchMap(self.spec, kernels.in_use().search.renew_planes(self.planes, _ground(levels), window))
+        return replace(self, planes=kernels.in_use().search.renew_planes(self.planes, _ground(levels), window))
 
 
 def best_poses(
@@ -94,13 +96,15 @@ def best_poses(
         slack=slack,
         least_rank=least_rank,
         limit=limit,
-        window=window,
+        # What is inside the map is inside its rim, and so are columns: the kernel counts all of them with it.
+        window=window.moved(search_map.rim),
         by_blocks=window.size > _FEW_CELLS,
-        spans=spans,
+        spans=spans + np.int32(search_map.rim),
         reach_cells=2 * (max(shape) + farthest_m / search_map.spec.resolution_m),
         budget=budget,
     )
-    return kernels.in_use().search.search_poses(search_map.planes, question, threads=threads)
+    found = kernels.in_use().search.search_poses(search_map.planes, question, threads=threads)
+    return replace(found, poses=found.poses - np.array([0, search_map.rim, search_map.rim]))
 
 
 def _spans(prior: CellDisk | CellWindow, shape: tuple[int, int]) -> tuple[CellWindow, NDArray[np.int32]]:
