@@ -46,7 +46,10 @@ WORDS = {
         "recordings",
         "run the daemon again on recorded bytes, and compare every result; exit code 1 if one differs",
     ),
-    "export": ("exports", "write a recording for other programs: a trajectory, a CARMEN log, a file for Foxglove"),
+    "export": (
+        "exports",
+        "write a recording for other programs: a trajectory, a CARMEN log, a bag of ROS, a file for Foxglove",
+    ),
     "eval": ("evaluate", "tell how often localization is right, ambiguous, lost, or sure and wrong on real logs"),
     "config": ("configuration", "check and show configurations"),
     "schema": ("wire_schema", "print every request, reply and event as one JSON Schema, made from the types"),

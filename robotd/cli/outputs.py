@@ -63,15 +63,21 @@ class OutputPath(PosixPath):
     kind: Kind
 
 
-def output_argument(parser: argparse.ArgumentParser, name: str, kind: Kind, summary: str, **others: object) -> None:
-    """Take the name of a file to write, or of a directory to write into."""
+def output_argument(
+    parser: argparse.ArgumentParser,
+    name: str,
+    kind: Kind | Callable[[Path], Kind],
+    summary: str,
+    **others: object,
+) -> None:
+    """Take the name of a file to write, or of a directory to write into; the name may tell which of several kinds."""
 
     def path(text: str) -> OutputPath:
         found = OutputPath(text)
-        found.kind = kind
+        found.kind = kind if isinstance(kind, Kind) else kind(found)
         return found
 
-    metavar = "DIR" if kind.is_one is None else "FILE"
+    metavar = "DIR" if isinstance(kind, Kind) and kind.is_one is None else "FILE"
     parser.add_argument(name, type=path, help=summary, **{"metavar": metavar, **others})  # type: ignore[arg-type]  # as argparse takes them
 
 

@@ -1,13 +1,11 @@
 """Sweeps as a CARMEN log, the form that most public laser logs have; :mod:`robotd.logs` reads it."""
 
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-import numpy as np
-
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.interop.fan import Fan, from_axis_m
 
 _FAILED = 0.0
 """As the readers of these logs take it: nearer than any scanner measures."""
@@ -44,30 +42,20 @@ def encode_carmen(sweeps: Iterable[PlacedSweep]) -> Iterator[str]:
 
 
 def _scan(readings: tuple[RangeReading, ...]) -> str:
-    # Each bearing is wrapped, and the form tells a first one and a step: a sweep goes round without a leap.
-    bearings = np.unwrap([reading.bearing_rad for reading in readings]).tolist()
-    if bearings[-1] < bearings[0]:  # clockwise, which few readers expect
-        bearings, readings = bearings[::-1], readings[::-1]
-    count = len(readings)
-    step_rad = (bearings[-1] - bearings[0]) / (count - 1)
-    misses = [_range_m(reading) for reading in readings if reading.status is ReadingStatus.MISS]
+    fan = Fan.of(readings)
+    misses = [from_axis_m(reading) for reading in fan.readings if reading.status is ReadingStatus.MISS]
     limit_m = min(misses, default=0.0)
-    ranges = " ".join(repr(_told_m(reading, limit_m)) for reading in readings)
-    return f"{_REMOTE_TYPE} {bearings[0]!r} {step_rad * (count - 1)!r} {step_rad!r} {limit_m!r} 0 0 {count} {ranges} 0"
+    count, ranges = len(fan.readings), " ".join(repr(_told_m(reading, limit_m)) for reading in fan.readings)
+    fov_rad = fan.step_rad * (count - 1)
+    return f"{_REMOTE_TYPE} {fan.first_rad!r} {fov_rad!r} {fan.step_rad!r} {limit_m!r} 0 0 {count} {ranges} 0"
 
 
 def _told_m(reading: RangeReading, limit_m: float) -> float:
     if reading.range_m is None:
         return _FAILED
     # The limit itself, or more, means that nothing was met: what was met beyond it must not be told so.
-    range_m = _range_m(reading)
+    range_m = from_axis_m(reading)
     return limit_m if reading.status is ReadingStatus.MISS else range_m
-
-
-def _range_m(reading: RangeReading) -> float:
-    """Return how far the head is from the robot's axis, along the bearing."""
-    cos, sin = math.cos(reading.bearing_rad), math.sin(reading.bearing_rad)
-    return (reading.range_m or 0.0) + reading.origin_x_m * cos + reading.origin_y_m * sin
 
 
 def _pose(pose: Pose2) -> str:

@@ -9,16 +9,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import MapChanged, SweepDone
 from robotd.contract.topics import LogEntry
 from robotd.core.clock import NS_PER_S
-from robotd.core.grid_bytes import unpacked_cells
-from robotd.core.pose import IDENTITY, Odometry, Pose2
+from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import ReadingStatus
+from robotd.interop.scene import Scene
 
 _UINT8 = 1
 _NUMBER = {"type": "number"}
@@ -78,16 +75,13 @@ class FoxgloveFrames:
     def __init__(self, wall_offset_ns: int) -> None:
         """Take from monotonic to Unix time [ns]."""
         self._wall_offset_ns = wall_offset_ns
-        self._in_odom = IDENTITY
-        self._map_from_odom = IDENTITY
-        self._cells: NDArray[np.uint8] = np.empty((0, 0), np.uint8)
-        """Of the map in use, as changed so far."""
+        self._scene = Scene()
 
     def messages(self, event: object) -> Iterator[FoxgloveMessage]:
         """Yield what an event is told as; nothing for what has no form there."""
+        self._scene.take(event)
         match event:
             case Odometry():
-                self._in_odom = event.in_odom
                 yield self._frames(event.time_ns)
             case PoseEstimate():
                 yield from self._estimate(event)
@@ -101,12 +95,6 @@ class FoxgloveFrames:
     def _grid(self, change: MapChanged) -> FoxgloveMessage:
         """Return the whole map, a byte a cell: there is no message for a part of it."""
         spec = change.spec
-        if change.whole:
-            # Where it was packed already it has no values of its own.
-            whole = change.values if change.packed is None else unpacked_cells(change.packed, spec)
-            self._cells = whole.copy()
-        elif self._cells.shape == spec.shape:
-            self._cells.flat[change.cells] = change.values
         content = {
             "timestamp": self._time(change.time_ns),
             "frame_id": "map",
@@ -116,13 +104,13 @@ class FoxgloveFrames:
             "row_stride": spec.cols,
             "cell_stride": 1,
             "fields": [{"name": "occupancy", "offset": 0, "type": _UINT8}],
-            "data": base64.b64encode(self._cells.tobytes()).decode(),
+            "data": base64.b64encode(self._scene.cells.tobytes()).decode(),
         }
         return FoxgloveMessage("/map", "foxglove.Grid", content)
 
     def _frames(self, time_ns: int) -> FoxgloveMessage:
         time = self._time(time_ns)
-        ties = [("map", "odom", self._map_from_odom), ("odom", "robot", self._in_odom)]
+        ties = [("map", "odom", self._scene.map_from_odom), ("odom", "robot", self._scene.in_odom)]
         transforms = [
             {"timestamp": time, "parent_frame_id": parent, "child_frame_id": child, **_transform(pose)}
             for parent, child, pose in ties
@@ -131,8 +119,6 @@ class FoxgloveFrames:
 
     def _estimate(self, estimate: PoseEstimate) -> Iterator[FoxgloveMessage]:
         if estimate.best is not None:
-            # The newest odometry is not that of the estimate: while the robot stands, as it does then, it is the same.
-            self._map_from_odom = estimate.best @ self._in_odom.inverse()
             yield self._frames(estimate.time_ns)
         places = [estimate.best] if estimate.best is not None else [region.pose for region in estimate.regions]
         poses = {
@@ -179,12 +165,13 @@ class FoxgloveFrames:
 
 
 def _pose(pose: Pose2) -> dict[str, Any]:
-    return {"position": {"x": pose.x_m, "y": pose.y_m, "z": 0.0}, "orientation": _quaternion(pose.heading_rad)}
+    return {"position": {"x": pose.x_m, "y": pose.y_m, "z": 0.0}, "orientation": quaternion(pose.heading_rad)}
 
 
 def _transform(pose: Pose2) -> dict[str, Any]:
-    return {"translation": {"x": pose.x_m, "y": pose.y_m, "z": 0.0}, "rotation": _quaternion(pose.heading_rad)}
+    return {"translation": {"x": pose.x_m, "y": pose.y_m, "z": 0.0}, "rotation": quaternion(pose.heading_rad)}
 
 
-def _quaternion(heading_rad: float) -> dict[str, float]:
+def quaternion(heading_rad: float) -> dict[str, float]:
+    """Return a heading as a quaternion about the upright axis."""
     return {"x": 0.0, "y": 0.0, "z": math.sin(heading_rad / 2), "w": math.cos(heading_rad / 2)}

@@ -23,7 +23,7 @@ from robotd.core.errors import RecordingError
 from robotd.core.pose import Pose2
 from robotd.logs.bearings import Bearings, bearings_of
 from robotd.logs.mount import is_upside_down, mount_of
-from robotd.logs.no_returns import code_from_m, named_limit_m
+from robotd.logs.no_returns import code_from_m, code_remark, named_limit_m
 from robotd.logs.numbers import DamagedLineError
 from robotd.logs.odometry import OdometryTrack, pose_between
 from robotd.logs.provenance import Fit, fit_of, lie_on_odometry, moved_to_odometry
@@ -155,7 +155,7 @@ def _log(reader: _Reader, placed: list[_Placed], file: str, fov_rad: float | Non
     for record in records:
         record.ranges_m[record.ranges_m > _FARTHEST_M] = math.inf
     limits_m = _limits_m(reader, records, scanner)
-    code_m = code_from_m(records, robots, limits_m)
+    code_m = code_from_m([record.ranges_m for record in records], robots, limits_m)
     bearings = _bearings(reader, records, scanner, fov_rad)
     scans = tuple(
         _scan(one, robot, frame, bearings.get(len(one.record.ranges_m)), min(limit_m, code_m))
@@ -165,7 +165,7 @@ def _log(reader: _Reader, placed: list[_Placed], file: str, fov_rad: float | Non
     assumed = (
         *_assumed(bearings.values()),
         *_steps(records),
-        *_code(code_m),
+        *code_remark(code_m),
         *_flat(records),
         *_flipped(reader, scanner),
     )
@@ -261,13 +261,6 @@ def _steps(records: list[LaserRecord]) -> tuple[str, ...]:
     return (f"{count} scans say that their beams are 0 deg apart: taken to be even over their field of view",) * (
         count > 0
     )
-
-
-def _code(code_m: float) -> tuple[str, ...]:
-    words = (
-        f"ranges from {code_m:.2f} m on are the scanner's code for nothing came back; --range-max says what they are"
-    )
-    return (words,) if math.isfinite(code_m) else ()
 
 
 def _flat(records: list[LaserRecord]) -> tuple[str, ...]:

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
 from robotd.logs.bearings import names
-from robotd.logs.records import LaserRecord
 
 _CODES_FROM_M = 30.0
 _CODE_SPREAD_M = 0.2
@@ -24,6 +23,9 @@ _PILE_SHARE_MAX = 0.9
 """Where nearly all ranges are the same, they may well be distances: in a round room, or in a test."""
 
 
+_Ranges = NDArray[np.float64]
+
+
 def named_limit_m(params: Mapping[str, str], scanner: str) -> float:
     """Return the largest range that a PARAM names; ``inf`` without one, and 0 is none."""
     for name in (*names(scanner, "max"), *names(scanner, "maxrange"), *names(scanner, "max_range")):
@@ -36,8 +38,13 @@ def named_limit_m(params: Mapping[str, str], scanner: str) -> float:
     return math.inf
 
 
-def code_from_m(scans: Sequence[LaserRecord], poses: Sequence[Pose2], limits_m: Sequence[float]) -> float:
+def code_from_m(scans_m: Sequence[_Ranges], poses: Sequence[Pose2], limits_m: Sequence[float]) -> float:
     """Return from which range on a scanner says that nothing came back; ``inf`` if it has no code for that.
+
+    Args:
+        scans_m: the ranges of each scan.
+        poses: where each was taken.
+        limits_m: the range of each from which on nothing was met, as the log says; ``inf`` where it does not.
 
     From 30 m on whatever lies within 0.2 m of the largest range is a code, as no such scanner sees a wall there
     indoors, and codes vary a little; a log that names a limit itself has its codes beyond that. Else the largest range
@@ -45,21 +52,26 @@ def code_from_m(scans: Sequence[LaserRecord], poses: Sequence[Pose2], limits_m: 
     all the half metre below it.
     """
     from_m = math.inf
-    below = _below(scans, limits_m)
+    below = _below(scans_m, limits_m)
     largest_m = _largest_m(below)
     if largest_m > _CODES_FROM_M and all(map(math.isinf, limits_m)):
         from_m = largest_m - _CODE_SPREAD_M
-        below = _below(scans, [from_m] * len(scans))
+        below = _below(scans_m, [from_m] * len(scans_m))
         largest_m = _largest_m(below)
     is_pile = largest_m > 0.0 and _is_pile(below, poses, largest_m)
     return largest_m - _SAME_M if is_pile else from_m
 
 
-_Ranges = NDArray[np.float64]
+def code_remark(from_m: float) -> tuple[str, ...]:
+    """Return what people must be told of a code, if there is one."""
+    words = (
+        f"ranges from {from_m:.2f} m on are the scanner's code for nothing came back; --range-max says what they are"
+    )
+    return (words,) if math.isfinite(from_m) else ()
 
 
-def _below(scans: Sequence[LaserRecord], limits_m: Sequence[float]) -> list[_Ranges]:
-    pairs = zip((scan.ranges_m for scan in scans), limits_m, strict=True)
+def _below(scans_m: Sequence[_Ranges], limits_m: Sequence[float]) -> list[_Ranges]:
+    pairs = zip(scans_m, limits_m, strict=True)
     return [ranges_m[(ranges_m > 0.0) & (ranges_m < limit_m)] for ranges_m, limit_m in pairs]
 
 

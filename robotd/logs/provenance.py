@@ -129,8 +129,7 @@ def _fitting_share(one: Scan, other: Scan) -> float | None:
     directions_rad = other.angles_rad[met] + in_one.heading_rad
     x_m = in_one.x_m + other.ranges_m[met] * np.cos(directions_rad)
     y_m = in_one.y_m + other.ranges_m[met] * np.sin(directions_rad)
-    step_rad = float(one.angles_rad[1] - one.angles_rad[0])
-    beams = np.rint((np.arctan2(y_m, x_m) - one.angles_rad[0]) / step_rad).astype(np.intp)
+    beams = np.rint((np.arctan2(y_m, x_m) - one.angles_rad[0]) / one.step_rad).astype(np.intp)
     seen = (beams >= 0) & (beams < len(one.angles_rad))
     beams, distances_m = beams[seen], np.hypot(x_m, y_m)[seen]
     beyond_m = np.where(one.hit[beams], one.ranges_m[beams], np.nan) - distances_m

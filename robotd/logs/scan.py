@@ -35,7 +35,8 @@ class Scan:
     odometry: Pose2
     """Raw odometry at the scan; continuous over the log."""
     angles_rad: NDArray[np.float64]
-    """Directions of the beams in the laser's frame, evenly ascending, ``float64[n]``, at least two."""
+    """Directions of the beams in the laser's frame, ascending, ``float64[n]``, at least two; evenly, but for how well a
+    head aims."""
     ranges_m: NDArray[np.float64]
     """Ranges ``float64[n]``; they mean something only where ``hit``."""
     hit: NDArray[np.bool_]
@@ -44,6 +45,11 @@ class Scan:
     """Where nothing came back, ``bool[n]``; neither hit nor missed is a failed measurement."""
     time_s: float | None = None
     """When the log says that it was taken; such times may run backwards, and file order is right all the same."""
+
+    @property
+    def step_rad(self) -> float:
+        """From beam to beam."""
+        return float(self.angles_rad[-1] - self.angles_rad[0]) / (len(self.angles_rad) - 1)
 
     @property
     def laser_pose(self) -> Pose2:

@@ -3,47 +3,33 @@
 import base64
 import json
 import math
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from mcap.reader import make_reader
+from rosbags.highlevel import AnyReader
 
 from robotd.app.replaying import replay_events
 from robotd.cli.main import main
-from robotd.config import Config
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import Event, MapChanged, SweepDone
-from robotd.contract.missions import Localize, MapStart
-from robotd.contract.requests import RecordStart, RecordStop
-from robotd.core.clock import NS_PER_S, run_virtual
-from robotd.core.grid_bytes import unpacked_cells
+from robotd.core.clock import NS_PER_S
+from robotd.core.pose import Odometry
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.interop.tum import decode_tum
 from robotd.logs.carmen import parse_carmen
-from robotd.mission.missions.stop_and_sweep import SweepSettings
-from robotd.sim.buildings.world import load_world
-from robotd.sim.robot import SimulatedRobot
+from robotd.logs.scan import PoseSource
+from robotd.sim.buildings.log_file import read_log
+from tests.support.recorded_session import laid_together, record_session
 
 pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(name="recorded")
-def _recorded(live: Any, tmp_path: Path) -> Path:
-    run_virtual(_record(live, tmp_path / "recordings" / "a.mcap"))
-    return tmp_path / "recordings" / "a.mcap"
-
-
-async def _record(live: Any, path: Path) -> None:
-    """Map a stop of the office, and be found there by enough readings to be sure."""
-    robot = SimulatedRobot(load_world("office"), seed=5)
-    async with live(robot, replace(Config(), sweep=SweepSettings(readings=150))) as it:
-        await it.daemon.control.perform(RecordStart(str(path)))
-        await it.done(MapStart.of("office", (), robot.start))
-        await it.done(Localize())
-        await it.daemon.control.perform(RecordStop())
+def _recorded(tmp_path: Path) -> Path:
+    return record_session(tmp_path)
 
 
 @pytest.fixture(name="told")
@@ -57,7 +43,7 @@ def test_a_recording_goes_out_in_three_forms(recorded: Path, told: list[Event], 
     offset_ns = replay_events(recorded, lambda _: None).wall_offset_ns
     sweeps = [event for event in told if isinstance(event, SweepDone)]
     assert len(sweeps) == 2
-    for check in (_tum_is_true, _carmen_is_true, _foxglove_is_true):
+    for check in (_tum_is_true, _carmen_is_true, _foxglove_is_true, _bags_are_true):
         check(recorded, told, offset_ns, tmp_path)
 
 
@@ -115,7 +101,7 @@ def _foxglove_is_true(recorded: Path, told: list[Event], offset_ns: int, place: 
     assert [time_ns for time_ns, _ in messages["/map"]] == [event.time_ns + offset_ns for event in grids]
     # The last picture is the sum of all changes, which a slow reader lays on one another.
     last = np.frombuffer(base64.b64decode(messages["/map"][-1][1]["data"]), np.uint8)
-    np.testing.assert_array_equal(last, _laid_together(grids).ravel())
+    np.testing.assert_array_equal(last, laid_together(grids).ravel())
     frames = messages["/tf"][-1][1]["transforms"]
     assert [(tie["parent_frame_id"], tie["child_frame_id"]) for tie in frames] == [("map", "odom"), ("odom", "robot")]
     # Written again it is ours to replace; a recording is not.
@@ -123,13 +109,33 @@ def _foxglove_is_true(recorded: Path, told: list[Event], offset_ns: int, place: 
     assert main(["export", "foxglove", str(recorded), str(recorded)]) != 0
 
 
-def _laid_together(changes: list[MapChanged]) -> np.ndarray[Any, np.dtype[np.uint8]]:
-    cells = np.empty((0, 0), np.uint8)
-    for change in changes:
-        if change.whole:
-            assert change.packed is not None
-            cells = unpacked_cells(change.packed, change.spec).copy()
-        else:
-            for at, value in zip(change.cells.tolist(), change.values.tolist(), strict=True):
-                cells[divmod(at, change.spec.cols)] = value
-    return cells
+def _bags_are_true(recorded: Path, told: list[Event], offset_ns: int, place: Path) -> None:
+    sweeps = [event.sweep for event in told if isinstance(event, SweepDone)]
+    for name in ("a.bag", "a_ros2"):
+        assert main(["export", "bag", str(recorded), str(place / name)]) == 0
+        log = read_log(place / name)
+        assert log.poses is PoseSource.CORRECTED
+        assert len(log.scans) == len(sweeps)
+        for scan, sweep in zip(log.scans, sweeps, strict=True):
+            # Where it stood by odometry comes back; the rest is the scanner's form, as in a CARMEN log.
+            assert scan.odometry.distance_m(sweep.in_odom) < 1e-6
+            assert scan.time_s == pytest.approx((sweep.readings[0].time_ns + offset_ns) / NS_PER_S, abs=1e-6)
+            assert int(scan.hit.sum()) == sweep.count(ReadingStatus.OK)
+            assert int(scan.missed.sum()) == sweep.count(ReadingStatus.MISS)
+        _messages_are_true(place / name, told)
+        assert main(["export", "bag", str(recorded), str(place / name)]) == 1  # somebody may have added to it
+
+
+def _messages_are_true(bag: Path, told: list[Event]) -> None:
+    with AnyReader([bag]) as reader:
+        counts = {topic: info.msgcount for topic, info in reader.topics.items()}
+        maps = [one for one in reader.connections if one.topic == "/map"]
+        [*_, (connection, _, data)] = reader.messages(maps)
+        last: Any = reader.deserialize(data, connection.msgtype)
+    assert counts["/odom"] == sum(isinstance(event, Odometry) for event in told)
+    assert counts["/pose"] == sum(isinstance(event, PoseEstimate) and event.best is not None for event in told)
+    cells = laid_together([event for event in told if isinstance(event, MapChanged)])
+    assert (last.info.height, last.info.width) == cells.shape
+    np.testing.assert_array_equal(last.data == -1, cells.ravel() == 128)
+    known = cells.ravel() != 128
+    assert np.abs(last.data[known] / 100 - cells.ravel()[known] / 255).max() <= 0.005

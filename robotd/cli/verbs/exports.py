@@ -1,21 +1,20 @@
-"""``export tum|carmen|foxglove``: a recording for other programs. What was told is computed again, as by a replay."""
+"""``export tum|carmen|foxglove|bag``: a recording for other programs."""
 
 import argparse
 import io
 import json
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from mcap.writer import CompressionType, Writer
 
 from robotd.cli.exit_codes import OK
-from robotd.cli.outputs import Kind, OutputPath, output_argument, write
+from robotd.cli.heard import Heard
+from robotd.cli.outputs import Kind, output_argument, write
 from robotd.cli.show.terminal import out, print_json
 from robotd.cli.verb import Verb
 from robotd.contract.estimate import PoseEstimate, PoseState
-from robotd.contract.events import Event, SweepDone
-from robotd.core.clock import NS_PER_S
+from robotd.contract.events import SweepDone
 from robotd.core.errors import RecordingError
 from robotd.interop.carmen_writer import PlacedSweep, encode_carmen
 from robotd.interop.foxglove_messages import SCHEMAS, FoxgloveFrames
@@ -26,33 +25,15 @@ _MARK = "# Made by robotctl export"
 _TUM = Kind("a trajectory made by robotctl export", lambda head: head.startswith(_MARK.encode()))
 _CARMEN = Kind("a CARMEN log made by robotctl export", lambda head: head.startswith(_MARK.encode()))
 _MCAP = Kind("an MCAP file for Foxglove", lambda head: head.startswith(b"\x89MCAP") and b"foxglove" in head)
+_BAG1 = Kind("a new bag: bags are not written again", lambda _: False)
+_BAG2 = Kind("the directory of a new bag: bags are not written again", may_hold=lambda _: False)
 _PROFILE = "foxglove"
 """Marks the files that are ours to write again, and are no recordings."""
 
 
-@dataclass(slots=True)
-class _Heard:
-    """What of a recording is exported."""
-
-    events: list[Event] = field(default_factory=list)
-    wall_offset_ns: int = 0
-
-    @classmethod
-    def of(cls, file: Path, *kinds: type) -> "_Heard":
-        from robotd.app.replaying import replay_events  # noqa: PLC0415  # no other verb needs a daemon inside
-
-        heard = cls()
-        header = replay_events(file, lambda event: heard.events.append(event) if isinstance(event, kinds) else None)
-        heard.wall_offset_ns = header.wall_offset_ns
-        return heard
-
-    def unix_s(self, time_ns: int) -> float:
-        return (time_ns + self.wall_offset_ns) / NS_PER_S
-
-
 def _tum(arguments: argparse.Namespace) -> int:
     states = {PoseState.LOCALIZED} | ({PoseState.PREDICTED} if arguments.predicted else set())
-    heard = _Heard.of(arguments.file, PoseEstimate)
+    heard = Heard.of(arguments.file, PoseEstimate)
     poses = [
         TimedPose(heard.unix_s(event.time_ns), event.best)
         for event in heard.events
@@ -62,18 +43,18 @@ def _tum(arguments: argparse.Namespace) -> int:
 
 
 def _carmen(arguments: argparse.Namespace) -> int:
-    heard = _Heard.of(arguments.file, PoseEstimate, SweepDone)
+    heard = Heard.of(arguments.file, PoseEstimate, SweepDone)
     sweeps = list((_on_map if arguments.on_map else _by_odometry)(heard))
     return _written_lines(arguments, encode_carmen(sweeps), len(sweeps), "sweeps")
 
 
-def _by_odometry(heard: _Heard) -> Iterator[PlacedSweep]:
+def _by_odometry(heard: Heard) -> Iterator[PlacedSweep]:
     for event in heard.events:
         if isinstance(event, SweepDone):
             yield PlacedSweep(heard.unix_s(event.time_ns), event.sweep, event.sweep.in_odom)
 
 
-def _on_map(heard: _Heard) -> Iterator[PlacedSweep]:
+def _on_map(heard: Heard) -> Iterator[PlacedSweep]:
     """Yield the sweeps that were localized, where they were: their estimate is the first final one after them."""
     waiting: SweepDone | None = None
     for event in heard.events:
@@ -86,7 +67,7 @@ def _on_map(heard: _Heard) -> Iterator[PlacedSweep]:
 
 
 def _foxglove(arguments: argparse.Namespace) -> int:
-    heard = _Heard.of(arguments.file, object)
+    heard = Heard.of(arguments.file, object)
     written = io.BytesIO()
     writer = Writer(written, compression=CompressionType.NONE)
     writer.start(profile=_PROFILE, library="robotd")
@@ -107,6 +88,15 @@ def _foxglove(arguments: argparse.Namespace) -> int:
     return _written(arguments, written.getvalue(), count, "messages")
 
 
+def _bag(arguments: argparse.Namespace) -> int:
+    from robotd.interop.bags_extra import require_bags  # noqa: PLC0415  # only here is the extra needed
+    from robotd.interop.ros_bag_writer import write_bag  # noqa: PLC0415  # as above
+
+    require_bags()  # before a long recording is replayed
+    heard = Heard.of(arguments.file, object)
+    return _told(arguments, write_bag(arguments.out, heard.events, heard.wall_offset_ns), "messages")
+
+
 def _written_lines(arguments: argparse.Namespace, lines: Iterator[str], count: int, what: str) -> int:
     return _written(arguments, "".join((f"{_MARK}\n", *lines)).encode(), count, what)
 
@@ -114,16 +104,27 @@ def _written_lines(arguments: argparse.Namespace, lines: Iterator[str], count: i
 def _written(arguments: argparse.Namespace, content: bytes, count: int, what: str) -> int:
     if not count:
         raise RecordingError(f"{arguments.file}: there are no {what} in it to export")
-    file: OutputPath = arguments.out
-    write(file, content)
+    write(arguments.out, content)
+    return _told(arguments, count, what)
+
+
+def _told(arguments: argparse.Namespace, count: int, what: str) -> int:
     if arguments.json:
-        print_json({"file": str(file), what: count})
+        print_json({"file": str(arguments.out), what: count})
     else:
-        out().print(f"{file}: {count} {what}", markup=False)
+        out().print(f"{arguments.out}: {count} {what}", markup=False)
     return OK
 
 
-def _arguments(kind: Kind, summary: str) -> Callable[[argparse.ArgumentParser], None]:
+def _bag_arguments(parser: argparse.ArgumentParser) -> None:
+    _arguments(_kind_of_bag, "the bag: NAME.bag is one of ROS 1, any other name the directory of one of ROS 2")(parser)
+
+
+def _kind_of_bag(path: Path) -> Kind:
+    return _BAG1 if path.suffix == ".bag" else _BAG2
+
+
+def _arguments(kind: Kind | Callable[[Path], Kind], summary: str) -> Callable[[argparse.ArgumentParser], None]:
     def add(parser: argparse.ArgumentParser) -> None:
         parser.add_argument("file", type=Path, metavar="RECORDING", help="a recording (.mcap)")
         output_argument(parser, "out", kind, summary)
@@ -166,5 +167,12 @@ VERBS = (
         "robotctl export foxglove monday.mcap monday-foxglove.mcap",
         _foxglove,
         _arguments(_MCAP, "the file to open in Foxglove"),
+    ),
+    Verb(
+        "export bag",
+        "write what a recorded robot told as a bag of ROS 1 or ROS 2: map, frames, odometry, sweeps, poses",
+        "robotctl export bag monday.mcap monday.bag",
+        _bag,
+        _bag_arguments,
     ),
 )

@@ -1,10 +1,11 @@
-"""``import carmen``: a real building to drive in, from somebody's log."""
+"""``import carmen``, ``bag`` and ``csv``: a real building to drive in, from somebody's log."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 
 from robotd.cli.exit_codes import OK
-from robotd.cli.logs import LOG_HELP, Reading, reading_arguments
+from robotd.cli.logs import Reading, fov_argument, range_max_argument, scan_topic_argument
 from robotd.cli.outputs import RECORDED_BUILDING, output_argument, write
 from robotd.cli.quantities import positive, whole
 from robotd.cli.show.terminal import command_line, out, print_json
@@ -12,7 +13,7 @@ from robotd.cli.verb import Verb
 from robotd.sim.buildings.building import RecordedBuilding, encode_recorded_building, select_stops
 
 
-def _carmen(arguments: argparse.Namespace) -> int:
+def _import(arguments: argparse.Namespace) -> int:
     log = Reading.of(arguments).read(arguments.log)
     stops = select_stops(log, arguments.spacing_m, keep_out_every=arguments.keep_out_every, limit=arguments.limit)
     write(arguments.out, encode_recorded_building(RecordedBuilding(arguments.log.name, stops)))
@@ -26,8 +27,25 @@ def _carmen(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("log", type=Path, metavar="LOG", help=LOG_HELP)
+def _carmen_arguments(parser: argparse.ArgumentParser) -> None:
+    _arguments(parser, "a CARMEN log, as it is or packed (.gz, .bz2, .xz); - is standard input")
+    fov_argument(parser)
+
+
+def _bag_arguments(parser: argparse.ArgumentParser) -> None:
+    _arguments(parser, "a bag of ROS 1 (.bag), or of ROS 2 (its directory, or a .mcap or .db3 alone)")
+    scan_topic_argument(parser)
+
+
+def _csv_arguments(parser: argparse.ArgumentParser) -> None:
+    columns = "sweep, x_m, y_m, heading_rad, bearing_rad, range_m"
+    _arguments(
+        parser, f"a table with a reading a line, its first line names the columns: {columns}; - is standard input"
+    )
+
+
+def _arguments(parser: argparse.ArgumentParser, what: str) -> None:
+    parser.add_argument("log", type=Path, metavar="LOG", help=what)
     output_argument(parser, "--out", RECORDED_BUILDING, "the recorded building", required=True)
     parser.add_argument(
         "--spacing-m", type=positive, default=1.0, metavar="M", help="way between two stops (default: 1)"
@@ -40,7 +58,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         help="keep every Nth stop out of the map, to localize at; 0 for none (default: 2)",
     )
     parser.add_argument("--limit", type=whole(1), metavar="N", help="end after N stops")
-    reading_arguments(parser)
+    range_max_argument(parser)
 
 
 def _every(text: str) -> int:
@@ -52,12 +70,13 @@ def _every(text: str) -> int:
     return count
 
 
+def _row(kind: str, what: str, log: str, arguments: Callable[[argparse.ArgumentParser], None]) -> Verb:
+    example = f"robotctl import {kind} {log} --out lab.building"
+    return Verb(f"import {kind}", f"make a recorded building of {what}, for robotctl sim", example, _import, arguments)
+
+
 VERBS = (
-    Verb(
-        "import carmen",
-        "make a recorded building of a CARMEN log, for robotctl sim",
-        "robotctl import carmen intel.log.gz --out intel.building",
-        _carmen,
-        _arguments,
-    ),
+    _row("carmen", "a CARMEN log", "lab.log.gz", _carmen_arguments),
+    _row("bag", "a bag of ROS", "lab.bag", _bag_arguments),
+    _row("csv", "a table of sweeps", "lab.csv", _csv_arguments),
 )

@@ -152,7 +152,7 @@ def _stop(index: int, scan: Scan, *, kept_out: bool) -> RecordedStop:
         kept_out=kept_out,
         laser=scan.robot_from_laser,
         first_rad=float(scan.angles_rad[0]),
-        step_rad=float(scan.angles_rad[1] - scan.angles_rad[0]),
+        step_rad=scan.step_rad,
         ranges_m=tuple(float(range_m) if hit else None for range_m, hit in zip(scan.ranges_m, scan.hit, strict=True)),
         missed=tuple(np.flatnonzero(scan.missed).tolist()),
     )

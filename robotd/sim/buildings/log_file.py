@@ -1,6 +1,6 @@
-"""Open a log of another program: plain or compressed, whatever its name says, or from standard input.
+"""Open a log of another program: a text, plain or compressed, whatever its name says, or from standard input; or a bag.
 
-Any byte may stand in a comment; what is not a text at all is named for what it is.
+Any byte may stand in a comment; what is neither text nor bag is named for what it is.
 """
 
 import bz2
@@ -9,16 +9,19 @@ import io
 import lzma
 import sys
 import zlib
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from itertools import chain
 from pathlib import Path
 from typing import BinaryIO, cast
 
 from robotd.core.errors import RecordingError
+from robotd.interop.ros_bag import read_bag
 from robotd.logs.carmen import parse_carmen
 from robotd.logs.records import LINE_MAX
 from robotd.logs.relations import Relations, parse_relations
 from robotd.logs.scan import RecordedLog
+from robotd.logs.sweeps_csv import is_header, parse_sweeps
 
 STANDARD_INPUT = "-"
 _HEAD = 1024
@@ -37,26 +40,53 @@ _OTHERS = {
     b"Rar!": "a rar archive; unpack it first",
     b"\x28\xb5\x2f\xfd": "compressed by zstd; unpack it first (zstd -d)",
     b"\x1f\x9d": "compressed by compress; unpack it first (uncompress)",
-    b"#ROSBAG": "a ROS bag, not a CARMEN log",
-    b"\x89MCAP": "an MCAP recording, not a CARMEN log",
+    b"#ROSBAG": "a ROS bag; it must be unpacked, and be a file",
+    b"\x89MCAP": "an MCAP recording; a bag of ROS 2 must be unpacked, and its name end with .mcap",
     b"version https://git-lfs": "a pointer of Git LFS: fetch the file itself (git lfs pull)",
 }
+_BAG_HEADS = {".bag": b"#ROSBAG", ".mcap": b"\x89MCAP", ".db3": b"SQLite format 3"}
+"""What bags begin with, by how their names end; by the name alone their reader tells them apart."""
 _PAGES = (b"<!doctype html", b"<html", b"<?xml")
 _TEXTS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 
-def read_log(path: Path, *, fov_rad: float | None = None) -> RecordedLog:
-    """Return the scans of a log file, plain or packed by gzip, bzip2 or xz; ``-`` is standard input.
+def read_log(path: Path, *, fov_rad: float | None = None, scan_topic: str | None = None) -> RecordedLog:
+    """Return the scans of a log: a CARMEN log or a table, plain or packed by gzip, bzip2 or xz, or a bag of ROS.
 
     Args:
-        path: the file.
-        fov_rad: what the scanner sees; None where the log says it, or it is assumed.
+        path: the file; ``-`` is standard input; of a bag of ROS 2 its directory.
+        fov_rad: what the scanner of a CARMEN log sees; None where the log says it, or it is assumed.
+        scan_topic: which scanner of a bag; None for the one that scanned most.
 
     Raises:
-        RecordingError: the file cannot be read, is cut or no log; :func:`robotd.logs.carmen.parse_carmen` objects.
+        RecordingError: it cannot be read, is cut or no log; the reader of its kind objects.
+        RobotdError: it is a bag, and the extra ``bags`` is not installed.
     """
+    if _is_bag(path):
+        return read_bag(path, scan_topic)
     with _opened(path) as lines:
-        return parse_carmen(lines, file=str(path), fov_rad=fov_rad)
+        begun = list(_up_to_first(lines))
+        if begun and is_header(begun[-1]):
+            return parse_sweeps(chain(begun, lines), file=str(path))
+        return parse_carmen(chain(begun, lines), file=str(path), fov_rad=fov_rad)
+
+
+def _is_bag(path: Path) -> bool:
+    with suppress(OSError):  # what cannot be looked at is opened next, which says why
+        if path.is_dir():
+            return (path / "metadata.yaml").exists()
+        if path.suffix in _BAG_HEADS and path.is_file():
+            with path.open("rb") as file:
+                return file.read(_HEAD).startswith(_BAG_HEADS[path.suffix])
+    return False
+
+
+def _up_to_first(lines: Iterable[str]) -> Iterator[str]:
+    """Yield the lines up to the first that is no comment, which tells what kind of text it is."""
+    for line in lines:
+        yield line
+        if line.strip() and not line.startswith("#"):
+            return
 
 
 def read_relations(path: Path, log: RecordedLog) -> Relations:

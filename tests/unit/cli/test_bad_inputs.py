@@ -58,6 +58,8 @@ OTHERS = {
     "exact map": ["READINGS"],
     "exact readings": ["MAP"],
     "import carmen log": ["--out", "NEW"],
+    "import bag log": ["--out", "NEW"],
+    "import csv log": ["--out", "NEW"],
     "demo building log": ["--out", "NEW"],
     "eval --config": ["LOG"],
     "map start --world": ["kitchen"],
@@ -71,6 +73,7 @@ OTHERS = {
     "export tum file": ["NEW"],
     "export carmen file": ["NEW"],
     "export foxglove file": ["NEW"],
+    "export bag file": ["NEW"],
 }
 """What else the command line needs for the verb to come as far as the bad file."""
 MAP_YAML = b"image: in.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"

@@ -29,6 +29,8 @@ PRECIOUS = {
 }
 OUTPUTS = {
     "import carmen --out",
+    "import bag --out",
+    "import csv --out",
     "exact --out",
     "map show --png",
     "map compare --png",
@@ -41,6 +43,7 @@ OUTPUTS = {
     "export tum out",
     "export carmen out",
     "export foxglove out",
+    "export bag out",
     "sim --truth",
     "sim --links",
     "sim --write-config",
@@ -90,6 +93,8 @@ def command(name: str, target: Path, directory: Path) -> list[str]:
     verb, option = name.rsplit(" ", 1)
     needed = {
         "import carmen": [str(log)],
+        "import bag": [str(log)],
+        "import csv": [str(log)],
         "exact": [str(square), str(table)],
         "map export": ["hall"],
         "calibrate range": ["--wall", "1.5"],
@@ -97,6 +102,7 @@ def command(name: str, target: Path, directory: Path) -> list[str]:
         "export tum": [str(directory / "no.mcap")],
         "export carmen": [str(directory / "no.mcap")],
         "export foxglove": [str(directory / "no.mcap")],
+        "export bag": [str(directory / "no.mcap")],
         "sim": ["office"],
         "config init": ["--drive", "a", "--pantilt", "b", "--rangefinder", "c"],
         "fake": [str(directory / "no.mcap")],
