@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real demo-busy test bench bench-peers paper conservative exact faults replay-many liars fuzz safety stops heads heart lag worlds firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help demo demo-real demo-busy test bench bench-peers paper conservative exact faults interop replay-many liars fuzz safety stops heads heart lag worlds firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -82,6 +82,9 @@ heart: .venv/.dev  ## Whether a stop is on the wires in time, whatever clients d
 
 first-hour: .venv/.dev  ## A new user's first hour, by commands alone: wheel, config init, calibrate, maps in and out; needs ROBOTD_DATA (minutes)
 	@$(BIN)/python -m tests.studies.first_hour.run
+
+interop: .venv/.dev  ## Each form of other programs, written and read, a line each: sizes, counts, how far what comes back is (a minute)
+	@$(BIN)/python -m tests.studies.interop.run
 
 lag: .venv/.dev  ## How late the event loop is while the daemon works hard, quiet and beside busy programs: writes docs/benchmarks/loop-lag.md
 	@$(BIN)/python -m tests.studies.lag.run
