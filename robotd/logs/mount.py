@@ -29,11 +29,7 @@ def mount_of(scans: Sequence[LaserRecord], params: Mapping[str, str], scanner: s
 
 
 def _param(params: Mapping[str, str], name: str) -> float | None:
-    try:
-        value = float(params[name])
-    except (KeyError, ValueError):
-        return None
-    return value if math.isfinite(value) and abs(value) <= 2 * math.pi else None
+    return float(params[name]) if name in params else None
 
 
 def _told(scans: Sequence[LaserRecord]) -> Pose2 | None:

@@ -30,7 +30,7 @@ def number(text: str) -> float:
         DamagedLineError: it is none.
     """
     try:
-        return float(text)
+        return float(_printed(text))
     except ValueError:
         pass
     found = _WINDOWS.fullmatch(text)
@@ -59,9 +59,16 @@ def whole(text: str) -> int:
         DamagedLineError: it is none.
     """
     try:
-        return int(text)
+        return int(_printed(text))
     except ValueError:
         raise DamagedLineError(f"{text[:20]!r} is no count") from None
+
+
+def _printed(text: str) -> str:
+    """Return what a program may have printed: digits with ``_`` between them are Python's own, and here two words."""
+    if "_" in text:
+        raise ValueError
+    return text
 
 
 def pose(fields: Sequence[str]) -> Pose2:

@@ -80,6 +80,8 @@ _OF_SCANNER = re.compile(
     r"(laser_|robot_)?(front|rear|laser[1-5])_?(laser)?_(\w*offset|fov|resolution|max|max_?range)$"
 )
 """The settings that are read as numbers."""
+MOUNT_MAX = math.tau
+"""No scanner sits farther from the middle of its robot [m], or is turned by more [rad]."""
 LINE_MAX = 1 << 20
 """Characters of the longest line that is no damage."""
 
@@ -115,7 +117,12 @@ def _parameter(_: str, fields: Sequence[str]) -> Parameter | None:
         return None
     name, value = fields[:2]
     if _OF_SCANNER.match(name) is not None:
-        number(value)
+        read = number(value)
+        if name.endswith("offset") and not abs(read) <= MOUNT_MAX:
+            likely = (
+                f"degrees? then {math.radians(read):.3g} rad" if "angular" in name else f"cm? then {read / 100:g} m"
+            )
+            raise DamagedLineError(f"{value[:20]} is no place of a scanner on a robot; {likely}")
     return Parameter(name, value)
 
 

@@ -106,10 +106,10 @@ def _opened(path: Path) -> Iterator[Iterator[str]]:
             is_piped = str(path) == STANDARD_INPUT
             raw = io.FileIO(sys.stdin.fileno(), closefd=False) if is_piped else io.FileIO(path)
             yield _lines(stack, path, stack.enter_context(io.BufferedReader(raw, _HEAD)))
-        except OSError as error:
-            raise RecordingError(f"{path}: {error.strerror or error}") from error
-        except (EOFError, zlib.error, lzma.LZMAError) as error:
-            raise RecordingError(f"{path}: damaged or cut while packed: {error}") from error
+        except (OSError, EOFError, zlib.error, lzma.LZMAError) as error:
+            # Those who unpack raise OSError, too, but without a number of the system's.
+            system = error.strerror if isinstance(error, OSError) else None
+            raise RecordingError(f"{path}: {system or f'damaged or cut while packed: {error}'}") from error
 
 
 def _lines(stack: ExitStack, path: Path, packed: io.BufferedReader) -> Iterator[str]:

@@ -97,3 +97,23 @@ def test_a_damaged_setting_is_left_out_and_named() -> None:
     log = parse_carmen(["PARAM robot_frontlaser_offset far 1 h 1", "PARAM robot_name far", *flaser()])
     assert_the_room_is_seen(log)
     assert [str(problem)[:30] for problem in log.problems] == ["line 1: PARAM: 'far' is no num"]
+
+
+@pytest.mark.parametrize("word", ["1_03", "1_0.5"])
+def test_a_number_that_only_python_reads_is_damage(word: str) -> None:
+    lines = flaser()
+    fields = lines[2].split()
+    lines[2] = " ".join([*fields[:5], word, *fields[6:]])
+    assert [problem.line for problem in parse_carmen(lines).problems] == [3]
+    lines[2] = " ".join(["FLASER", f"{fields[1][:1]}_{fields[1][1:]}", *fields[2:]])
+    assert [problem.line for problem in parse_carmen(lines).problems] == [3]
+
+
+@pytest.mark.parametrize(("name", "value"), [("offset", "25"), ("side_offset", "-300"), ("angular_offset", "180")])
+def test_a_scanner_that_sits_nowhere_on_a_robot_is_told(name: str, value: str) -> None:
+    log = parse_carmen([f"PARAM robot_frontlaser_{name} {value} h 1", *flaser()])
+    assert_the_room_is_seen(log)
+    [problem] = log.problems
+    assert problem.line == 1
+    assert f"{value} is no place of a scanner on a robot" in problem.message
+    assert {"25": "cm? then 0.25 m", "-300": "cm? then -3 m", "180": "degrees? then 3.14 rad"}[value] in problem.message

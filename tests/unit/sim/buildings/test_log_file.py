@@ -90,6 +90,8 @@ STRANGE = {
     "damaged or cut while packed": lambda: gzip.compress(TEXT)[:-20],
     "damaged or cut while packed ": lambda: lzma.compress(TEXT)[:-40],
     "damaged or cut while packed  ": lambda: bz2.compress(TEXT)[:-40],
+    "damaged or cut while packed   ": lambda: gzip.compress(TEXT) + b"and more",
+    "damaged or cut while packed    ": lambda: bz2.compress(TEXT)[:30] + bytes(60),
 }
 
 
