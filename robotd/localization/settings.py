@@ -29,7 +29,7 @@ class LocalizationSettings:
     """How far off the bearing of a reading may be: the map-maker's headings, and the head's own."""
     heading_error_rad: Annotated[float, Within(0.0, math.pi, "rad")] = 0.0175
     """How far the heading that odometry gives may be off: headings up to so far away are tried too."""
-    heading_step_rad: Annotated[float, Within(1e-4, math.pi, "rad")] = 0.00873
+    heading_step_rad: Annotated[float, Within(1e-4, math.pi / 4, "rad")] = 0.00873
     """Step between the headings that are tried; half a degree, as the beams of many scanners lie."""
     localized_share: Annotated[float, Within(0.01, 1.0, "of 1")] = 0.5
     """Share of the readings that the best pose must explain; below it the robot is lost."""

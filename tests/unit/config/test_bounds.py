@@ -86,8 +86,8 @@ def test_a_length_a_time_and_an_angle_say_their_unit(section: str, key: str, def
         ("localization", "range_error_m = 75", "range_error_m: must be 0 to 1 m, got 75; mm? then 0.075"),
         (
             "localization",
-            "heading_step_rad = 5.5",
-            "heading_step_rad: must be 0.0001 to 3.14159 rad, got 5.5; deg? then 0.096",
+            "heading_step_rad = 1",
+            "heading_step_rad: must be 0.0001 to 0.785398 rad, got 1; deg? then 0.0175",
         ),
         ("localization", "localized_share = 50", "localized_share: must be 0.01 to 1, got 50; %? then 0.5"),
         ("grid", "resolution_m = 50", "resolution_m: must be 0.005 to 2 m, got 50; mm? then 0.05"),
