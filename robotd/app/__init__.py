@@ -1,5 +1,5 @@
 """Composition root: configuration to objects to one task group; start and stop order; no logic."""
 
-from robotd.app.daemon import main
+from robotd.app.daemon import main, program
 
-__all__ = ["main"]
+__all__ = ["main", "program"]

@@ -3,6 +3,7 @@
 import argparse
 import asyncio
 import logging
+import os
 import secrets
 import sys
 from collections.abc import Iterator
@@ -65,6 +66,14 @@ def main(argv: list[str] | None = None) -> int:
     return exit_code
 
 
+def program() -> NoReturn:
+    """Run the daemon, and end without clearing up its memory: that takes a tenth of a second, and helps nobody."""
+    code = main()
+    logging.shutdown()
+    sys.stdout.flush()
+    os._exit(code)
+
+
 def _one_by_one(errors: BaseExceptionGroup[RobotdError]) -> Iterator[RobotdError]:
     for error in errors.exceptions:
         if isinstance(error, BaseExceptionGroup):
@@ -116,7 +125,8 @@ async def run(config: Config) -> int:
             try:
                 await _keep_last(daemon)
             finally:
-                thinking.cancel()
+                if not thinking.cancelling():  # twice would hasten it, and leave its child to others
+                    thinking.cancel()
                 await asyncio.wait({thinking})
     return ending.exit_code
 
@@ -159,6 +169,8 @@ async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoRetur
         log.info("stopping: %s", ending.reason)
         notifier.stopping()
         await daemon.control.perform(Stop("the daemon is ending"))
+        if not daemon.control.keeping.is_needed:  # nobody waits for what is computed
+            thinking.cancel()
         await _cancelled(serving, *(parts[device.name] for device in daemon.robot.devices))
         for task in tasks:
             task.cancel()
@@ -212,4 +224,4 @@ def new_journal(config: Config) -> PrerollJournal:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    program()

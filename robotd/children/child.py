@@ -17,7 +17,7 @@ FIRST_WAIT_S = 0.1
 LONGEST_WAIT_S = 5.0
 """Between a child's death and the next one's start; twice as long after each that did not last."""
 _LASTED_S = 1.0
-"""A child that lived so long was well: the next one is started soon."""
+"""A child that was ready, and lived so long, was well: the next one is started at once."""
 _LAST_WORDS_S = 0.05
 """What it said before it went may still be heard."""
 _ENDING_S = 1.0
@@ -83,15 +83,13 @@ class Child:
         while True:
             began_ns = now_ns()
             cause, was_wanted = await self._one_life()
-            if not was_wanted:
+            was_ready = self.is_ready.is_set()
+            if not was_wanted or (was_ready and now_ns() - began_ns > _LASTED_S * NS_PER_S):
                 wait_s = 0.0
-            elif wait_s == 0.0 or now_ns() - began_ns > _LASTED_S * NS_PER_S:
-                wait_s = FIRST_WAIT_S
             else:
-                wait_s = min(2.0 * wait_s, LONGEST_WAIT_S)
+                wait_s = min(2.0 * wait_s, LONGEST_WAIT_S) or FIRST_WAIT_S
             level = logging.WARNING if was_wanted else logging.INFO
             self._log.log(level, "process %s: %s; started again in %.1f s", self._name, cause, wait_s)
-            was_ready = self.is_ready.is_set()
             self.is_ready.clear()
             self._died(Death(cause, was_ready, wait_s))
             await asyncio.sleep(wait_s)
@@ -124,7 +122,7 @@ class Child:
 
     async def _watched(self, running: Running) -> str:
         try:
-            await watch(running.life, self._version, self._patience, self.is_ready.set)
+            await watch(running.life, self._version, self._patience, self.is_ready.set, running.share)
         except HungUp:
             return await _its_end(running)
         except ChildError as error:

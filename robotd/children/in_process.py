@@ -6,6 +6,7 @@ from contextlib import suppress
 
 from robotd.children.channel import Channel
 from robotd.children.memory_channel import memory_channel
+from robotd.children.processor import Share
 from robotd.core.errors import ChildError
 
 Main = Callable[[Channel, Sequence[Channel]], Awaitable[None]]
@@ -22,6 +23,10 @@ class InProcess:
         self._ends = (self.life, *self.lanes)
         living = _lived(main, its_life, [far for _, far in pairs])
         self._task: asyncio.Task[None] = asyncio.create_task(living, name="a child")
+
+    def share(self) -> Share:
+        """Return what it has had of the processors: all that it wanted."""
+        return Share()
 
     async def ended(self) -> str:
         """Wait until it has ended, and return how."""

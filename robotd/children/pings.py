@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from robotd.children.channel import Channel
+from robotd.children.processor import Share
 from robotd.core.errors import ChildError
 from robotd.core.silence import within
 from robotd.core.text import printable_bytes
@@ -14,6 +15,8 @@ READY = b"ready "
 """What a child says first, before its version."""
 _NUMBER = 8
 """Bytes of a ping."""
+_LEAST_S = 0.01
+"""Less is not waited for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,15 +25,21 @@ class Patience:
 
     ready_s: float = 10.0
     """Until it is ready: interpreters start slowly beside busy programs."""
-    silent_s: float = 1.0
-    """For the answer to a ping: what is stuck or stopped for so long is killed."""
-    between_s: float = 0.25
+    silent_s: float = 0.3
+    """For the answer to a ping: what is stuck or stopped for so long is killed. What waits for a processor is not."""
+    between_s: float = 0.1
     """From one ping to the next."""
-    goodbye_s: float = 0.5
+    goodbye_s: float = 0.2
     """What a child has to end in by itself, once it was hung up on."""
 
 
-async def watch(life: Channel, version: str, patience: Patience, is_ready: Callable[[], None]) -> NoReturn:
+async def watch(
+    life: Channel,
+    version: str,
+    patience: Patience,
+    is_ready: Callable[[], None],
+    share: Callable[[], Share],
+) -> NoReturn:
     """Watch over a child for as long as it is well.
 
     Args:
@@ -38,6 +47,7 @@ async def watch(life: Channel, version: str, patience: Patience, is_ready: Calla
         version: what it has to be.
         patience: how long to wait for it. The time for which this process itself stood still does not count.
         is_ready: called once it is ready.
+        share: tells what it has had of the processors.
 
     Raises:
         ChildError: it is not well; says how. It is then for the caller to kill it.
@@ -48,7 +58,7 @@ async def watch(life: Channel, version: str, patience: Patience, is_ready: Calla
     while True:
         number += 1
         life.send(number.to_bytes(_NUMBER, "little"))
-        await _answered(life, number, patience.silent_s)
+        await _answered(life, number, patience.silent_s, share)
         await asyncio.sleep(patience.between_s)
 
 
@@ -64,15 +74,21 @@ async def _ready(life: Channel, version: str, within_s: float) -> None:
         raise ChildError(f"it is version {_shown(said[len(READY) :])}, this is {version}")
 
 
-async def _answered(life: Channel, number: int, within_s: float) -> None:
-    try:
-        async with within(within_s, of=""):
-            said = await life.receive()
-    except TimeoutError:
-        raise ChildError(f"it was silent for {within_s:g} s") from None
-    # One ping is under way at a time: any other number is an answer twice given, or to what was never asked.
-    if said != number.to_bytes(_NUMBER, "little"):
-        raise ChildError(f"it answered ping {number} with {_shown(said)}")
+async def _answered(life: Channel, number: int, silent_s: float, share: Callable[[], Share]) -> None:
+    before, waited_s, left_s = share(), 0.0, silent_s
+    while left_s > _LEAST_S:
+        try:
+            async with within(left_s, of=""):
+                said = await life.receive()
+        except TimeoutError:
+            waited_s += left_s
+            left_s = silent_s - share().could_act_s(before, waited_s)
+            continue
+        # One ping is under way at a time: any other number is an answer twice given, or to what was never asked.
+        if said != number.to_bytes(_NUMBER, "little"):
+            raise ChildError(f"it answered ping {number} with {_shown(said)}")
+        return
+    raise ChildError(f"it was silent for {silent_s:g} s")
 
 
 def _shown(said: bytes) -> str:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from robotd.children.channel import Channel
+from robotd.children.processor import Share, share_of
 from robotd.children.socket_channel import SocketChannel
 from robotd.core.errors import ChildError
 
@@ -44,6 +45,9 @@ class Running(Protocol):
     def lanes(self) -> Sequence[Channel]:
         """What it is talked to by."""
 
+    def share(self) -> Share:
+        """Return what it has had of the processors."""
+
     async def ended(self) -> str:
         """Wait until it has ended, by whatever cause, and return that in words."""
 
@@ -69,6 +73,10 @@ class Process:
     def pid(self) -> int:
         """Its number."""
         return self._process.pid
+
+    def share(self) -> Share:
+        """Return what it has had of the processors."""
+        return share_of(self._process.pid)
 
     async def ended(self) -> str:
         """Wait until it has ended, and return how."""

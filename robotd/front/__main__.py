@@ -1,7 +1,9 @@
 """The front as a process: ``python -m robotd.front``, which only the daemon starts."""
 
 import logging
+import os
 import sys
+from typing import NoReturn
 
 from robotd.children.inside import Birth, adopted
 from robotd.core.clock import run_counting
@@ -17,20 +19,23 @@ async def _run(birth: Birth) -> None:
     await serve_clients(*birth.channels())
 
 
-def main() -> int:
-    """Serve clients until the daemon hangs up; return the exit code."""
+def main() -> NoReturn:
+    """Serve clients until the daemon hangs up."""
     birth = adopted(sys.argv[1:])
     configure(*birth.arguments)
     birth.tell(log)
+    code = 1
     try:
         run_counting(_run(birth))
     except ChildError as error:
         log.debug("ending: %s", error)
-    except RobotdError as error:  # foreseen, so it needs no traceback; others end the program with theirs
+        code = 0
+    except RobotdError as error:  # foreseen, so it needs no traceback
         log.error("%s", error)  # noqa: TRY400  # as above
-        return 1
-    return 0
+    except Exception:
+        log.exception("the front ends")
+    os._exit(code)  # nobody waits for its memory to be cleared up
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

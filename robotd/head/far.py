@@ -37,7 +37,7 @@ JOB_S = 600.0
 """No job takes so long: the largest map, all headings and the conservative mode take minutes on a slow machine."""
 UNWANTED_S = 0.25
 """What a job that nobody waits for any more is given to end by itself: most take less, and a new head takes longer."""
-PATIENCE = Patience(silent_s=5.0, goodbye_s=0.1)
+PATIENCE = Patience(silent_s=5.0, between_s=0.25, goodbye_s=0.1)
 """A step of array work that keeps the interpreter takes a second on the largest map, and more beside busy programs."""
 
 log = logging.getLogger(__name__)

@@ -102,6 +102,12 @@ class Keeping:
                 "make room and try again, or give it up: robotctl map discard"
             )
 
+    @property
+    def is_needed(self) -> bool:
+        """Whether anything of the map in use is in memory alone."""
+        place = self._host.whereabouts.map_in_use
+        return place is not None and place.at_risk > 0
+
     async def keep_last(self) -> None:
         """Keep the map at the daemon's end, for which the disk has a while."""
         try:

@@ -1,5 +1,6 @@
-"""A little of what ``make heart`` measures: all attacks at once on a real daemon, and the front ended in each mode."""
+"""A little of what ``make heart`` measures: all attacks at once, the front ended in each mode, and the last second."""
 
+import random
 import signal
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.grid.occupancy import OccupancyGrid
 from tests.studies.heart.attackers import ATTACKERS
 from tests.studies.heart.endings import MODES, end_front
+from tests.studies.heart.last_words import ended_ms, with_a_wide_map
 from tests.studies.heart.run import MEMORY_MIB
 from tests.studies.heart.trials import suffer, with_a_large_map
 from tests.support.real_rig import child_of, rig
@@ -49,3 +51,9 @@ async def test_a_front_that_is_ended_leaves_the_robot_safe_and_is_followed_by_an
         assert ended.stop_late_ms is not None
         assert ended.stop_late_ms < SOON_MS
         assert process.returncode is None
+
+
+async def test_sigterm_ends_a_daemon_whatever_its_head_computes(tmp_path: Path) -> None:
+    async with rig(tmp_path) as it:
+        with_a_wide_map(it)
+        assert await ended_ms(it, random.Random(1)) < SOON_MS

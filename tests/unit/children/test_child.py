@@ -2,7 +2,7 @@
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from dataclasses import dataclass, field
 
 import pytest
@@ -13,6 +13,7 @@ from robotd.children.in_process import InProcess, Main
 from robotd.children.inside import live
 from robotd.children.pings import READY
 from robotd.children.process import Running
+from robotd.children.processor import Share
 from robotd.core.attention import attention
 from robotd.core.errors import ChildError
 
@@ -27,15 +28,17 @@ class Seen:
 
 
 @contextlib.asynccontextmanager
-async def supervised(*mains: Main | None) -> AsyncIterator[Seen]:
-    """Each life is another program, the last one for ever; None cannot be started."""
+async def supervised(*mains: Main | None, share: Callable[[], Share] = Share) -> AsyncIterator[Seen]:
+    """Each life is another program, the last one for ever; None cannot be started. ``share`` is what it has had."""
 
     def start() -> Running:
         main = mains[min(len(seen.starts_s), len(mains) - 1)]
         seen.starts_s.append(asyncio.get_running_loop().time())
         if main is None:
             raise ChildError("it cannot be started: no memory")
-        return InProcess(main)
+        life = InProcess(main)
+        life.share = share  # type: ignore[method-assign]  # a task has all of the processor that it wants
+        return life
 
     async def serve(lanes: Sequence[Channel]) -> None:
         await asyncio.Event().wait()
@@ -104,7 +107,7 @@ async def answers_an_older_one(life: Channel, lanes: Sequence[Channel]) -> None:
 async def answers_late(life: Channel, lanes: Sequence[Channel]) -> None:
     life.send(READY, NOW.encode())
     ping = await life.receive()
-    await asyncio.sleep(1.5)
+    await asyncio.sleep(0.6)
     life.send(ping)
     await asyncio.Event().wait()
 
@@ -117,11 +120,11 @@ async def answers_late(life: Channel, lanes: Sequence[Channel]) -> None:
         (mute, "it was not ready within 10 s", False, 10.1),
         (garbage, r"it began with '\\xff\\x00', expected that it is ready", False, 0.1),
         (old, "it is version '0.9', this is 1.0", False, 0.1),
-        (hangs, "it was silent for 1 s", True, 1.1),
+        (hangs, "it was silent for 0.3 s", True, 0.5),
         (answers_garbage, r"it answered ping 1 with 'yes, yes\\x01", True, 0.1),
         (answers_twice, "it answered ping 2 with", True, 0.4),
         (answers_an_older_one, "it answered ping 2 with", True, 0.4),
-        (answers_late, "it was silent for 1 s", True, 1.1),
+        (answers_late, "it was silent for 0.3 s", True, 0.5),
     ],
 )
 async def test_what_is_wrong_with_a_child_is_found_and_told_and_another_started(
@@ -145,7 +148,7 @@ async def test_a_child_that_never_starts_is_tried_again_ever_less_often_but_for_
         assert waits[:8] == [0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 5.0, 5.0]
 
 
-async def test_one_that_lasted_is_followed_soon() -> None:
+async def test_one_that_lasted_is_followed_at_once() -> None:
     async def lasts(life: Channel, lanes: Sequence[Channel]) -> None:
         living = asyncio.create_task(live(life, NOW))
         await asyncio.sleep(2.0)
@@ -153,7 +156,7 @@ async def test_one_that_lasted_is_followed_soon() -> None:
 
     async with supervised(None, None, lasts, None) as seen:
         await asyncio.sleep(4.0)
-        assert [death.again_in_s for death in seen.deaths][:4] == [0.1, 0.2, 0.1, 0.2]
+        assert [death.again_in_s for death in seen.deaths][:5] == [0.1, 0.2, 0.0, 0.1, 0.2]
 
 
 async def test_what_it_computes_can_be_given_up_and_the_next_one_starts_at_once() -> None:
@@ -172,16 +175,36 @@ async def test_the_time_for_which_we_stood_still_is_not_its_silence() -> None:
         life.send(READY, NOW.encode())
         while True:
             ping = await life.receive()
-            await asyncio.sleep(1.5)
+            await asyncio.sleep(0.6)
             life.send(ping)
 
     async with supervised(slow) as seen:
-        await asyncio.sleep(0.5)
-        attention().miss(1.0)
-        await asyncio.sleep(1.2)
+        await asyncio.sleep(0.2)
+        attention().miss(0.4)
+        await asyncio.sleep(0.45)
         assert seen.deaths == []
-        await asyncio.sleep(2.0)
+        await asyncio.sleep(0.5)
         assert len(seen.deaths) == 1
+
+
+async def test_the_time_for_which_it_was_given_no_processor_is_not_its_silence() -> None:
+    """It waits for its turn; then it had turns, and waited for others; then it sleeps, and answers nothing."""
+    shares = iter([Share(), Share(0.0, 0.0, wants_it=True), Share(0.05, 0.5), Share(0.05, 0.5), Share(0.05, 0.5)])
+    async with supervised(hangs, share=lambda: next(shares)) as seen:
+        await asyncio.sleep(0.3 + 0.3 + 0.2 - 0.01)
+        assert seen.deaths == []
+        await asyncio.sleep(0.1)
+        assert [death.cause for death in seen.deaths] == ["it was silent for 0.3 s"]
+
+
+async def test_one_that_computes_without_end_is_killed_when_it_had_its_time() -> None:
+    loop = asyncio.get_running_loop()
+    began_s = loop.time()
+    async with supervised(hangs, share=lambda: Share((loop.time() - began_s) / 2, 0.0, wants_it=True)) as seen:
+        await asyncio.sleep(0.55)
+        assert seen.deaths == []
+        await asyncio.sleep(0.1)
+        assert [death.cause for death in seen.deaths] == ["it was silent for 0.3 s"]
 
 
 async def test_its_last_words_are_heard_before_its_death_is_told() -> None:

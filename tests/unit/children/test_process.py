@@ -25,7 +25,7 @@ from robotd.core.errors import ChildError
 
 pytestmark = pytest.mark.real_clock
 ECHO = (str(Path(__file__).with_name("an_echo.py")),)
-PATIENCE = Patience(ready_s=60.0, silent_s=1.0)
+PATIENCE = Patience(ready_s=60.0)
 
 
 UNCONFINED = f"""
@@ -108,10 +108,10 @@ async def test_it_is_killed_or_stopped_or_hangs_or_ends_and_another_one_is_there
         assert (await echo.deaths.get()).cause == "it was ended by SIGKILL"
         assert await echo.says(b"again") == b"again"
         os.kill(echo.processes[-1].pid, signal.SIGSTOP)
-        assert (await echo.deaths.get()).cause == "it was silent for 1 s"
+        assert (await echo.deaths.get()).cause == "it was silent for 0.3 s"
         assert await echo.says(b"and again") == b"and again"
         echo.lane.send(b"hang")
-        assert (await echo.deaths.get()).cause == "it was silent for 1 s"
+        assert (await echo.deaths.get()).cause == "it was silent for 0.3 s"
         await echo.says(b"still there")
         echo.lane.send(b"exit")
         assert (await echo.deaths.get()).cause == "it ended with exit code 3"
