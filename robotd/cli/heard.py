@@ -8,14 +8,14 @@ from robotd.core.clock import NS_PER_S
 
 
 @dataclass(slots=True)
-class Heard:
+class HeardRecording:
     """What of a recording is exported."""
 
     events: list[Event] = field(default_factory=list)
     wall_offset_ns: int = 0
 
     @classmethod
-    def of(cls, file: Path, *kinds: type) -> "Heard":
+    def of(cls, file: Path, *kinds: type) -> "HeardRecording":
         """Return the events of these kinds that a recording comes to.
 
         Raises:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
-from robotd.interop.fan import Fan, from_axis_m
+from robotd.interop.fan import BeamFan, from_axis_m
 
 _FAILED = 0.0
 """As the readers of these logs take it: nearer than any scanner measures."""
@@ -42,7 +42,7 @@ def encode_carmen(sweeps: Iterable[PlacedSweep]) -> Iterator[str]:
 
 
 def _scan(readings: tuple[RangeReading, ...]) -> str:
-    fan = Fan.of(readings)
+    fan = BeamFan.of(readings)
     misses = [from_axis_m(reading) for reading in fan.readings if reading.status is ReadingStatus.MISS]
     limit_m = min(misses, default=0.0)
     count, ranges = len(fan.readings), " ".join(repr(_told_m(reading, limit_m)) for reading in fan.readings)

@@ -9,7 +9,7 @@ from robotd.core.reading import RangeReading
 
 
 @dataclass(frozen=True, slots=True)
-class Fan:
+class BeamFan:
     """The readings in that order. How well the head aimed is lost, and so is its offset across each beam."""
 
     first_rad: float
@@ -17,7 +17,7 @@ class Fan:
     readings: tuple[RangeReading, ...]
 
     @classmethod
-    def of(cls, readings: tuple[RangeReading, ...]) -> "Fan":
+    def of(cls, readings: tuple[RangeReading, ...]) -> "BeamFan":
         """Return the fan of at least two readings, whichever way the head went round."""
         # Each bearing is wrapped, and the form tells a first one and a step: a sweep goes round without a leap.
         bearings = np.unwrap([reading.bearing_rad for reading in readings]).tolist()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robotd.core.errors import RecordingError, RobotdError
 from robotd.core.text import printable
 from robotd.interop.bags_extra import require_bags
-from robotd.interop.ros_heard import FRAMES, ODOMETRY, SCAN, Heard
+from robotd.interop.ros_heard import FRAMES, ODOMETRY, SCAN, HeardBag
 from robotd.interop.ros_log import log_of
 from robotd.logs.scan import RecordedLog
 
@@ -57,11 +57,11 @@ def read_bag(path: Path, scan_topic: str | None = None) -> RecordedLog:
         raise RecordingError(f"{path}: {error}") from error
 
 
-def _heard(path: Path, scan_topic: str | None) -> tuple[Heard, _Topics]:
+def _heard(path: Path, scan_topic: str | None) -> tuple[HeardBag, _Topics]:
     from rosbags.highlevel import AnyReader  # noqa: PLC0415  # an extra
     from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415  # as above
 
-    heard = Heard()
+    heard = HeardBag()
     with AnyReader([path], default_typestore=get_typestore(Stores.LATEST)) as reader:
         topics = _chosen(reader, scan_topic)
         kept = {topics.scan, topics.odometry}

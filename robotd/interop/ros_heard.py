@@ -18,7 +18,7 @@ _ROUND_RAD = math.tau + 0.01
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Laser:
+class HeardLaser:
     """A scan as its message says it, its beams counter-clockwise."""
 
     frame: str
@@ -30,7 +30,7 @@ class Laser:
     ranges_m: NDArray[np.float64]
 
     @classmethod
-    def of(cls, message: Any, logged_s: float) -> "Laser | None":
+    def of(cls, message: Any, logged_s: float) -> "HeardLaser | None":
         """Return the scan of a message; None if it is damaged."""
         ranges_m = np.asarray(message.ranges, dtype=np.float64)
         first_rad, step_rad = float(message.angle_min), float(message.angle_increment)
@@ -53,10 +53,10 @@ class Laser:
 
 
 @dataclass(slots=True)
-class Heard:
+class HeardBag:
     """What of a bag is read."""
 
-    lasers: list[Laser] = field(default_factory=list)
+    lasers: list[HeardLaser] = field(default_factory=list)
     damaged: int = 0
     odometry: list[tuple[float, Pose2]] = field(default_factory=list)
     robot: str | None = None
@@ -66,7 +66,7 @@ class Heard:
     def take(self, kind: str, message: Any, logged_s: float) -> None:
         """Take one message."""
         if kind == SCAN:
-            laser = Laser.of(message, logged_s)
+            laser = HeardLaser.of(message, logged_s)
             self.damaged += laser is None
             self.lasers += [laser] if laser is not None else []
         elif kind == ODOMETRY:

@@ -13,7 +13,7 @@ import numpy as np
 from robotd.core.errors import RecordingError
 from robotd.core.pose import Pose2
 from robotd.interop.ros_frames import ON_THE_AXIS, Chain, Mount
-from robotd.interop.ros_heard import Heard, Laser
+from robotd.interop.ros_heard import HeardBag, HeardLaser
 from robotd.logs.no_returns import code_from_m, code_remark
 from robotd.logs.pose_track import PoseTrack
 from robotd.logs.provenance import Fit, fit_of
@@ -44,12 +44,12 @@ class _Way:
 class _Placed:
     """A scan, and where the robot was: by odometry, and on the map."""
 
-    laser: Laser
+    laser: HeardLaser
     odometry: Pose2
     robot: Pose2
 
 
-def log_of(heard: Heard, odometry_topic: str | None, remarks: Sequence[str] = ()) -> RecordedLog:
+def log_of(heard: HeardBag, odometry_topic: str | None, remarks: Sequence[str] = ()) -> RecordedLog:
     """Return what was heard as a log.
 
     Args:
@@ -92,7 +92,7 @@ def log_of(heard: Heard, odometry_topic: str | None, remarks: Sequence[str] = ()
     return RecordedLog(scans, min(code_m, *limits_m), source, why, assumed=assumed)
 
 
-def _way(heard: Heard, chain: Chain, odometry_topic: str | None) -> _Way:
+def _way(heard: HeardBag, chain: Chain, odometry_topic: str | None) -> _Way:
     """Return where the robot was by what says it best: odometry's own messages, if they are of this robot's frame.
 
     Raises:
@@ -135,7 +135,7 @@ def _provenance(way: _Way, scans: tuple[Scan, ...]) -> tuple[PoseSource, str]:
     return PoseSource.RAW_ODOMETRY, f"they are those of {way.odometry_name}, and no map frame corrects them"
 
 
-def _left_out(heard: Heard, placed: int) -> Iterator[str]:
+def _left_out(heard: HeardBag, placed: int) -> Iterator[str]:
     if heard.damaged:
         yield f"{heard.damaged} scans were left out: their angles or ranges are none"
     if placed < len(heard.lasers):

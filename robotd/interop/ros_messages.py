@@ -18,7 +18,7 @@ from robotd.core.clock import NS_PER_S
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.tables import NO_INFORMATION
-from robotd.interop.fan import Fan, from_axis_m
+from robotd.interop.fan import BeamFan, from_axis_m
 from robotd.interop.foxglove_messages import quaternion
 from robotd.interop.scene import Scene
 
@@ -122,7 +122,7 @@ class RosMessages:
         yield RosMessage(POSE, self._types[TYPES[POSE]](header=header, pose=pose))
 
     def _sweep(self, sweep: Sweep) -> Iterator[RosMessage]:
-        fan = Fan.of(sweep.readings)
+        fan = BeamFan.of(sweep.readings)
         begun_ns, ended_ns = sweep.readings[0].time_ns, sweep.readings[-1].time_ns
         yield self._tied(begun_ns, [("odom", "sweep", sweep.in_odom)])
         ranges_m = np.array([_told_m(reading) for reading in fan.readings], np.float32)

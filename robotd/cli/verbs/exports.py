@@ -9,7 +9,7 @@ from pathlib import Path
 from mcap.writer import CompressionType, Writer
 
 from robotd.cli.exit_codes import OK
-from robotd.cli.heard import Heard
+from robotd.cli.heard import HeardRecording
 from robotd.cli.outputs import Kind, output_argument, write
 from robotd.cli.show.terminal import out, print_json
 from robotd.cli.verb import Verb
@@ -33,7 +33,7 @@ _PROFILE = "foxglove"
 
 def _tum(arguments: argparse.Namespace) -> int:
     states = {PoseState.LOCALIZED} | ({PoseState.PREDICTED} if arguments.predicted else set())
-    heard = Heard.of(arguments.file, PoseEstimate)
+    heard = HeardRecording.of(arguments.file, PoseEstimate)
     poses = [
         TimedPose(heard.unix_s(event.time_ns), event.best)
         for event in heard.events
@@ -43,18 +43,18 @@ def _tum(arguments: argparse.Namespace) -> int:
 
 
 def _carmen(arguments: argparse.Namespace) -> int:
-    heard = Heard.of(arguments.file, PoseEstimate, SweepDone)
+    heard = HeardRecording.of(arguments.file, PoseEstimate, SweepDone)
     sweeps = list((_on_map if arguments.on_map else _by_odometry)(heard))
     return _written_lines(arguments, encode_carmen(sweeps), len(sweeps), "sweeps")
 
 
-def _by_odometry(heard: Heard) -> Iterator[PlacedSweep]:
+def _by_odometry(heard: HeardRecording) -> Iterator[PlacedSweep]:
     for event in heard.events:
         if isinstance(event, SweepDone):
             yield PlacedSweep(heard.unix_s(event.time_ns), event.sweep, event.sweep.in_odom)
 
 
-def _on_map(heard: Heard) -> Iterator[PlacedSweep]:
+def _on_map(heard: HeardRecording) -> Iterator[PlacedSweep]:
     """Yield the sweeps that were localized, where they were: their estimate is the first final one after them."""
     waiting: SweepDone | None = None
     for event in heard.events:
@@ -67,7 +67,7 @@ def _on_map(heard: Heard) -> Iterator[PlacedSweep]:
 
 
 def _foxglove(arguments: argparse.Namespace) -> int:
-    heard = Heard.of(arguments.file, object)
+    heard = HeardRecording.of(arguments.file, object)
     written = io.BytesIO()
     writer = Writer(written, compression=CompressionType.NONE)
     writer.start(profile=_PROFILE, library="robotd")
@@ -93,7 +93,7 @@ def _bag(arguments: argparse.Namespace) -> int:
     from robotd.interop.ros_bag_writer import write_bag  # noqa: PLC0415  # as above
 
     require_bags()  # before a long recording is replayed
-    heard = Heard.of(arguments.file, object)
+    heard = HeardRecording.of(arguments.file, object)
     return _told(arguments, write_bag(arguments.out, heard.events, heard.wall_offset_ns), "messages")
 
 
