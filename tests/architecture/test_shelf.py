@@ -25,7 +25,7 @@ ON_THE_SHELF = {
 TWINS_ELSEWHERE = {"robotd.exact.pairwise"}
 """The slow twin of the plane sweep stands beside it."""
 PROGRAMS = {
-    "robotd.app",
+    "robotd.app.daemon",
     "robotd.cli.main",
     "robotd.client",
     "robotd.library.map",  # which `import robotd` loads when it is asked for
@@ -80,7 +80,7 @@ def test_what_no_program_reaches_is_what_stands_on_the_shelf() -> None:
 
 def test_the_programs_are_there_and_reach_the_house() -> None:
     assert FILES.keys() >= PROGRAMS
-    assert "robotd.hardware.link.dialogue" in reached({"robotd.app"})
+    assert "robotd.hardware.link.dialogue" in reached({"robotd.app.daemon"})
     assert "robotd.localization.localizer" in reached({"robotd.head.__main__"})
     assert reached({"robotd.client"}) < reached(PROGRAMS)
 

@@ -20,19 +20,16 @@ class Outcome:
     """Where its recording is kept, if it is."""
 
 
-def difference(report: ReplayReport, *, was_cut: bool = False, was_ended: bool = False) -> str | None:
+def difference(report: ReplayReport, *, was_cut: bool = False) -> str | None:
     """Return the first difference in words.
+
+    The digests say no more: where no result differs, they can do so only by results that the recorded daemon had no
+    time for, within a tenth of a second before its recording ended.
 
     Args:
         report: of the replay.
         was_cut: the daemon was killed, and the recording is not complete.
-        was_ended: the daemon ended before the recording did: it may have had no time for what its last inputs led to,
-            and then the replay has more results than the recording, which is no difference.
     """
     if report.differences:
         return str(report.differences[0])
-    if not report.complete and not was_cut:
-        return "the recording is not complete"
-    if was_cut or was_ended:
-        return None
-    return None if report.digest == report.recorded_digest else "the digests of the results differ"
+    return None if report.complete or was_cut else "the recording is not complete"
