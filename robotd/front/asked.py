@@ -29,6 +29,8 @@ LONGEST_REQUEST = 2**25
 """Bytes; the front bounds what clients send sooner (``server.max_request_bytes``)."""
 _MOST_UNDER_WAY = 1024
 """Requests; the front bounds them sooner, and for each client."""
+_AT_A_TURN = 8
+"""Requests of a lane, before others of the loop have their turn."""
 _OVERTAKEN = ServerError(ErrorCode.REFUSED, "overtaken by a stop")
 _BUSY = ServerError(ErrorCode.BUSY, f"{_MOST_UNDER_WAY} requests are under way")
 _UNREADABLE = Stop("stopped by a front that failed, in a request that is not well made")
@@ -83,7 +85,7 @@ class Asked:
         raise AssertionError("nobody stops asking but by an error")
 
     async def _take_from(self, lane: Channel) -> NoReturn:
-        latest = -1
+        latest, taken = -1, 0
         while True:
             numbered = decode_request(await lane.receive(), LONGEST_REQUEST)
             if isinstance(numbered, BadRequest):
@@ -94,6 +96,9 @@ class Asked:
                 raise ChildError(f"it asked number {numbered.id} after number {latest}")
             latest = numbered.id
             self._begin(numbered)
+            taken += 1
+            if taken % _AT_A_TURN == 0:  # what waits must not keep the loop, nor a stop on its own lane
+                await asyncio.sleep(0)
 
     def _begin(self, numbered: NumberedRequest) -> None:
         request = numbered.request

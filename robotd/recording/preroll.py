@@ -18,6 +18,7 @@ from robotd.recording.recorder import Recorder
 
 _ENTRY_OVERHEAD_BYTES = 160
 """What an entry takes beside its message, roughly: a flood of tiny entries is a flood."""
+_FORGOTTEN_AT_ONCE = 256
 
 log = logging.getLogger(__name__)
 
@@ -29,6 +30,8 @@ class PrerollJournal(Journal):
         self.header = header
         self._limit_bytes = limit_bytes
         self._remembered: list[Entry] | None = []
+        self._forgotten: list[Entry] = []
+        """What is given back by and by: a hundred thousand entries at once would keep the loop."""
         self._budgets = Budgets(limit_bytes)
         self._exceeded: Source | None = None
         self._recorder: Recorder | None = None
@@ -54,12 +57,13 @@ class PrerollJournal(Journal):
         if self._recorder is not None:
             self._recorder.note(entry)
         if self._remembered is None:
+            del self._forgotten[-_FORGOTTEN_AT_ONCE:]
             return
         self._remembered.append(entry)
         source = source_of(entry)
         if not self._budgets.use(source, _ENTRY_OVERHEAD_BYTES + len(encode(entry)[1])):
             # All of it goes: what lacks a piece no replay could use, and the memory is given back.
-            self._remembered, self._exceeded = None, source
+            self._forgotten, self._remembered, self._exceeded = self._remembered, None, source
             log.info("%s", self._why_not())
 
     def start(self, path: Path) -> None:

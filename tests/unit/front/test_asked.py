@@ -13,7 +13,7 @@ import pytest
 
 from robotd.children.channel import Channel
 from robotd.children.memory_channel import memory_channel
-from robotd.contract.envelope import Reply, encode_request
+from robotd.contract.envelope import Reply, decode_request, encode_request
 from robotd.contract.events import MapChanged, MissionPhase, MissionProgress
 from robotd.contract.missions import Localize
 from robotd.contract.request import Request
@@ -190,6 +190,28 @@ async def test_more_than_may_be_under_way_is_refused_and_a_stop_is_not() -> None
         answers = await front.answers(1101)
         assert list(answers.values()).count("busy") == 1100 - 1024
         assert front.control.calls[-1] == "stop: enough"
+
+
+async def test_a_front_that_floods_keeps_neither_the_loop_nor_a_stop(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken = [0]
+
+    def counted(data: bytes, max_bytes: int) -> object:
+        taken[-1] += 1
+        return decode_request(data, max_bytes)
+
+    monkeypatch.setattr("robotd.front.asked.decode_request", counted)
+    async with fronted() as front:
+        for _ in range(1000):
+            front.asks(GetStatus())
+        front.stop()
+        while not front.control.calls:  # noqa: ASYNC110  # turns of the loop are what is counted
+            await asyncio.sleep(0)
+        assert sum(taken) < 20, "it waits for none of those that came before it"
+        while sum(taken) < 1001:
+            taken.append(0)
+            await asyncio.sleep(0)
+        assert max(taken[1:]) <= 8, "what else the loop has to do has its turn between"
+        assert len(await front.answers(1001)) == 1001
 
 
 async def test_a_front_that_takes_nothing_costs_bounded_memory_and_is_obeyed_all_the_same() -> None:

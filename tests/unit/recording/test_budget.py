@@ -1,6 +1,8 @@
 """What one source says never takes the memory of another."""
 
+import gc
 import os
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -70,6 +72,25 @@ def test_what_used_up_the_preroll_is_named(tmp_path: Path, caplog: pytest.LogCap
     with pytest.raises(RecordingError, match="requests of clients have used up the pre-roll of 2000 bytes"):
         journal.start(tmp_path / "a.mcap")
     assert [message for message in caplog.messages if "used up" in message] == [caplog.messages[0]]
+
+
+def test_what_used_it_up_is_given_back_by_and_by() -> None:
+    """All of it at once would keep the loop for longer than a stop may take."""
+    journal = PrerollJournal(HEADER, 500_000)
+    noted = 0
+    while not noted or journal.remembered:
+        journal.note(BytesEntry(-1, "drive", Direction.FROM_BOARD, b"%d" % noted))
+        noted += 1
+    assert noted > 1000
+    left = [_entries()]
+    while left[-1]:
+        journal.note(REQUEST)
+        left.append(_entries())
+    assert max(before - after for before, after in pairwise(left)) < 300
+
+
+def _entries() -> int:
+    return sum(isinstance(one, BytesEntry) and one.time_ns == -1 for one in gc.get_objects())
 
 
 def test_a_map_that_packs_badly_does_not_end_a_recording(tmp_path: Path) -> None:
