@@ -17,6 +17,7 @@ from robotd.app.callbacks import stopping_on_errors
 from robotd.app.compose import Daemon, compose, head_settings, serial_connectors
 from robotd.app.daemon_lock import lock_directory
 from robotd.app.ending import Ending
+from robotd.app.first_map import load_first_map
 from robotd.app.stall_guard import guarded
 from robotd.app.stalls import Stalls, keep_going
 from robotd.app.watchdog import Notifier, feed_watchdog, watchdog_s
@@ -167,6 +168,7 @@ async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoRetur
             feeding = feed_watchdog(notifier, within_s, lambda: not any(task.done() for task in tasks))
             tasks.append(group.create_task(feeding, name="watchdog"))
         tasks.append(group.create_task(_announce(front, notifier, config), name="announce"))
+        loading = group.create_task(load_first_map(daemon, config.maps.load), name="first map")
         await ending.asked.wait()
         log.info("stopping: %s", ending.reason)
         notifier.stopping()
@@ -174,7 +176,7 @@ async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoRetur
         if not daemon.control.keeping.is_needed:  # nobody waits for what is computed
             thinking.cancel()
         await _cancelled(serving, *(parts[device.name] for device in daemon.robot.devices))
-        for task in tasks:
+        for task in (*tasks, loading):
             task.cancel()
 
 

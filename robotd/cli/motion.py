@@ -6,6 +6,8 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from rich.text import Text
+
 from robotd.cli.connection import connect
 from robotd.cli.exit_codes import INTERRUPTED, OK
 from robotd.cli.show.progress import MissionBars
@@ -28,6 +30,8 @@ class MissionOutcome:
     words: str
     """For people; with line breaks where it is more than a line."""
     code: int = OK
+    picture: Text | None = None
+    """For people, too, if it was asked for."""
 
 
 Conclude = Callable[[list[MissionEvent]], MissionOutcome]
@@ -79,6 +83,8 @@ def _follow(client: Client, mission: Mission, conclude: Conclude, arguments: arg
         print_json(outcome.document)
     elif not arguments.events:
         out().print(outcome.words)
+        if outcome.picture is not None:
+            out().print(outcome.picture)
     return outcome.code
 
 

@@ -5,21 +5,29 @@ from typing import Annotated
 
 from robotd.config.environment import state_dir
 from robotd.core.bounds import Within, refuse_outside
+from robotd.maps.manifest import is_name
+
+LAST = "last"
+"""In place of the name of a map: the one that somebody saved last."""
 
 
 @dataclass(frozen=True, slots=True)
 class MapsSettings:
-    """Where maps are kept."""
+    """Where maps are kept, and which one is in use from the start."""
 
     dir: str = field(default_factory=lambda: f"{state_dir()}/maps")
     """Directory of the stored maps."""
     keep: Annotated[int, Within(1, 100_000)] = 10
     """Versions kept of each map; saving one more drops the oldest."""
+    load: str = ""
+    """Map to take into use when the daemon starts, its name or ``last``; none if it is empty."""
 
     def __post_init__(self) -> None:
         """Refuse a store that keeps nothing."""
         if not self.dir:
             raise ValueError("dir must not be empty")
+        if self.load and not is_name(self.load):
+            raise ValueError(f"load must be the name of a map, or last, got {self.load!r}")
         refuse_outside(self)
 
 

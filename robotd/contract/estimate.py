@@ -151,6 +151,10 @@ class PoseEstimate:
     map_from_odom: Pose2 | None = None
     """How the odometry frame lies on the map, once this estimate is taken into account; None while nothing ties them
     that is believed."""
+    mission_id: int | None = None
+    """Of the mission that looked round; None if odometry predicted it."""
+    sweep: int | None = None
+    """Number of the sweep that it is built from; None if odometry predicted it."""
 
     def __str__(self) -> str:
         """Say in one line what people ask first."""

@@ -29,9 +29,8 @@ class Scene:
         match event:
             case Odometry():
                 self.in_odom = event.in_odom
-            case PoseEstimate() if event.best is not None:
-                # The newest odometry is not that of the estimate: while the robot stands, as it does then, it is.
-                self.map_from_odom = event.best @ self.in_odom.inverse()
+            case PoseEstimate() if event.map_from_odom is not None:
+                self.map_from_odom = event.map_from_odom
             case MapChanged():
                 self._change(event)
 

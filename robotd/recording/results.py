@@ -52,7 +52,8 @@ def _estimate(estimate: PoseEstimate) -> dict[str, Any]:
     content = _without_time(msgspec.to_builtins(estimate))
     del content["complete"]
     del content["ends"]  # follows from the readings and the map, and older recordings do not have it
-    del content["in_odom"], content["map_from_odom"]  # the same, and the sweep has the one already
+    for name in ("in_odom", "map_from_odom", "mission_id", "sweep"):
+        del content[name]  # the same, and the sweep and the missions have them already
     if estimate.jumped_m is None:
         del content["jumped_m"]  # as in recordings made before it could be said: their digests are of what there was
     return content

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from robotd.app.first_map import load_first_map
 from robotd.app.replaying import replay_recording
 from robotd.config import Config
 from robotd.contract.events import MapChanged, MissionPhase, MissionProgress, Status
@@ -16,6 +17,8 @@ from robotd.contract.missions import Legs, Localize, MapStart, with_lease
 from robotd.contract.requests import Arm, ListMaps, MapDiscard, MapLoad, MapSave, RecordStart, RecordStop, Stop
 from robotd.core.clock import run_virtual
 from robotd.core.errors import MapError, MissionError
+from robotd.core.grid_spec import GridSpec
+from robotd.grid.occupancy import OccupancyGrid
 from robotd.head.jobs import Insert
 from robotd.maps import atomic
 from robotd.maps.store import MapStore
@@ -268,3 +271,31 @@ def test_a_session_in_which_maps_were_kept_replays_bit_for_bit_and_writes_nothin
     assert report.differences == ()
     assert report.results > 5
     assert sorted((tmp_path / "maps").rglob("*")) == files
+
+
+@pytest.mark.parametrize(
+    ("wanted", "in_use", "said"),
+    [
+        ("", None, ""),
+        ("hall", "hall", ""),
+        ("last", "lab", ""),
+        ("cellar", None, "maps.load = 'cellar': there is no map 'cellar'"),
+    ],
+)
+async def test_a_daemon_takes_the_map_into_use_that_it_is_told(
+    wanted: str, in_use: str | None, said: str, live: Live, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    store = MapStore(tmp_path / "maps")
+    for at, (name, metadata) in enumerate((("hall", {}), ("lab", {}), ("draft", {"unsaved": True})), start=1):
+        store.save(name, OccupancyGrid(GridSpec(0.05, 0.0, 0.0, (8, at))), metadata=metadata, created_unix_ns=at)
+    async with live(office(), QUICK) as it:
+        await load_first_map(it.daemon, wanted)
+        place = it.daemon.supervisor.whereabouts.map_in_use
+        assert (place.name if place else None) == in_use
+    assert said in caplog.text
+
+
+async def test_a_daemon_without_any_saved_map_says_so_and_goes_on(live: Live, caplog: pytest.LogCaptureFixture) -> None:
+    async with live(office(), QUICK) as it:
+        await load_first_map(it.daemon, "last")
+    assert "no map was saved yet" in caplog.text

@@ -84,6 +84,8 @@ async def test_nothing_ties_odometry_to_a_map_on_which_the_robot_was_not_found_y
     assert last.state is PoseState.LOCALIZED
     assert last.map_from_odom is not None
     assert last.in_odom == begun[0].in_odom
+    missions = [event.mission_id for event in said if isinstance(event, MissionProgress)]
+    assert {(event.mission_id, event.sweep) for event in estimates} == {(missions[-1], begun[0].number)}
 
 
 async def test_the_columns_of_a_sweep_are_its_readings(live: Live) -> None:

@@ -2,9 +2,11 @@
 
 import argparse
 import math
+from functools import partial
 
 from robotd.cli.motion import MissionOutcome, carry_out, last_word, mission_verb
 from robotd.cli.quantities import between, whole
+from robotd.cli.show.terminal import out
 from robotd.cli.show.wording import as_json, range_in_words
 from robotd.client.mission_run import MissionEvent, ranges_measured
 from robotd.contract.events import SweepDone
@@ -72,16 +74,23 @@ def _count(parser: argparse.ArgumentParser) -> None:
 
 
 def _scan(arguments: argparse.Namespace) -> int:
-    return carry_out(arguments, Scan(base_turns=not arguments.head_only), _swept)
+    conclude = partial(_swept, with_picture=arguments.plot)
+    return carry_out(arguments, Scan(base_turns=not arguments.head_only), conclude)
 
 
-def _swept(events: list[MissionEvent]) -> MissionOutcome:
+def _swept(events: list[MissionEvent], *, with_picture: bool) -> MissionOutcome:
     done = next(event for event in reversed(events) if isinstance(event, SweepDone))
-    return MissionOutcome(as_json(done), last_word(events).words)
+    picture = None
+    if with_picture:
+        from robotd.cli.show.sweep_picture import sweep_picture  # noqa: PLC0415  # only here is a grid needed
+
+        picture = sweep_picture(done.sweep, out())
+    return MissionOutcome(as_json(done), last_word(events).words, picture=picture)
 
 
-def _how_far_round(parser: argparse.ArgumentParser) -> None:
+def _how_to_scan(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--head-only", action="store_true", help="leave out what the head does not reach by itself")
+    parser.add_argument("--plot", action="store_true", help="draw what was seen, from above, ahead to the right")
 
 
 VERBS = (
@@ -91,7 +100,5 @@ VERBS = (
     mission_verb("turn", "turn on the spot by odometry; needs no map", "robotctl turn -90", _turn, _angle),
     mission_verb("look", "point the head", "robotctl look 30 -10", _look, _direction),
     mission_verb("measure", "measure the range where the head points", "robotctl measure --count 20", _measure, _count),
-    mission_verb(
-        "scan", "take one sweep where it stands, without a map", "robotctl scan --json", _scan, _how_far_round
-    ),
+    mission_verb("scan", "take one sweep where it stands, without a map", "robotctl scan --plot", _scan, _how_to_scan),
 )

@@ -22,13 +22,14 @@ from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import Verb
 from robotd.cli.verbs import map_files, map_store, stored_stops
 from robotd.cli.wheels import odometry_argument
-from robotd.contract.answers import MapEntryInfo
+from robotd.contract.answers import ErrorCode, MapEntryInfo
 from robotd.contract.arguments import MapName
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import MapChanged
 from robotd.contract.missions import Legs, MapStart
 from robotd.contract.topics import Topic
 from robotd.core.clock import NS_PER_S
+from robotd.core.errors import ServerError
 from robotd.core.grid_bytes import grid_digest
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.grid.tables import NO_INFORMATION
@@ -41,6 +42,8 @@ _PATIENCE_S = 0.5
 
 
 def _start(arguments: argparse.Namespace) -> int:
+    if arguments.discard:
+        _give_up(arguments)
     start, stops_m = arguments.start, tuple(map(tuple, arguments.stop))
     if arguments.world is not None:
         from robotd.sim.load import load_robot  # noqa: PLC0415  # no other verb here needs a simulation
@@ -66,6 +69,11 @@ def _start_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", metavar="WORLD", help="take start and stops from a world of robotctl sim")
     odometry_argument(parser)
     legs_argument(parser)
+    parser.add_argument(
+        "--discard",
+        action="store_true",
+        help="give up what nobody saved of the map in use, which else is kept first, and in the way if it cannot be",
+    )
 
 
 def _name(text: str) -> str:
@@ -98,6 +106,15 @@ def _save(arguments: argparse.Namespace) -> int:
 def _load(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client:
         return _tell(arguments, "loaded", client.map_load(arguments.name, arguments.version, arguments.robot))
+
+
+def _give_up(arguments: argparse.Namespace) -> None:
+    with connect(arguments) as client:
+        try:
+            client.map_discard()
+        except ServerError as error:
+            if error.code != ErrorCode.NOT_FOUND:
+                raise  # where no map is in use, there is nothing to give up
 
 
 def _discard(arguments: argparse.Namespace) -> int:

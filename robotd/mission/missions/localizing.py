@@ -6,6 +6,7 @@ on how fast this machine happens to be.
 
 import asyncio
 import math
+from dataclasses import dataclass, replace
 
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import MissionPhase
@@ -38,7 +39,8 @@ async def run_localizing(
     stop = context.head.number()
     try:
         await context.head.ask(Prepare(stop, place.ref, place.map_id, headings_rad, mission.within))
-        narrowing = Narrowing(context, stop, _between(context, mission), ties=mission.tie)
+        of = LookRound(report.mission_id, number)
+        narrowing = Narrowing(context, stop, _between(context, mission), of, ties=mission.tie)
         return await _looked_round(context, report, narrowing, number)
     finally:
         context.head.forget(stop)
@@ -81,21 +83,31 @@ def _between(context: MissionContext, mission: Localize) -> int:
     return -(-context.settings.sweep.readings // _ESTIMATES) if mission.heading is PriorHeading.UNKNOWN else _BATCH
 
 
+@dataclass(frozen=True, slots=True)
+class LookRound:
+    """What an estimate is of."""
+
+    mission_id: int
+    sweep: int
+
+
 class Narrowing:
     """A sweep under way: takes readings as they come, publishes estimates as they firm up."""
 
-    def __init__(self, context: MissionContext, stop: int, readings_between: int, *, ties: bool) -> None:
+    def __init__(self, context: MissionContext, stop: int, readings_between: int, of: LookRound, *, ties: bool) -> None:
         """Follow a sweep.
 
         Args:
             context: what missions work with.
             stop: the number that the head knows it by.
             readings_between: how many there are between two estimates.
+            of: which mission and sweep its estimates are of.
             ties: whether odometry is tied to the map where the robot is found.
         """
         self._context = context
         self._stop = stop
         self._readings_between = readings_between
+        self._of = of
         # Without a base there is no odometry that a tie could be made with, nor one to weigh by.
         self._has_base = context.robot.has_base
         self._ties = ties and self._has_base
@@ -146,7 +158,11 @@ class Narrowing:
         if estimate.final and self._ties:
             self._learn(estimate)
         self._context.whereabouts.said(estimate)
-        estimate = self._context.whereabouts.tied(estimate, self._in_odom)
+        estimate = replace(
+            self._context.whereabouts.tied(estimate, self._in_odom),
+            mission_id=self._of.mission_id,
+            sweep=self._of.sweep,
+        )
         self._context.publish(estimate, made)
         return estimate
 

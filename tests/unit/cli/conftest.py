@@ -137,6 +137,9 @@ class FakeClient:
         self.asked.append(("map_load", name, version, robot))
         return ENTRY
 
+    def map_discard(self) -> None:
+        self.asked.append("map_discard")
+
     def map_list(self) -> tuple[MapEntryInfo, ...]:
         return (replace(ENTRY, damage=self.damage),)
 

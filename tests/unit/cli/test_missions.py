@@ -61,6 +61,11 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
     ]
 
 
+def test_what_is_not_saved_is_given_up_first_if_that_is_asked_for(client: Any) -> None:
+    main(["map", "start", "lab", "--discard"])
+    assert [asked for asked in client.asked if asked != "close"] == ["map_discard", MapStart.of("lab")]
+
+
 def test_the_stops_of_a_world_need_not_be_typed(client: Any) -> None:
     main(["map", "start", "o", "--world", "office"])
     mission = client.asked[0]
@@ -231,3 +236,17 @@ def test_what_nohup_ignores_stays_ignored(client: Any, monkeypatch: pytest.Monke
         assert main(["localize", "--events"]) == 0
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+def test_a_sweep_is_drawn_from_above(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    bearings = [math.radians(at) for at in range(0, 360, 2)]
+    square = [1.5 / max(abs(math.cos(bearing)), abs(math.sin(bearing))) for bearing in bearings]
+    client.mission_events = (SweepDone(5, Sweep.of(bearings, square, 8.0)), DONE)
+    assert main(["scan", "--plot"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    (line,) = [line for line in lines if "→" in line]
+    # Walls on both sides of the robot, as far as each other, with free ground between.
+    left, right = line.split("→")
+    assert left.rstrip()[-1] in "█▀▄"
+    assert right.strip()[0] in "█▀▄"
+    assert abs((len(left) - len(left.rstrip())) - (len(right) - len(right.lstrip()))) <= 2

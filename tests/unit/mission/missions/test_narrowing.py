@@ -12,7 +12,7 @@ from robotd.head.jobs import Prepare
 from robotd.head.near import HeadAtHand
 from robotd.head.settings import HeadSettings
 from robotd.mission.missions.context import MissionContext
-from robotd.mission.missions.localizing import Narrowing
+from robotd.mission.missions.localizing import LookRound, Narrowing
 from robotd.mission.whereabouts.whereabouts import Whereabouts
 from tests.support.living import AtOnce
 from tests.support.places import held, place_of, unpaced
@@ -43,7 +43,7 @@ async def test_another_estimator_is_asked_after_each_batch_and_given_what_was_me
         robot=SimpleNamespace(has_base=False),
         publish=lambda estimate, made: published.append(estimate),
     )
-    narrowing = Narrowing(cast("MissionContext", context), stop, 4, ties=True)
+    narrowing = Narrowing(cast("MissionContext", context), stop, 4, LookRound(5, 2), ties=True)
     narrowing.begun(Pose2(1.0, 2.0, 0.5))
     for number in range(10):
         status = ReadingStatus.WEAK if number == 5 else ReadingStatus.OK
@@ -58,3 +58,4 @@ async def test_another_estimator_is_asked_after_each_batch_and_given_what_was_me
     ]
     assert last is published[-1]
     assert {estimate.in_odom for estimate in published} == {Pose2(1.0, 2.0, 0.5)}
+    assert {(estimate.mission_id, estimate.sweep) for estimate in published} == {(5, 2)}
