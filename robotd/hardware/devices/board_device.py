@@ -39,7 +39,8 @@ class BoardDevice(WithHealth):
         """Whether an arm was asked for, and no stop since."""
         self._is_distrusted = False
         """Whether it said what cannot be, and nobody has cleared that."""
-        self._times = Times(self.name)
+        self._silence_s = settings.silence_s
+        self._times = Times(self.name, self._silence_s)
         self._rest = Rest()
         self._health = Health(self.name, self._counted)
         self._link = Link(
@@ -51,7 +52,7 @@ class BoardDevice(WithHealth):
             dictionaries={},
             wire=self._wire,
             counters=self._counters,
-            silence_s=settings.silence_s,
+            silence_s=self._silence_s,
         )
 
     @property
@@ -99,7 +100,7 @@ class BoardDevice(WithHealth):
     def link_opened(self) -> None:
         """Note that the line is open."""
         self._is_distrusted = False
-        self._times = Times(self.name)
+        self._times = Times(self.name, self._silence_s)
         self._health.change(
             link=LinkState.CONNECTING, armed=False, faults=(), detail="line open, waiting for the board"
         )

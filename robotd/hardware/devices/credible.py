@@ -30,9 +30,8 @@ TILT_MAX_RAD = math.radians(120.0)
 OFF_AIM_MAX_RAD = 0.35
 """A head that says that it is where it was told is not farther from there than this."""
 LATE_S = 0.5
-"""A time that is farther behind must catch up within :data:`LATE_FOR_S`."""
-LATE_FOR_S = 1.0
-"""After a stall what was kept in buffers is late, and soon caught up with: only what stays late is no true time."""
+"""After a stall what was kept in buffers is late, and soon caught up with: only what stays farther behind is no true
+time."""
 OLD_MAX_S = 60.0
 """No stall and no buffer makes a message older than this."""
 
@@ -84,8 +83,10 @@ def check_limits(device: str, limits: PanTiltLimits) -> None:
 class Times:
     """Judges the times of one conversation's messages by when they were heard."""
 
-    def __init__(self, device: str) -> None:
+    def __init__(self, device: str, patience_s: float) -> None:
+        """Judge a device whose times may stay behind for so long: as long as it may be silent altogether."""
         self._device = device
+        self._patience_s = patience_s
         self._late_since_ns: int | None = None
         self._missed_s = 0.0
 
@@ -96,7 +97,7 @@ class Times:
             raise implausible(self._device, f"its clock is {abs(ahead_s):g} s {'ahead' if ahead_s > 0 else 'behind'}")
 
     def check_periodic(self, time_ns: int, heard_ns: int, missed_s: float = 0.0) -> None:
-        """The same for what is said again and again; DeviceError also if its times have stayed behind for a second.
+        """The same for what is said again and again; DeviceError also if its times have stayed behind for too long.
 
         Not while we stand still ourselves again and again, for ``missed_s`` in all: then it is us who are behind.
         """
@@ -107,7 +108,7 @@ class Times:
             self._late_since_ns = None
             return
         self._late_since_ns = heard_ns if self._late_since_ns is None else self._late_since_ns
-        if heard_ns - self._late_since_ns > LATE_FOR_S * NS_PER_S:
+        if heard_ns - self._late_since_ns > self._patience_s * NS_PER_S:
             raise implausible(self._device, f"its clock falls behind: {(heard_ns - time_ns) / NS_PER_S:.3f} s by now")
 
 

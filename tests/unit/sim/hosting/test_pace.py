@@ -12,7 +12,8 @@ from firmware_proto.drive_messages import OdometryReport, SetVelocity
 from firmware_proto.framing import RawFrame, encode_frame
 from firmware_proto.schema import Message
 from robotd.core.clock import NS_PER_S
-from robotd.hardware.devices.credible import LATE_FOR_S, LATE_S
+from robotd.hardware.devices.credible import LATE_S
+from robotd.hardware.devices.settings import SilenceOptions
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.board import BoardWire
@@ -129,7 +130,7 @@ def test_time_that_is_lost_all_the_time_falls_no_farther_behind_than_a_daemon_be
         host.time_ns += look_ms * 1_000_000
         is_late = host.time_ns - time.now_ns() > LATE_S * NS_PER_S
         late_since_ns = (late_since_ns or host.time_ns) if is_late else None
-        assert late_since_ns is None or host.time_ns - late_since_ns < LATE_FOR_S * NS_PER_S
+        assert late_since_ns is None or host.time_ns - late_since_ns < SilenceOptions().silence_s * NS_PER_S
 
 
 def test_time_never_runs_backwards_however_it_is_asked(host: Host, said: list[str]) -> None:
