@@ -59,7 +59,7 @@ struct board {
     struct bp_receiver receiver;
 };
 
-/* For whoever owns a board. */
+/* For the owner of a board. */
 
 /* Take bytes from the host, at the board's time. */
 void board_receive(struct board *board, const uint8_t *bytes, size_t size, uint64_t now_us);

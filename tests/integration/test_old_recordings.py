@@ -1,8 +1,8 @@
 """What a daemon of an earlier version recorded replays to its old digests, for as long as nothing in its path changes.
 
-``begun_map.mcap`` was made by 0.1: a mission that was armed for, its first stop swept and laid into a map, and Ctrl-C on
-the way to the second one. Where a change of ours means to come to something else, the CHANGELOG says so, and a recording
-of the version before takes this one's place.
+``begun_map.mcap`` was made by 0.1: a map begun, its first stop swept and laid in, and Ctrl-C on the way to the second.
+Where a change of ours means to come to something else, the CHANGELOG says so, and a recording of the version before
+takes this one's place.
 """
 
 from pathlib import Path

@@ -92,8 +92,8 @@ def ready_again(room: str, spec: GridSpec, occupied: NDArray[np.bool_], *, goal_
     middle, reach = spec.rows // 2, min(120, spec.rows // 2)
     changed = CellWindow(middle - reach, middle + reach, middle - reach, middle + reach)
     size = f"{(field.codes.nbytes + field.skips.nbytes) / occupied.size:.2f} bytes a cell"
-    anew = timed(f"{room}, wall field made anew", partial(WallField.of, spec, occupied, occupied), 30)
-    yield Timing(anew.name, anew.seconds, note=size)
+    whole = timed(f"{room}, wall field made whole", partial(WallField.of, spec, occupied, occupied), 30)
+    yield Timing(whole.name, whole.seconds, note=size)
     renew = partial(field.updated, occupied, occupied, changed)
     yield timed(f"{room}, wall field after a sweep of 6 m", renew, 30, goal_ms=goal_ms)
 

@@ -1,4 +1,4 @@
-"""Best poses and rivals by bounds, nothing known, and within a prior; the map prepared, anew and after a sweep."""
+"""Best poses and rivals by bounds, nothing known, and within a prior; the map prepared, whole and after a sweep."""
 
 import math
 import time
