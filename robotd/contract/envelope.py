@@ -7,7 +7,7 @@ raised. A stop is what :mod:`robotd.contract.stopping` takes for one, whatever e
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,7 +62,9 @@ class Reply:
     result: dict[str, Any] | ServerError
 
 
-def decode_request(data: bytes, max_bytes: int) -> NumberedRequest | BadRequest:
+def decode_request(
+    data: bytes, max_bytes: int, known: Mapping[str, type[Request[Any]]] = REQUESTS
+) -> NumberedRequest | BadRequest:
     """Return what a client asks. Never raises; time and memory are bounded by the length of ``data``."""
     request_id = None
     try:
@@ -70,7 +72,7 @@ def decode_request(data: bytes, max_bytes: int) -> NumberedRequest | BadRequest:
         request_id = _id_of(fields)
         # After the number: so what is refused from here on names the request that it answers.
         _check(fields, _MAX_DEPTH)
-        request, client = _request_of(fields), _client_of(fields)
+        request, client = _request_of(fields, known), _client_of(fields)
     except ServerError as error:
         return _stop_for_an_odd_reason(data) or _bad(request_id, error, means_stop=means_stop(data))
     if request_id is None:
@@ -192,15 +194,15 @@ def _id_of(fields: dict[str, Any]) -> int | None:
     return request_id if type(request_id) is int and 0 <= request_id <= _MAX_ID else None
 
 
-def _request_of(fields: dict[str, Any]) -> Request[Any]:
+def _request_of(fields: dict[str, Any], known: Mapping[str, type[Request[Any]]]) -> Request[Any]:
     version = fields.get("v")
     if type(version) is not int or version != VERSION:
         raise ServerError(ErrorCode.UNSUPPORTED_VERSION, f"this server speaks version {VERSION}, got {_shown(version)}")
     if unknown := [key for key in fields if key not in _KEYS and key != "client"]:
-        known = "a request has v, id, cmd and args, and may have a client"
-        raise ServerError(ErrorCode.MALFORMED, f"unknown key {_shown(unknown[0])}: {known}")
+        has = "a request has v, id, cmd and args, and may have a client"
+        raise ServerError(ErrorCode.MALFORMED, f"unknown key {_shown(unknown[0])}: {has}")
     name = fields.get("cmd")
-    kind = REQUESTS.get(name) if isinstance(name, str) else None
+    kind = known.get(name) if isinstance(name, str) else None
     if kind is None:
         raise ServerError(ErrorCode.UNKNOWN_COMMAND, f"no command {_shown(name)}; there are {', '.join(REQUESTS)}")
     try:

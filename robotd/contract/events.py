@@ -201,6 +201,32 @@ class MapChanged:
 
 
 @dataclass(frozen=True, slots=True)
+class RankMap:
+    """How many readings each place explains at its best heading: a picture, made as long as somebody looks."""
+
+    time_ns: int
+    map_id: str
+    generation: int
+    """The change of that map which it is on."""
+    number: int
+    """Of the sweep."""
+    readings: int
+    """Counted so far."""
+    headings: int
+    """Tried for each place; fewer than the estimate tries on a large map."""
+    reduce: int
+    """Cells of the map along the side of one of these, of which the greatest counts."""
+    resolution_m: float
+    """Side of one of these cells."""
+    origin_x_m: float
+    origin_y_m: float
+    rows: int
+    cols: int
+    levels_zlib: bytes
+    """A byte a cell, row by row, packed by zlib: 255 where all readings are explained, 0 where none is."""
+
+
+@dataclass(frozen=True, slots=True)
 class StopPlaced:
     """What came of placing a stop on the map so far."""
 
@@ -269,6 +295,7 @@ Event = (
     | SweepProgress
     | SweepDone
     | RangeMeasured
+    | RankMap
     | MissionProgress
     | MissionPlan
     | MapChanged

@@ -20,6 +20,7 @@ from robotd.contract.events import (
     MapChanged,
     MissionProgress,
     RangeMeasured,
+    RankMap,
     Reconciled,
     Status,
     StopPlaced,
@@ -45,6 +46,7 @@ class Topic(enum.StrEnum):
     SWEEP = "sweep"
     MAP = "map"
     MISSION = "mission"
+    RANK = "rank"
     STATUS = "status"
     LOG = "log"
 
@@ -82,6 +84,7 @@ EVENTS: dict[type[Published], tuple[Topic, str]] = {
     Reconciled: (Topic.MAP, "reconciled"),
     MissionProgress: (Topic.MISSION, "mission_progress"),
     MissionPlan: (Topic.MISSION, "plan"),
+    RankMap: (Topic.RANK, "rank_map"),
     Status: (Topic.STATUS, "status"),
     LogEntry: (Topic.LOG, "log"),
 }

@@ -17,10 +17,11 @@ from robotd.contract.refusal import as_refusal
 from robotd.contract.request import Request
 from robotd.contract.requests import Arm, Disarm, Renew, Stop
 from robotd.contract.stopping import STOPPING
+from robotd.contract.topics import Topic
 from robotd.core.broadcast import Broadcast
 from robotd.core.errors import ChildError, RobotdError, ServerError
 from robotd.core.together import together
-from robotd.front.messages import Parts, answer, refusal
+from robotd.front.messages import FROM_FRONT, Parts, Watch, answer, refusal
 from robotd.front.outcomes import Outcomes
 
 R = TypeVar("R")
@@ -53,6 +54,9 @@ class Heart(Protocol):
 
     async def stopped(self) -> None:
         """Wait until the mission that was stopped has ended."""
+
+    def watch(self, topics: frozenset[Topic]) -> None:
+        """Take note of what somebody reads: what is costly is made for these topics alone."""
 
     async def perform(self, request: Request[R], client: str = "") -> R:
         """Carry out what a client requests, all but ``hello``, and answer it; RobotdError says why it was not done."""
@@ -87,7 +91,7 @@ class Asked:
     async def _take_from(self, lane: Channel) -> NoReturn:
         latest, taken = -1, 0
         while True:
-            numbered = decode_request(await lane.receive(), LONGEST_REQUEST)
+            numbered = decode_request(await lane.receive(), LONGEST_REQUEST, FROM_FRONT)
             if isinstance(numbered, BadRequest):
                 if numbered.means_stop:
                     self._obey(_UNREADABLE)
@@ -102,6 +106,9 @@ class Asked:
 
     def _begin(self, numbered: NumberedRequest) -> None:
         request = numbered.request
+        if isinstance(request, Watch):
+            self._heart.watch(frozenset(request.topics))
+            return
         if isinstance(request, STOPPING):
             self._obey(request)
             self._stopped_at = max(self._stopped_at, numbered.id)
@@ -173,6 +180,7 @@ class Asked:
         return Renewed(progress)
 
     async def _give_up(self) -> None:
+        self._heart.watch(frozenset())
         if self._arming():
             self._obey(Stop("stopped, as the front that asked to arm is gone"))
         tasks = list(self._under_way)

@@ -10,10 +10,10 @@ from robotd.contract.events import MapChanged
 from robotd.contract.plain import from_plain
 from robotd.contract.request import Request
 from robotd.contract.requests import Disarm, Stop
-from robotd.contract.topics import Published
+from robotd.contract.topics import Published, Topic
 from robotd.core.broadcast import Broadcast
 from robotd.core.errors import ServerError
-from robotd.front.messages import said
+from robotd.front.messages import Watch, said
 
 R = TypeVar("R")
 
@@ -38,6 +38,11 @@ class FrontSide:
         self._stopping.add(answered)
         answered.add_done_callback(self._stopping.discard)
         answered.add_done_callback(_heard)
+
+    def watch(self, topics: frozenset[Topic]) -> None:
+        """Send word of what somebody reads."""
+        self._number += 1
+        self._requests.send(encode_request(self._number, Watch(tuple(sorted(topics)))))
 
     async def stopped(self) -> None:
         """Wait until the stops so far were carried out."""

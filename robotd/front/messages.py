@@ -1,8 +1,8 @@
 """What goes between heart and front, as bytes, both ways; pure.
 
-To the heart: requests, numbered upwards, in the envelope that clients use. From it: first the settings, then answers in
-that envelope, events and lines of the log as they are published, and maps, whose cells are not packed here: that takes
-long, and is the front's to do. One byte before each message says which of these it is.
+To the heart: requests, numbered upwards, in the envelope that clients use, and what clients read. From it: first the
+settings, then answers in that envelope, events and lines of the log as they are published, and maps, whose cells are
+not packed here: that takes long, and is the front's to do. One byte before each message says which of these it is.
 """
 
 from typing import Any
@@ -11,9 +11,12 @@ import msgpack
 import msgspec
 import numpy as np
 
+from robotd.contract.answers import Done
 from robotd.contract.envelope import Reply, decode_reply, encode_error, encode_result
 from robotd.contract.events import MapChanged
-from robotd.contract.topics import Published, from_wire, to_wire
+from robotd.contract.request import Request
+from robotd.contract.requests import REQUESTS
+from robotd.contract.topics import Published, Topic, from_wire, to_wire
 from robotd.core.errors import ChildError, RobotdError, ServerError
 from robotd.core.grid_spec import GridSpec
 from robotd.server.settings import ServerSettings
@@ -25,6 +28,17 @@ _INDEX = np.dtype("<u4")
 """Wide enough: the largest map has 2^26 cells."""
 
 Parts = tuple[bytes | memoryview, ...]
+
+
+class Watch(Request[Done], frozen=True):
+    """Say which topics somebody reads; it is not answered, and no client can ask it."""
+
+    cmd, result = "watch", Done
+    topics: tuple[Topic, ...]
+
+
+FROM_FRONT: dict[str, type[Request[Any]]] = {**REQUESTS, Watch.cmd: Watch}
+"""What a front asks: what clients do, and this."""
 
 
 class _MapHead(msgspec.Struct, frozen=True, array_like=True):

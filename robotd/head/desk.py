@@ -65,6 +65,10 @@ class Desk:
             raise NotHeld(f"no stop {number} is held")
         return self._stops[number]
 
+    def holds_stop(self, number: int) -> bool:
+        """Return whether there is a stop of that number."""
+        return number in self._stops
+
     def forget(self, number: int) -> None:
         """Hold what has this number no longer, if anything has."""
         self._maps.pop(number, None)

@@ -28,8 +28,11 @@ from robotd.head.jobs import (
     Plan,
     Prepare,
     PreviewWay,
+    Ranks,
+    RanksShown,
     ReadMap,
     ShowMap,
+    ShowRanks,
     StopLaid,
     TakeMap,
     TakeReadings,
@@ -40,6 +43,9 @@ from robotd.maps.packed_content import PackedContent
 from robotd.maps.stops_file import decode_stops
 from robotd.planning.path import Path, plan
 from robotd.recording.results import result_of
+
+_QUICK = 1
+"""Level of zlib."""
 
 
 def perform(desk: Desk, job: Job[A]) -> A:
@@ -115,6 +121,16 @@ def _narrow(desk: Desk, job: Narrow) -> Narrowed:
     return Narrowed(estimate, None, None) if entry is None else Narrowed(estimate, entry.digest, entry.encoded)
 
 
+def _show_ranks(desk: Desk, job: ShowRanks) -> RanksShown:
+    # Who looks on waits for nothing, so the stop may be over.
+    estimator = desk.stop(job.stop) if desk.holds_stop(job.stop) else None
+    heat = None if estimator is None else estimator.heat()
+    if estimator is None or heat is None:
+        return RanksShown(None)
+    levels = zlib.compress(heat.levels.tobytes(), _QUICK)
+    return RanksShown(Ranks(heat.spec, heat.block, heat.readings, heat.headings, levels))
+
+
 def _plan(desk: Desk, job: Plan | PreviewWay) -> Way:
     held = desk.map(job.map)
     # What was hit last is an obstacle whatever the cell's value: one beam is enough (decision 20).
@@ -140,6 +156,7 @@ _TABLE: dict[type[Job[Any]], Callable[[Desk, Any], Any]] = {
     Prepare: _prepare,
     TakeReadings: _take_readings,
     Narrow: _narrow,
+    ShowRanks: _show_ranks,
     Plan: _plan,
     PreviewWay: _plan,
     Forget: _forget,

@@ -246,6 +246,30 @@ class Narrow(Job[Narrowed], frozen=True):
         return TakeReadings(self.stop, self.readings)
 
 
+class Ranks(msgspec.Struct, frozen=True):
+    """How many readings each place explains; see :class:`robotd.contract.events.RankMap`."""
+
+    spec: GridSpec
+    block: int
+    readings: int
+    headings: int
+    levels_zlib: bytes
+
+
+class RanksShown(msgspec.Struct, frozen=True):
+    """A picture, if there is one."""
+
+    ranks: Ranks | None
+    """None if the stop is not held any more, or its estimator has none to show."""
+
+
+class ShowRanks(Job[RanksShown], frozen=True):
+    """Picture how many of the readings so far each place explains."""
+
+    name, answer = "show ranks", RanksShown
+    stop: int
+
+
 class Plan(Job[Way], frozen=True):
     """Plan a way on a map, to be driven."""
 
@@ -275,7 +299,7 @@ JOBS: dict[str, type[Job[Any]]] = {
     kind.name: kind
     for kind in (
         *(BeginMap, TakeMap, ReadMap, ShowMap, MakeFiles, Insert, PlaceStop),
-        *(Prepare, Narrow, TakeReadings),
+        *(Prepare, Narrow, TakeReadings, ShowRanks),
         *(Plan, PreviewWay, Forget),
     )
 }

@@ -4,6 +4,7 @@ from typing import Protocol
 
 from robotd.contract.estimate import PoseEstimate
 from robotd.core.reading import RangeReading
+from robotd.localization.count.heat import Heat
 
 
 class Estimator(Protocol):
@@ -26,3 +27,6 @@ class Estimator(Protocol):
             time_ns: when the robot was there.
             final: whether the sweep is whole.
         """
+
+    def heat(self) -> Heat | None:
+        """Return a picture of how many readings each place explains; None if it has none to show."""

@@ -18,6 +18,7 @@ from robotd.core.reading import RangeReading
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
 from robotd.localization.claim import state_by_belief, state_by_proof
+from robotd.localization.count.heat import Heat, block_of, counted_apart, pictured
 from robotd.localization.describe import Situation, described
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.judge.likeliest import likeliest_look
@@ -108,6 +109,13 @@ class Localizer:
             # In the order of each region's `explained`, so that a reader knows which reading that was.
             bearings_rad=tuple(readings.bearing_rad.tolist()),
         )
+
+    def heat(self) -> Heat:
+        """Return how many of the readings so far each place explains at its best heading, anywhere on the map."""
+        ranks, levels, headings_rad = self.stop.counted, self.the_map.prepared, self.stop.headings_rad
+        if ranks is None:
+            return counted_apart(levels, self.stop.readings, headings_rad)
+        return pictured(levels.spec, ranks.heat(block_of(levels.spec)), ranks.readings, len(headings_rad))
 
     def _claimed(self, found: PoseSet, look: SecondLook) -> PoseState:
         if self.the_map.settings.conservative:

@@ -38,6 +38,10 @@ class Stop(Protocol):
     def best_poses(self) -> PoseSet:
         """Return the poses that explain the most readings, and all that come near them."""
 
+    @property
+    def counted(self) -> RankGrid | None:
+        """How many readings each pose explains, where they are counted as they come."""
+
 
 class CountedStop:
     """Counts readings as they come."""
@@ -49,21 +53,23 @@ class CountedStop:
         self.headings_rad = headings_rad
         self.readings = Readings.none()
         self._levels = levels
-        self._ranks = RankGrid(levels.maps[0], headings_rad, threads=threads)
+        self.counted = RankGrid(levels.maps[0], headings_rad, threads=threads)
         self._settings = settings
 
     def add(self, readings: Readings) -> None:
         """Count readings."""
-        self._ranks.add_by_level(readings, self._levels)
+        self.counted.add_by_level(readings, self._levels)
         self.readings = self.readings.joined(readings)
 
     def best_poses(self) -> PoseSet:
         """Look up the best poses."""
-        return self._ranks.best_poses(*_asked_for(self._settings, len(self.readings)))
+        return self.counted.best_poses(*_asked_for(self._settings, len(self.readings)))
 
 
 class SearchedStop:
     """Keeps readings, and searches when it is asked."""
+
+    counted = None
 
     def __init__(
         self,

@@ -16,6 +16,7 @@ from robotd.contract.events import Event, Status
 from robotd.contract.missions import MISSIONS, MapStart, Mission, with_lease
 from robotd.contract.request import Request
 from robotd.contract.requests import Arm, Clear, Disarm, GetConfig, GetStatus, RecordStart, RecordStop, Renew, Stop
+from robotd.contract.topics import Topic
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import MissionError
@@ -125,6 +126,10 @@ class Control:
         # A disarm is noted as the stop that it is: then there is one way to repeat both.
         self._note(Stop(request.reason), now_ns())
         self._supervisor.halt(Occasion.STOP, request.reason)
+
+    def watch(self, topics: frozenset[Topic]) -> None:
+        """Take note of what somebody reads: what is costly is made for these topics alone."""
+        self._supervisor.ranks.are_wanted = Topic.RANK in topics
 
     async def stopped(self) -> None:
         """Wait until the mission that was stopped has ended."""

@@ -57,6 +57,7 @@ class Supervisor:
         self.robot = context.robot
         self.news = news
         self.whereabouts = context.whereabouts
+        self.ranks = context.ranks
         self._recording = recording
         self._is_untold = False
         """Whether the last status could not be told: the log has it once, not each second."""
@@ -135,6 +136,7 @@ class Supervisor:
                 group.create_task(self._watch.watch_battery())
                 group.create_task(self._follow_odometry())
                 group.create_task(self._repeat_status())
+                group.create_task(self.ranks.run())
         finally:
             self.halt(Occasion.STOP, "the daemon is ending")
 

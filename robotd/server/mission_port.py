@@ -7,7 +7,7 @@ from typing import Protocol, TypeVar
 
 from robotd.contract.request import Request
 from robotd.contract.requests import Disarm, Stop
-from robotd.contract.topics import Published
+from robotd.contract.topics import Published, Topic
 from robotd.core.broadcast import Broadcast
 
 R = TypeVar("R")
@@ -22,6 +22,9 @@ class MissionPort(Protocol):
 
     def halt(self, request: Stop | Disarm) -> None:
         """Stop everything and disarm; valid at any time. The stop is on its way when this returns."""
+
+    def watch(self, topics: frozenset[Topic]) -> None:
+        """Say what somebody reads: what is costly is made for these topics alone. It may be lost, and is said again."""
 
     async def stopped(self) -> None:
         """Wait until the mission that was stopped has ended."""

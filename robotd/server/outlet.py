@@ -51,6 +51,10 @@ class Outlet:
         topic, _ = EVENTS[type(event)]
         self._send(await asyncio.to_thread(_frame_of, event, self._session, self._number(topic)))
 
+    def is_read(self, topic: Topic) -> bool:
+        """Return whether anybody is subscribed to a topic."""
+        return any(topic.prefix.startswith(prefix) for prefixes in self._readers.values() for prefix in prefixes)
+
     def joined(self, connection: Connection) -> None:
         """Let a client subscribe."""
         self._readers[connection] = set()

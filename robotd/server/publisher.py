@@ -5,7 +5,7 @@ import logging
 from typing import NoReturn
 
 from robotd.contract.answers import ErrorCode
-from robotd.contract.events import MapChanged
+from robotd.contract.events import MapChanged, Status
 from robotd.contract.refusal import as_refusal
 from robotd.contract.requests import GetStatus, MapShow
 from robotd.contract.topics import EVENTS, Published, Topic
@@ -19,6 +19,8 @@ from robotd.server.outlet import Outlet
 
 DEPTH = 4096
 """How many events may wait for their turn."""
+COSTLY = frozenset({Topic.RANK})
+"""What is made for readers alone."""
 
 log = logging.getLogger(__name__)
 
@@ -54,10 +56,16 @@ class Publisher:
             self._complain("the first status", error)
         while True:
             event = await self._events.get()
+            if isinstance(event, Status):
+                self._watch()
             if EVENTS[type(event)][0] is Topic.MAP:
                 self._map_queue.put(event)
             else:
                 self._publish(event)
+
+    def _watch(self) -> None:
+        """Say which of the costly topics somebody reads: with every status, so that it need not arrive each time."""
+        self._control.watch(frozenset(topic for topic in COSTLY if self.state.is_read(topic)))
 
     def _publish(self, event: Published) -> None:
         try:

@@ -1,9 +1,11 @@
 """What clients need to draw it all: where odometry and sweeps lie on the map, readings as they come, plans and ways."""
 
 import math
+import zlib
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from robotd.config import Config
@@ -13,6 +15,7 @@ from robotd.contract.events import (
     MapChanged,
     MissionPhase,
     MissionProgress,
+    RankMap,
     SweepBegun,
     SweepDone,
     SweepReadings,
@@ -20,6 +23,7 @@ from robotd.contract.events import (
 from robotd.contract.missions import DriveTo, Localize, MapStart, PriorHeading, Scan, with_lease
 from robotd.contract.requests import MapLoad, MapSave, PlanTo
 from robotd.contract.sweep_columns import from_columns
+from robotd.contract.topics import Topic
 from robotd.contract.ways import Hindrance, MissionPlan, StopState
 from robotd.core.pose import Odometry, Pose2
 from robotd.mission.missions.stop_and_sweep import SweepSettings
@@ -166,3 +170,30 @@ async def test_the_status_says_whose_mission_is_under_way(live: Live) -> None:
     assert meanwhile.commander is not None
     assert (meanwhile.commander.client, meanwhile.commander.kind) == ("anna", "scan")
     assert (meanwhile.commander.since_ns, meanwhile.commander.lease_s) == (meanwhile.since_ns, 5.0)
+
+
+@pytest.mark.parametrize("heading", PriorHeading)
+async def test_the_heat_map_is_told_each_quarter_and_at_the_end_while_somebody_looks(
+    live: Live, heading: PriorHeading
+) -> None:
+    robot = office()
+    async with live(robot, QUICK) as it:
+        said = await it.done(MapStart.of("office", robot.stops_m[:1], robot.start))
+        assert not any(isinstance(event, RankMap) for event in said)
+        it.daemon.control.watch(frozenset({Topic.RANK}))
+        said = await it.done(Localize(heading=heading))
+        shown = [event for event in said if isinstance(event, RankMap)]
+        it.daemon.control.watch(frozenset())
+        said += await it.done(Localize(heading=heading))
+    assert shown == [event for event in said if isinstance(event, RankMap)]
+    (last,) = [event for event in said[: said.index(shown[-1])] if isinstance(event, PoseEstimate) and event.final][-1:]
+    assert [event.readings for event in shown] == sorted(event.readings for event in shown)
+    assert (len(shown), shown[-1].readings, shown[-1].reduce) == (4, last.readings, 1)
+    (sweep,) = {event.number for event in shown}
+    assert sweep == next(event.sweep.number for event in said if isinstance(event, SweepDone))
+    levels = np.frombuffer(zlib.decompress(shown[-1].levels_zlib), np.uint8).reshape(shown[-1].rows, shown[-1].cols)
+    assert levels.max() == last.best_rank * 255 // last.readings
+    assert last.best is not None
+    row, col = np.unravel_index(levels.argmax(), levels.shape)
+    place_m = np.array([shown[-1].origin_x_m, shown[-1].origin_y_m]) + shown[-1].resolution_m * np.array([col, row])
+    assert math.dist(place_m, (last.best.x_m, last.best.y_m)) < 0.3

@@ -11,6 +11,7 @@ from robotd.contract.events import (
     MapChanged,
     MissionProgress,
     RangeMeasured,
+    RankMap,
     Status,
     StopPlaced,
     SweepBegun,
@@ -42,7 +43,10 @@ def as_json(event: Published) -> dict[str, Any]:
             "first": event.first,
             "readings": readings,
         }
-    return {"event": name, **dataclasses.asdict(event)}
+    if isinstance(event, RankMap):
+        event = dataclasses.replace(event, levels_zlib=b"")
+    plain = dataclasses.asdict(event)
+    return {"event": name, **{key: value for key, value in plain.items() if not isinstance(value, bytes)}}
 
 
 def in_words(event: Published) -> str:
@@ -189,5 +193,6 @@ _WORDS: dict[type[Published], Callable[[Any], str]] = {
         f"sweep {event.number}: readings {event.first + 1} to {event.first + len(event.status_u8)}"
     ),
     MissionPlan: _plan_in_words,
+    RankMap: lambda event: f"rank map of sweep {event.number}: {event.readings} readings at {event.headings} headings",
     LogEntry: lambda event: f"{event.level.lower()} {event.logger}: {event.message}",
 }

@@ -21,6 +21,8 @@ from robotd.localization.search.cell_disk import CellDisk
 class UnexcludedStop:
     """The readings of one stop against all its poses."""
 
+    counted = None
+
     def __init__(
         self,
         the_map: ConservativeMap,

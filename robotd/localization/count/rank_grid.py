@@ -147,6 +147,13 @@ class RankGrid:
             rank |= cells.astype(np.uint16) << bit
         return rank
 
+    def heat(self, block: int = 1) -> NDArray[np.uint8]:
+        """Return how many readings each cell explains at its best heading, ``uint8[rows / block, cols / block]``.
+
+        255 is all of them, 0 none or not one in 255; a level is that of the best of ``block x block`` cells.
+        """
+        return kernels.in_use().count.heat(self._counters, self._map, max(1, self.readings), block)
+
     @property
     def best_rank(self) -> int:
         """The greatest count (the paper's kappa)."""

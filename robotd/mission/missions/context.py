@@ -9,6 +9,7 @@ from robotd.core.clock import now_ns
 from robotd.core.reading import Sweep
 from robotd.core.text import printable
 from robotd.head.head import Head
+from robotd.mission.missions.ranks_told import RanksTold
 from robotd.mission.missions.settings import MissionSettings
 from robotd.mission.missions.stop_and_sweep import Sweeper, SweepListener
 from robotd.mission.missions.sweep_told import SweepTold
@@ -56,6 +57,11 @@ class MissionContext:
     sweep_numbers: Iterator[int] = field(default_factory=itertools.count)
     """The next sweep's number is drawn where an attempt at one begins: odd ones go round the other way, so a sweep that
     was given up counts, and a replay counts it too."""
+    ranks: RanksTold = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Let who looks on have pictures by the same head."""
+        object.__setattr__(self, "ranks", RanksTold(self.head, self.publish))
 
     @property
     def sweeper(self) -> Sweeper:

@@ -6,7 +6,9 @@ on how fast this machine happens to be.
 
 import asyncio
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import MissionPhase
@@ -40,7 +42,8 @@ async def run_localizing(
     try:
         await context.head.ask(Prepare(stop, place.ref, place.map_id, headings_rad, mission.within))
         of = LookRound(report.mission_id, number)
-        narrowing = Narrowing(context, stop, _between(context, mission), of, ties=mission.tie)
+        show = partial(context.ranks.show, stop, place, place.generation, number)
+        narrowing = Narrowing(context, stop, _between(context, mission), of, show, ties=mission.tie)
         return await _looked_round(context, report, narrowing, number)
     finally:
         context.head.forget(stop)
@@ -94,7 +97,16 @@ class LookRound:
 class Narrowing:
     """A sweep under way: takes readings as they come, publishes estimates as they firm up."""
 
-    def __init__(self, context: MissionContext, stop: int, readings_between: int, of: LookRound, *, ties: bool) -> None:
+    def __init__(
+        self,
+        context: MissionContext,
+        stop: int,
+        readings_between: int,
+        of: LookRound,
+        show: Callable[[], None],
+        *,
+        ties: bool,
+    ) -> None:
         """Follow a sweep.
 
         Args:
@@ -102,6 +114,7 @@ class Narrowing:
             stop: the number that the head knows it by.
             readings_between: how many there are between two estimates.
             of: which mission and sweep its estimates are of.
+            show: lets who looks on see what the readings so far say.
             ties: whether odometry is tied to the map where the robot is found.
         """
         self._context = context
@@ -113,6 +126,11 @@ class Narrowing:
         self._ties = ties and self._has_base
         self._batches: asyncio.Queue[tuple[RangeReading, ...] | None] = asyncio.Queue()  # bounded by one sweep
         self._batch: list[RangeReading] = []
+        self._show = show
+        self._taken = 0
+        """Readings that the head has."""
+        self._shown = 0
+        """Quarters of the sweep."""
         self._in_odom = IDENTITY
         """Where odometry put the robot when the sweep began."""
 
@@ -144,8 +162,17 @@ class Narrowing:
             readings = tuple(reading for reading in batch or () if reading.is_measured)
             narrowed = await self._context.head.ask(Narrow(self._stop, readings, now_ns(), batch is None))
             estimate = self._told(narrowed)
+            self._taken += len(batch or ())
+            self._show_quarters(estimate)
             if estimate.final:
                 return estimate
+
+    def _show_quarters(self, estimate: PoseEstimate) -> None:
+        """Show each quarter of the sweep, and the last when all is said."""
+        quarters = _ESTIMATES * self._taken // self._context.settings.sweep.readings
+        if estimate.final or self._shown < quarters < _ESTIMATES:
+            self._show()
+        self._shown = quarters
 
     def _told(self, narrowed: Narrowed) -> PoseEstimate:
         """Learn from an estimate, then tell it, and return it as it was told."""

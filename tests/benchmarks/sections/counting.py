@@ -1,6 +1,6 @@
 """All poses counted, and one reading more."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -44,6 +44,8 @@ def all_poses(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
     ranks = whole(1)
     yield timed(f"{title}: greatest rank", lambda: ranks.best_rank, 15)
     yield timed(f"{title}: poses of greatest rank", lambda: ranks.best_cells, 15)
+    yield timed(f"{room}, heat map of {HEADINGS} headings: greatest over headings, a byte a cell", ranks.heat, 15)
+    yield timed(f"{room}, the same from the slow counts of 5 headings", lambda: _slow_heat(occupied, sweep), 5)
     few = sweep[:: len(sweep) // 10]
     the_map = workload.map_of(occupied).packed
     ten = np.array(headings[:10])
@@ -52,6 +54,13 @@ def all_poses(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
         beams = module.draw.draw_beams(Readings.of(few).rows, turned(ten), HOW)
         run = partial(module.count.count_feasible, counters, the_map, beams)
         yield timed(f"{room}, 10 headings x {len(few)} readings, {name}", run, 5)
+
+
+def _slow_heat(occupied: NDArray[np.bool_], sweep: Sequence[RangeReading]) -> NDArray[np.uint16]:
+    ranks = RankGrid(workload.map_of(occupied), even_headings(5))
+    ranks.add(Readings.of(sweep))
+    greatest: NDArray[np.uint16] = ranks.rank.max(axis=0)
+    return greatest
 
 
 def one_reading(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:

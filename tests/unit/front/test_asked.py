@@ -18,13 +18,13 @@ from robotd.contract.events import MapChanged, MissionPhase, MissionProgress
 from robotd.contract.missions import Localize
 from robotd.contract.request import Request
 from robotd.contract.requests import Arm, Clear, GetStatus, MapShow, Renew, Stop
-from robotd.contract.topics import LogEntry
+from robotd.contract.topics import LogEntry, Topic
 from robotd.core.errors import ChildError, MissionError, ServerError
 from robotd.core.grid_bytes import packed_cells
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.together import together
 from robotd.front.heart_side import HeartSide
-from robotd.front.messages import said, settings_of
+from robotd.front.messages import Watch, said, settings_of
 from robotd.server.settings import ServerSettings
 from tests.unit.server.conftest import FakeControl, whole_map
 
@@ -300,3 +300,12 @@ async def test_a_renewal_between_the_last_step_and_the_word_of_it_is_answered_wi
         front.asks(Renew(4))
         (answer,) = (await front.answers(1)).values()
         assert (answer["mission"]["message"] if tells else answer) == ("localized" if tells else "refused")
+
+
+async def test_the_heart_hears_what_is_read_for_as_long_as_there_is_a_front() -> None:
+    async with fronted() as front:
+        front.asks(Watch((Topic.RANK,)))
+        front.asks(GetStatus())
+        assert len(await front.answers(1)) == 1  # it is the status's: what is read needs no answer
+        assert front.control.watched == [{Topic.RANK}]
+    assert front.control.watched == [{Topic.RANK}, set()]

@@ -34,6 +34,7 @@ from robotd.head.jobs import (
     PreviewWay,
     ReadMap,
     ShowMap,
+    ShowRanks,
     TakeMap,
     TakeReadings,
 )
@@ -65,7 +66,8 @@ def a_life() -> list[Job[Any]]:
         *(BeginMap(5, SPEC, GRID), PlaceStop(MapRef(5), "m", SWEEP, Travel(), HERE, 7)),
         PlaceStop(MapRef(5, 1), "m", SWEEP, Travel(Pose2(0.02, 0.0, 0.01), 0.02, 0.01), HERE, 8),
         Prepare(4, MapRef(2), "a map", (0.1, 0.2, 0.3), Area(0.0, 0.0, 0.5)),
-        *(TakeReadings(4, READINGS[:20]), Narrow(4, READINGS[20:], 5, True), Forget(4)),
+        *(TakeReadings(4, READINGS[:20]), Narrow(4, READINGS[20:], 5, True)),
+        *(ShowRanks(4), Forget(4), ShowRanks(4)),
     ]
 
 

@@ -43,6 +43,7 @@ from robotd.contract.requests import (
     Renew,
     Stop,
 )
+from robotd.contract.topics import Topic
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.errors import MapError, MissionError
@@ -76,6 +77,7 @@ class FakeControl:
         self.events: Broadcast[Event] = Broadcast()
         self.calls: list[str] = []
         self.performed: list[Request[Any]] = []
+        self.watched: list[frozenset[Topic]] = []
         self.clients: list[str] = []
         """Who asked for each."""
         self.release = asyncio.Event()
@@ -124,6 +126,10 @@ class FakeControl:
     async def stopped(self) -> None:
         if self._mission is not None:
             await asyncio.wait((self._mission,))
+
+    def watch(self, topics: frozenset[Topic]) -> None:
+        if self.watched[-1:] != [topics]:
+            self.watched.append(topics)
 
     async def perform(self, request: Request[R], client: str = "") -> R:
         self.performed.append(request)

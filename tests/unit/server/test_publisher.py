@@ -185,3 +185,15 @@ async def test_who_joins_while_no_map_is_in_use_is_told_so(make_control: Any) ->
         await asyncio.sleep(1)
     (change,) = maps.events(Topic.MAP)
     assert (change.map_id, change.whole) == (None, True)
+
+
+async def test_what_is_costly_is_asked_for_while_somebody_reads_it(make_control: Any) -> None:
+    control = make_control()
+    async with published(control) as (_, state, _, publisher):
+        # Who reads everything reads that, too.
+        for said in (None, b"\x00", b"\x01rank\0", None, b"\x00rank\0"):
+            if said is not None:
+                publisher.state.heard(state, (said,))  # type: ignore[arg-type]  # what it uses of it
+            control.events.publish(control.status)
+            await asyncio.sleep(1)
+    assert control.watched == [{Topic.RANK}, set(), {Topic.RANK}, set()]

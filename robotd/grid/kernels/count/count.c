@@ -210,3 +210,57 @@ void at_least(const uint64_t *counters, const int32_t *tiles, int32_t tile_count
         }
     }
 }
+
+#define HEAT_BITS 16
+
+/* Keep the greater of two counts of each cell; both bit-sliced. */
+static void keep_greater(uint64_t *best, const uint64_t *counter, int32_t bits)
+{
+    uint64_t greater[TILE], equal[TILE];
+    memset(greater, 0, sizeof greater);
+    memset(equal, 0xff, sizeof equal);
+    for (int32_t bit = bits - 1; bit >= 0; bit--) {
+        const uint64_t *kept = best + (size_t)bit * TILE, *other = counter + (size_t)bit * TILE;
+        for (int i = 0; i < TILE; i++) {
+            greater[i] |= equal[i] & other[i] & ~kept[i];
+            equal[i] &= ~(other[i] ^ kept[i]);
+        }
+    }
+    for (int32_t bit = 0; bit < bits; bit++) {
+        uint64_t *kept = best + (size_t)bit * TILE;
+        const uint64_t *other = counter + (size_t)bit * TILE;
+        for (int i = 0; i < TILE; i++)
+            kept[i] = (kept[i] & ~greater[i]) | (other[i] & greater[i]);
+    }
+}
+
+/* Enter one row of a tile: the counts of 64 cells, of which the first is column `left` of the map. */
+static void enter_row(const heat_job *job, const uint64_t *counts, int32_t left, uint8_t *levels)
+{
+    for (int32_t b = left < 0 ? -left : 0; b < 64 && left + b < job->cols; b++) {
+        uint64_t count = 0;
+        for (int32_t bit = 0; bit < job->bits; bit++)
+            count |= (counts[(size_t)bit * TILE] >> b & 1) << bit;
+        const uint8_t level = (uint8_t)(count * 255 / (uint64_t)job->readings);
+        uint8_t *to = levels + (left + b) / job->block;
+        *to = level > *to ? level : *to;
+    }
+}
+
+void heat(const heat_job *job)
+{
+    const size_t across = (size_t)((job->cols + job->block - 1) / job->block), size = (size_t)job->bits * TILE;
+    uint64_t best[HEAT_BITS * TILE];
+    for (int32_t tile = 0; tile < job->tile_count; tile++) {
+        const uint64_t *counters = job->counters + (size_t)tile * (size_t)job->headings * size;
+        memcpy(best, counters, size * sizeof *best);
+        for (int32_t heading = 1; heading < job->headings; heading++)
+            keep_greater(best, counters + (size_t)heading * size, job->bits);
+        const int32_t left = job->tiles[2 * tile] * 64 - job->origin[1];
+        for (int32_t i = 0; i < TILE; i++) {
+            const int32_t row = job->tiles[2 * tile + 1] + i - job->origin[0];
+            if (row >= 0 && row < job->rows)
+                enter_row(job, best + i, left, job->levels + (size_t)(row / job->block) * across);
+        }
+    }
+}

@@ -30,4 +30,22 @@ uint32_t greatest(const uint64_t *counters, int64_t n, int32_t bits);
 void at_least(const uint64_t *counters, const int32_t *tiles, int32_t tile_count, int32_t headings, int32_t bits,
               uint32_t least, int32_t rows, int32_t words, uint64_t *masks);
 
+/* The greatest count of each cell over all headings, as levels[][] from 0 to 255, which is a count of `readings`; a level
+ * is the greatest of `block` x `block` cells. */
+typedef struct {
+    const uint64_t *counters; /* [tile_count][headings][bits][32] */
+    const int32_t *tiles;     /* [tile_count][2] */
+    int32_t tile_count;
+    int32_t headings; /* at least 1 */
+    int32_t bits;     /* at most 16 */
+    int32_t readings; /* at least 1 */
+    int32_t origin[2];
+    int32_t rows; /* of the map */
+    int32_t cols;
+    int32_t block;
+    uint8_t *levels; /* [ceil(rows / block)][ceil(cols / block)], zeros */
+} heat_job;
+
+void heat(const heat_job *job);
+
 #endif

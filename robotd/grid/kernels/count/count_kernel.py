@@ -2,6 +2,9 @@
 
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from robotd.grid.kernels.draw.draw_kernel import Beams
 from robotd.grid.kernels.shared.packed_map import PackedMap, Words
 
@@ -41,4 +44,17 @@ class CountKernel(Protocol):
             counters: ``uint64[tiles, headings, bits, 32]``.
             the_map: the map that they belong to.
             least: not negative.
+        """
+
+    def heat(self, counters: Words, the_map: PackedMap, readings: int, block: int) -> NDArray[np.uint8]:
+        """Return the greatest count of each cell over all headings, ``uint8[rows / block, cols / block]``, rounded up.
+
+        255 is a count of all readings, what is less is rounded down; a level is the greatest of ``block x block``
+        cells.
+
+        Args:
+            counters: ``uint64[tiles, headings, bits, 32]``, of one heading or more; no count is above ``readings``.
+            the_map: the map that they belong to.
+            readings: how many were counted, one or more.
+            block: how many cells along a side share a level, one or more.
         """

@@ -1,10 +1,11 @@
 """Counting feasible poses, in C."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robotd.grid.kernels.draw.draw_kernel import Beams
 from robotd.grid.kernels.draw.draw_native import drawn_of
-from robotd.grid.kernels.shared.library import ffi, instructions_named, ints, lib, put_map, words
+from robotd.grid.kernels.shared.library import ffi, instructions_named, ints, lib, octets, put_map, words
 from robotd.grid.kernels.shared.packed_map import PackedMap, Words
 
 
@@ -47,3 +48,15 @@ def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
         sizes = (tiles, headings, bits, least, the_map.rows, the_map.words)
         lib.at_least(words(counters), ints(the_map.tiles), *sizes, words(masks))
     return masks
+
+
+def heat(counters: Words, the_map: PackedMap, readings: int, block: int) -> NDArray[np.uint8]:
+    """See :class:`.CountKernel`."""
+    (rows, cols), (tiles, headings, bits, _) = the_map.shape, counters.shape
+    levels = np.zeros((-(-rows // block), -(-cols // block)), np.uint8)
+    job = ffi.new("heat_job *")
+    job.counters, job.tiles, job.levels = words(counters), ints(the_map.tiles), octets(levels)
+    job.tile_count, job.headings, job.bits, job.readings = tiles, headings, bits, readings
+    job.origin, job.rows, job.cols, job.block = the_map.origin, rows, cols, block
+    lib.heat(job)
+    return levels

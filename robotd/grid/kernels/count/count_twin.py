@@ -3,10 +3,11 @@
 import itertools
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robotd.grid.kernels.draw.draw_kernel import NO_HEAD, Beams
 from robotd.grid.kernels.shared.packed_counting import ripple, seen_from, tiles_of_plane
-from robotd.grid.kernels.shared.packed_map import TILE_ROWS, PackedMap, Words
+from robotd.grid.kernels.shared.packed_map import TILE_ROWS, PackedMap, Words, unpack
 
 
 def count_feasible(
@@ -72,3 +73,30 @@ def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
     by_block = masks.reshape(headings, -1, TILE_ROWS, the_map.words)
     by_block[:, the_map.tiles[:, 1] // TILE_ROWS, :, the_map.tiles[:, 0]] = greater | equal
     return masks
+
+
+def heat(counters: Words, the_map: PackedMap, readings: int, block: int) -> NDArray[np.uint8]:
+    """See :class:`.CountKernel`."""
+    (rows, cols), (top, left) = the_map.shape, the_map.origin
+    # Rows and columns until whole blocks are there.
+    counts = np.zeros((-(-rows // block) * block, -(-cols // block) * block), np.uint32)
+    tiled = np.zeros((the_map.rows // TILE_ROWS, TILE_ROWS, the_map.words), np.uint64)
+    best = np.zeros_like(counters[:, 0])
+    for heading in range(counters.shape[1]):
+        best = _greater(best, counters[:, heading])
+    for bit in range(counters.shape[2]):
+        tiled[the_map.tiles[:, 1] // TILE_ROWS, :, the_map.tiles[:, 0]] = best[:, bit]
+        cells = unpack(tiled.reshape(the_map.rows, -1)[top : top + rows], left + cols)[:, left:]
+        counts[:rows, :cols] |= cells.astype(np.uint32) << np.uint32(bit)
+    blocks = counts.reshape(counts.shape[0] // block, block, -1, block).max(axis=(1, 3))
+    levels: NDArray[np.uint8] = (blocks * np.uint32(255) // np.uint32(readings)).astype(np.uint8)
+    return levels
+
+
+def _greater(one: Words, other: Words) -> Words:
+    """Return the greater of two counts of each cell, ``uint64[tiles, bits, 32]``."""
+    greater, equal = np.zeros_like(one[:, 0]), np.full_like(one[:, 0], ~np.uint64(0))
+    for bit in reversed(range(one.shape[1])):
+        greater |= equal & other[:, bit] & ~one[:, bit]
+        equal &= ~(other[:, bit] ^ one[:, bit])
+    return one & ~greater[:, None] | other & greater[:, None]

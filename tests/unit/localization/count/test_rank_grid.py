@@ -161,6 +161,22 @@ def test_all_poses_of_a_map_of_many_tiles_are_the_reference_at_samples(seed: int
     assert np.array_equal(ranks.cells_of_rank(3), np.argwhere(rank >= 3))
 
 
+@settings(max_examples=40, deadline=None)
+@given(maps, st.lists(readings, min_size=1, max_size=5), st.integers(1, 4), st.sampled_from([1, 2, 5]))
+def test_heat_is_the_greatest_rank_over_headings(
+    occupied: NDArray[np.bool_], some: list[RangeReading], headings: int, block: int
+) -> None:
+    ranks = RankGrid(map_of(occupied), even_headings(headings))
+    ranks.add(Readings.of(some))
+    levels = ranks.rank.max(axis=0).astype(int) * 255 // len(some)
+    rows, cols = levels.shape
+    slow = [
+        [levels[row : row + block, col : col + block].max() for col in range(0, cols, block)]
+        for row in range(0, rows, block)
+    ]
+    assert ranks.heat(block).tolist() == slow
+
+
 def test_counters_grow_with_what_they_count() -> None:
     ranks = RankGrid(map_of(np.zeros((3, 3), np.bool_)), [0.0])
     one = RangeReading(0, 0.0, ReadingStatus.MISS, 0.1)

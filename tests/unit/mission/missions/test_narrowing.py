@@ -13,6 +13,7 @@ from robotd.head.near import HeadAtHand
 from robotd.head.settings import HeadSettings
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.localizing import LookRound, Narrowing
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.whereabouts.whereabouts import Whereabouts
 from tests.support.living import AtOnce
 from tests.support.places import held, place_of, unpaced
@@ -30,20 +31,27 @@ class Counting:
     def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
         return PoseEstimate(time_ns, PoseState.LOST, None, (), 0, len(self.taken), final, "another estimator's")
 
+    def heat(self) -> None:
+        return None
+
 
 async def test_another_estimator_is_asked_after_each_batch_and_given_what_was_measured() -> None:
     published: list[PoseEstimate] = []
+    shown: list[int] = []
     head = HeadAtHand(Desk(HeadSettings(), begin=lambda _ready, _job: Counting()), unpaced(AtOnce()))
     here = await place_of(head, OccupancyGrid(held().spec), "m")
     stop = head.number()
     await head.ask(Prepare(stop, here.ref, here.map_id, (0.0,), None))
     context = SimpleNamespace(
         head=head,
+        settings=SimpleNamespace(sweep=SweepSettings(readings=10)),
         whereabouts=Whereabouts(),
         robot=SimpleNamespace(has_base=False),
         publish=lambda estimate, made: published.append(estimate),
     )
-    narrowing = Narrowing(cast("MissionContext", context), stop, 4, LookRound(5, 2), ties=True)
+    narrowing = Narrowing(
+        cast("MissionContext", context), stop, 4, LookRound(5, 2), lambda: shown.append(len(published)), ties=True
+    )
     narrowing.begun(Pose2(1.0, 2.0, 0.5))
     for number in range(10):
         status = ReadingStatus.WEAK if number == 5 else ReadingStatus.OK
@@ -56,6 +64,8 @@ async def test_another_estimator_is_asked_after_each_batch_and_given_what_was_me
         (9, False),
         (9, True),
     ]
+    # After the estimates of 4 and of 8 of 10 readings, of which one failed, and when all was said.
+    assert shown == [1, 2, 4]
     assert last is published[-1]
     assert {estimate.in_odom for estimate in published} == {Pose2(1.0, 2.0, 0.5)}
     assert {(estimate.mission_id, estimate.sweep) for estimate in published} == {(5, 2)}
