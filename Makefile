@@ -77,7 +77,7 @@ stops: .venv/.dev  ## Whether the robot comes to rest whatever ends the daemon, 
 worlds: .venv/.dev  ## Whether whole daemons map hard worlds and find themselves in them, 20 robots in each: a table (ten minutes; make worlds SEEDS=3 ONLY=hall)
 	@$(BIN)/python -m tests.studies.worlds.run $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only $(ONLY))
 
-heart: .venv/.dev  ## Whether a stop is on the wires in time, whatever clients do and whatever becomes of the front: a table (an hour; TRIALS=20)
+heart: .venv/.dev  ## Whether a stop is on the wires in time, whatever clients do and whatever becomes of the front: writes docs/benchmarks/heart.md (two hours; TRIALS=20)
 	@$(BIN)/python -m tests.studies.heart.run $(if $(TRIALS),--trials $(TRIALS) --endings $(TRIALS)) $(if $(ONLY),--only "$(ONLY)")
 
 first-hour: .venv/.dev  ## A new user's first hour, by commands alone: wheel, config init, calibrate, maps in and out; needs ROBOTD_DATA (minutes)

@@ -29,7 +29,7 @@ NICE = -15
 """As systemd/robotd.service has it, where it is allowed."""
 SESSION_NICE = -10
 """Ten times the share of another session, as the unit's CPUWeight= has it beside another service."""
-DAEMON = ("-c", "import robotd.app; robotd.app.program()", "--log-level", "error", "--config")
+DAEMON = ("-m", "robotd.app.daemon", "--log-level", "error", "--config")
 STALLING_DAEMON = ("-m", "tests.studies.safety.stalling")
 _PATIENCE_S = 60.0
 _ROOT = Path(__file__).parents[2]

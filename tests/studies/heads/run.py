@@ -5,11 +5,12 @@ import os
 import random
 import sys
 import tempfile
-from itertools import product
+from itertools import cycle, product
 from pathlib import Path
 
 from robotd.core.clock import run_counting
 from tests.studies.heads.trial import STATES, WAYS, Outcome, subject
+from tests.support.repeated import Repeated, repeated
 
 
 def main() -> int:
@@ -18,26 +19,29 @@ def main() -> int:
     parser.add_argument("--trials", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
-    print(f"two kinds of death in {len(STATES)} states; load {os.getloadavg()[0]:.1f}")
+    print(f"two kinds of death in {len(STATES)} states; load {os.getloadavg()[0]:.1f}", flush=True)
+    made = run_counting(measured(arguments.trials, arguments.seed))
     columns = f"{'stop, ms: median':>17} {'most':>7} {'back, s: median':>16} {'most':>6}"
     print(f"{'at':12} {'by':8} {'trials':>6} {columns}  wrong")
-    found = run_counting(measured(arguments.trials, arguments.seed))
-    for (state, way), outcomes in found.items():
-        print(_row(state, way, outcomes), flush=True)
-    return int(any(outcome.wrong for outcomes in found.values() for outcome in outcomes))
+    for state, way in product(STATES, WAYS):
+        print(_row(state, way, [outcome for kind, outcome in made.found if kind == (state, way)]), flush=True)
+    for failure in made.failures:
+        print(f"not ended: {failure}")
+    return int(bool(made.failures) or any(outcome.wrong for _, outcome in made.found))
 
 
-async def measured(trials: int, seed: int) -> dict[tuple[str, str], list[Outcome]]:
-    """Return the outcomes of trials, shared out among all states and ways."""
-    kinds = list(product(STATES, WAYS))
-    found: dict[tuple[str, str], list[Outcome]] = {kind: [] for kind in kinds}
+async def measured(trials: int, seed: int) -> Repeated[tuple[tuple[str, str], Outcome]]:
+    """Return the outcomes of trials, each of one kind after the other."""
+    kinds = cycle(product(STATES, WAYS))
     rng = random.Random(seed)
     with tempfile.TemporaryDirectory(prefix="robotd-heads-") as directory:
         async with subject(Path(directory)) as one:
-            for number in range(trials):
-                state, way = kinds[number % len(kinds)]
-                found[state, way].append(await one.trial(state, way, rng))
-    return found
+
+            async def trial() -> tuple[tuple[str, str], Outcome]:
+                state, way = next(kinds)
+                return (state, way), await one.trial(state, way, rng)
+
+            return await repeated(trials, trial)
 
 
 def _row(state: str, way: str, outcomes: list[Outcome]) -> str:

@@ -21,10 +21,10 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.maps.store import MapStore
 from tests.studies.lag.workload import large_grid
 from tests.support.real_rig import Rig, armed, ms_since
+from tests.support.repeated import Repeated, repeated
 
 LEASE_S = 0.5
 _UNDER_WAY_S = 0.2
-_AGAIN = 100
 _AGAIN_AFTER_S = 2.0
 
 
@@ -32,8 +32,8 @@ _AGAIN_AFTER_S = 2.0
 class Suffered:
     """What came of one attack."""
 
-    stops_ms: list[float] = field(default_factory=list)
-    """How late the stop was on all wires, counted from when the client asked for it."""
+    stops: Repeated[float] = field(default_factory=Repeated)
+    """How late each stop was on all wires [ms], counted from when the client asked for it."""
     heart_mib: float = 0.0
     front_mib: float = 0.0
     """The most memory each had."""
@@ -52,18 +52,21 @@ async def suffer(rig: Rig, daemon_pid: int, attacks: Sequence[str], trials: int,
         async with contextlib.AsyncExitStack() as stack:
             beginning = [stack.enter_async_context(attacker(attack, rig.runtime_dir, share)) for attack in attacks]
             await asyncio.gather(*beginning)
-            for _ in range(trials):
-                came_of_it.stops_ms.append(await _stopped_ms(rig, client, came_of_it))
+
+            async def trial() -> float:
+                late_ms = await _stopped_ms(rig, client, came_of_it)
                 came_of_it.heart_mib = max(came_of_it.heart_mib, _mib(daemon_pid))
                 came_of_it.front_mib = max(came_of_it.front_mib, _mib(before))
+                return late_ms
+
+            came_of_it.stops = await repeated(trials, trial)
     came_of_it.deaths += front_of(daemon_pid) != before
     return came_of_it
 
 
 async def _stopped_ms(rig: Rig, client: AsyncClient, came_of_it: Suffered) -> float:
     """Let a mission begin, go on for a while under its lease, and stop it."""
-    why = "it ended before"
-    for _ in range(_AGAIN):
+    while True:
         try:
             await armed(client)
             mission = MapStart.of("heart", (), rig.robot.start)
@@ -80,12 +83,11 @@ async def _stopped_ms(rig: Rig, client: AsyncClient, came_of_it: Suffered) -> fl
                     await stopping
                     return late_ms
         except RobotdError as error:
-            why = str(error)
-            if "busy" in why or "clear" in why:  # of a flood only stops and renewals are kept free
+            # Of a flood only stops and renewals are kept free.
+            if any(word in str(error) for word in ("busy", "clear")):
                 await asyncio.sleep(_AGAIN_AFTER_S)
                 continue
         came_of_it.lost += 1
-    raise RuntimeError(f"no mission lives until it is stopped: {why}")
 
 
 @contextlib.asynccontextmanager
