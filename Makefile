@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo demo-real demo-busy test bench bench-peers paper conservative exact faults interop replay-many liars fuzz safety stops heads heart lag worlds firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help console demo demo-real demo-busy test bench bench-peers paper conservative exact faults interop replay-many liars fuzz safety stops heads heart lag worlds firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -22,6 +22,9 @@ demo: .venv/.demo  ## Map a room, localize in it, serve the pose: simulated robo
 demo-real: .venv/.demo  ## The same in a recorded building: make demo-real LOG=path/to/a/carmen.log.gz
 	@test -n "$(LOG)" || { echo "usage: make demo-real LOG=path/to/a/carmen.log.gz" >&2; exit 2; }
 	@$(BIN)/robotctl demo building "$(LOG)" --out demo
+
+console: .venv/.console  ## The robot in a browser: simulated robot, daemon, gateway; prints an address to open (Ctrl-C ends it)
+	@$(BIN)/robotctl demo console $(WORLD) --seed $(SEED) --out console
 
 demo-busy: .venv/.dev  ## Whether make demo finishes beside busy programs: N="2 4 8" RUNS=10 NICE=0 HARSH=1 LOG=... (an hour)
 	@$(BIN)/python -m tests.studies.busy.run --world $(WORLD) $(if $(N),--busy $(N)) $(if $(RUNS),--runs $(RUNS)) \
@@ -118,6 +121,11 @@ clean:  ## Remove the environment and all that was made
 .venv/.demo: pyproject.toml $(COMPILED) | .venv/bin/python
 	@echo "robotd: installing robotd and what it needs (once, under a minute)"
 	@test -e .venv/.dev || $(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[plots]'
+	@touch $@
+
+.venv/.console: pyproject.toml $(COMPILED) | .venv/bin/python
+	@echo "robotd: installing robotd, its gateway and what the console is built with (once, a minute)"
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[plots,gateway,console]'
 	@touch $@
 
 .venv/.dev: pyproject.toml $(COMPILED) | .venv/bin/python

@@ -54,6 +54,7 @@ WORDS = {
     "config": ("configuration", "check and show configurations"),
     "schema": ("wire_schema", "print every request, reply and event as one JSON Schema, made from the types"),
     "exact": ("exact", "localize on a map of polygons by the exact combinatorial algorithm, without rounding"),
+    "gateway": ("gateway", "say who may sign in to the console that robotd-gateway serves"),
     "doctor": ("doctor", "say what this installation consists of, which kernels it uses and why, and what it can see"),
     "demo": ("demo", "show the main job, end to end, on a simulated robot"),
 }
@@ -90,20 +91,27 @@ def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
     for word, (_, summary) in WORDS.items():
         helped = words.add_parser(word, help=summary, formatter_class=parser.formatter_class)
         if word == wanted:
-            _add_verbs(helped, verbs_of(word), next(typed, None))
+            _add_verbs(helped, verbs_of(word), typed)
     return parser
 
 
-def _add_verbs(parser: argparse.ArgumentParser, verbs: "tuple[Verb, ...]", wanted: str | None) -> None:
-    """Give the parser of a first word its verb, or a second word to choose one of the family."""
-    if " " not in verbs[0].name:
-        verbs[0].add_to(parser)
-        return
-    _refuse_unknown(parser, wanted, [verb.name.split()[1] for verb in verbs])
-    family = parser.add_subparsers(metavar="VERB", required=True)
+def _add_verbs(
+    parser: argparse.ArgumentParser, verbs: "tuple[Verb, ...]", typed: Iterator[str], depth: int = 1
+) -> None:
+    """Give the parser of some words their verb, or a further word to choose one of the family."""
+    families: dict[str, tuple[Verb, ...]] = {}
     for verb in verbs:
-        name = verb.name.split()[1]
-        verb.add_to(family.add_parser(name, help=verb.summary, formatter_class=parser.formatter_class))
+        words = verb.name.split()
+        if len(words) == depth:
+            verb.add_to(parser)
+            return
+        families[words[depth]] = (*families.get(words[depth], ()), verb)
+    _refuse_unknown(parser, next(typed, None), families)
+    family = parser.add_subparsers(metavar="VERB", required=True)
+    for word, kin in families.items():
+        summary = kin[0].summary if len(kin) == 1 else ", ".join(verb.name.split()[-1] for verb in kin)
+        helped = family.add_parser(word, help=summary, formatter_class=parser.formatter_class)
+        _add_verbs(helped, kin, typed if len(kin) > 1 else iter(()), depth + 1)
 
 
 def _refuse_unknown(parser: argparse.ArgumentParser, wanted: str | None, known: Iterable[str]) -> None:

@@ -71,12 +71,10 @@ class FrontSide:
         self._number += 1
         number = self._number
         answered = asyncio.get_running_loop().create_future()
-        # Refused rather than kept: what waits here is seen by nobody, and a client can ask again.
         if not lane.send(encode_request(number, request, client)):
             answered.set_exception(_STUCK)
             return answered
         self._waiting[number] = answered
-        # Also where the client gave up: an answer that comes later finds nobody, and no number is kept for ever.
         answered.add_done_callback(lambda _: self._waiting.pop(number, None))
         return answered
 

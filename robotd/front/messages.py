@@ -127,7 +127,6 @@ def _map(number: int, change: MapChanged) -> Parts:
             time_ns=change.time_ns,
             map_id=change.map_id,
             generation=change.generation,
-            # NumPy's numbers compare like Python's, but have no form in msgpack.
             resolution_m=float(spec.resolution_m),
             origin_x_m=float(spec.origin_x_m),
             origin_y_m=float(spec.origin_y_m),
@@ -140,7 +139,6 @@ def _map(number: int, change: MapChanged) -> Parts:
         )
     )
     cells = change.cells.astype(_INDEX).tobytes()
-    # A view where it can be: the heart's loop copies no map, the channel writes it from where it lies.
     values = np.ascontiguousarray(change.values, np.uint8).reshape(-1).data
     return _MAP, len(head).to_bytes(_LENGTH, "little"), head, cells, values if change.packed is None else change.packed
 

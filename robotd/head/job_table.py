@@ -88,7 +88,6 @@ def _make_files(desk: Desk, job: MakeFiles) -> FilesMade:
 def _insert(desk: Desk, job: Insert) -> Inserted:
     before = desk.map(job.map)
     held, cells = before.with_sweep(job.sweep, job.map_from_robot)
-    # Beside the one before: a mission that is stopped now goes on with that.
     desk.hold(MapRef(job.map.number, job.map.generation + 1), held)
     values = held.grid.cells.reshape(-1)[cells]
     stops = None if held.stops is None else len(held.stops.stops)
@@ -116,7 +115,6 @@ def _narrow(desk: Desk, job: Narrow) -> Narrowed:
     estimator = desk.stop(job.stop)
     estimator.add(*job.readings)
     estimate = estimator.estimate(job.time_ns, final=job.final)
-    # Encoded and hashed here, where there is time: the loop that drives the robot has none for it.
     entry = result_of(estimate)
     return Narrowed(estimate, None, None) if entry is None else Narrowed(estimate, entry.digest, entry.encoded)
 

@@ -142,7 +142,6 @@ class Supervisor:
 
     def halt(self, occasion: Occasion, reason: str) -> None:
         """Stop first, then everything else."""
-        # Nothing before this may raise, wait or take long: whatever is wrong, the bytes are on the wires.
         self.robot.stop_now()
         self.halts += 1
         self.holding.end()

@@ -105,7 +105,6 @@ class Connection:
 
     def send(self, data: bytes) -> bool:
         """Let a message wait to be taken; False if too much waits already, so that this client misses it."""
-        # With nothing waiting there is room for anything: a map larger than the bound could never be told else.
         is_full = self.waiting_bytes > 0 and (
             len(self._outgoing) >= self._manners.queue or self.waiting_bytes + len(data) > self._manners.queue_bytes
         )
@@ -124,7 +123,6 @@ class Connection:
         elif self._says is None:
             self._loop.add_reader(self._socket, self._read)
         else:
-            # Not at once: who wants more may be in the middle of taking something of it.
             self._loop.call_soon(self._hear)
 
     def close(self, why: str = "") -> None:
@@ -138,7 +136,6 @@ class Connection:
         end.close()
         self._outgoing.clear()
         self.waiting_bytes = 0
-        # Who never said what it is was never announced, and has nothing to be forgotten.
         if self._is_known:
             self._owner.left(self)
         self._gone(self, why)
@@ -192,7 +189,6 @@ class Connection:
             case Peer(socket_type, identity):
                 if socket_type not in self._manners.peers:
                     raise Violation(f"a socket of type {socket_type!r} has no place here")
-                # Once it has spoken it may be silent for as long as it likes: a reader says nothing more.
                 self._too_late.cancel()
                 self.identity = identity
                 self._is_known = True

@@ -117,12 +117,10 @@ class Reader:
                 if said is not None:
                     yield said
         finally:
-            # However it ends: what was taken is not taken twice.
             del self._waiting[:at]
 
     def _greet(self) -> None:
         greeting = self._waiting
-        # Byte by byte: nobody who speaks something else is waited for. An older peer has the bit of byte 9 clear.
         if (greeting and greeting[0] != GREETING[0]) or (len(greeting) > 9 and not greeting[9] & 1):
             raise Violation("it does not speak ZeroMQ's protocol")
         if len(greeting) > 10 and greeting[10] < _MAJOR:
@@ -146,7 +144,6 @@ class Reader:
         if len(waiting) < at + size:
             return None
         length = int.from_bytes(waiting[at + 1 : at + size], "big")
-        # By what is announced, before it comes: a length is only a promise, and no room is made for it.
         self._check(flags, length)
         begins = at + size
         return (flags, begins, begins + length) if len(waiting) >= begins + length else None
@@ -181,7 +178,6 @@ class Reader:
             return Peer(properties.get(b"socket-type", b""), properties.get(b"identity", b"")[:_LONGEST_IDENTITY])
         if name == b"PING" and self._is_known:
             return Ping(rest[2:18])
-        # Nobody here asks for one, but an answer too many breaks no rule.
         if name == b"PONG" and self._is_known:
             return None
         raise Violation(f"command {name[:20]!r}, which nobody expects here")

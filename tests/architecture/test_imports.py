@@ -59,6 +59,18 @@ def test_the_daemon_is_small_before_it_remembers_anything() -> None:
     assert int(pages) * 4096 / 2**20 < LARGEST_MIB
 
 
+def test_the_gateway_loads_nothing_of_the_engine_and_robotctl_no_web_server() -> None:
+    gateway = set(tell("import robotd.gateway.composed, sys; print(*sys.modules)"))
+    assert "aiohttp" in gateway
+    assert {name.split(".")[1] for name in gateway if name.startswith("robotd.")} == {
+        *ROOMS_OF_CLIENTS,
+        "gateway",
+    }
+    assert {name.split(".")[0] for name in gateway} & LIBRARIES_OF_THE_ENGINE == set()
+    command_line = set(tell("import robotd.cli.main, robotd.cli.verbs.gateway, sys; print(*sys.modules)"))
+    assert {name.split(".")[0] for name in command_line} & {"aiohttp", "prometheus_client"} == set()
+
+
 @pytest.mark.parametrize(
     ("module", "rooms"),
     [("robotd.client", ROOMS_OF_CLIENTS), ("robotd.front.program", ROOMS_OF_FRONT)],

@@ -31,6 +31,7 @@ PROGRAMS = {
     "robotd.library.map",  # which `import robotd` loads when it is asked for
     "robotd.children.in_process",  # for tests and replays
     "robotd.front.__main__",
+    "robotd.gateway.program",
     "robotd.head.__main__",  # a process of the daemon's
     *(f"robotd.cli.verbs.{module}" for module, *_ in WORDS.values()),
     "robotd.grid.kernels.build",  # these three make what is compiled and generated

@@ -1,6 +1,6 @@
-"""``demo room`` and ``demo building``; ``make demo`` and ``make demo-real`` call them."""
+"""``demo room``, ``demo building``, ``demo console``: what ``make demo``, ``make demo-real``, ``make console`` call."""
 
-from robotd.cli.demo import real_building, room
+from robotd.cli.demo import console, real_building, room
 from robotd.cli.verb import Verb
 
 VERBS = (
@@ -17,5 +17,13 @@ VERBS = (
         "robotctl demo building intel.corrected.log.gz",
         real_building.run,
         real_building.add_arguments,
+    ),
+    Verb(
+        "demo console",
+        "start a simulated robot, the daemon and the console, and print an address for a browser",
+        "robotctl demo console laboratory",
+        console.run,
+        console.add_arguments,
+        prints_json=False,
     ),
 )

@@ -158,7 +158,6 @@ class Narrowing:
         """Narrow down until the sweep is whole; return the last word."""
         while True:
             batch = await self._batches.get()
-            # By count, failed ones among them: after which reading is estimated must not depend on what was measured.
             readings = tuple(reading for reading in batch or () if reading.is_measured)
             narrowed = await self._context.head.ask(Narrow(self._stop, readings, now_ns(), batch is None))
             estimate = self._told(narrowed)

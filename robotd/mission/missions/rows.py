@@ -59,7 +59,6 @@ class MissionRow:
 
 
 async def _make_map(host: Host, context: MissionContext, mission: MapStart, report: Reporter) -> str:
-    # In use before the first stop: clients watch it grow, and the robot is predicted on it.
     place, tie = await _begin_map(context, mission, report)
     host.adopt(place, tie)
     return str(await run_mapping(context, place, mission, report))
@@ -99,7 +98,6 @@ async def _measure(_: Host, context: MissionContext, mission: Measure, report: R
 
 _ROWS = (
     MissionRow(MapStart, _make_map, stops=lambda mission: 1 + len(mission.stops_m)),
-    # What only looks needs no base, and does not ask whether one is there: a head on a desk can localize.
     MissionRow(Localize, _localize, needs_base=False, pauses_prediction=True),
     MissionRow(DriveTo, _drive),
     MissionRow(DriveStraight, _straight),

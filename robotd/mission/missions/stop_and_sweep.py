@@ -94,7 +94,6 @@ class Sweeper:
         """
         parts = self._parts(await self.robot.pantilt.limits(), number)
         if not (base_turns and self.robot.has_base):
-            # The first part is the one that the head reaches from where the base stands.
             parts = parts[:1]
         start = await self.hold.through(lambda: standing(self.robot, self.settings.settle_s, self.driving))
         for listener in listeners:

@@ -98,7 +98,6 @@ class Whereabouts:
         allow no answer at all, as in a fog of failed ones, say nothing against it.
         """
         if estimate.state is PoseState.LOCALIZED and estimate.best is not None:
-            # By where the look began: the base may have turned since, so that the head could see round.
             self._tie = Tie.between(estimate.best, in_odom)
             self._jumps.forget()
             return

@@ -103,7 +103,16 @@ INPUTS = {name: option for name, option in inputs() if name != "record start fil
 ENOUGH = ("missing", "a directory", "empty", "a link to itself")
 """What a directory of sockets is tried as."""
 GOOD = {
-    *((name, "empty") for name in ("eval --config", "config check file", "config show file", "doctor file")),
+    *(
+        (name, "empty")
+        for name in (
+            "eval --config",
+            "config check file",
+            "config show file",
+            "doctor file",
+            "gateway token list --config",
+        )
+    ),
     *(("map import --maps", kind) for kind in ("missing", "a directory", "a directory with something in it")),
 }
 """A configuration that leaves out everything is one; and a store of maps is made where there is none."""

@@ -80,7 +80,6 @@ void skip_codes(const uint8_t *ends, const uint8_t *blocks, int32_t rows, int32_
 {
     const int32_t wide = cols + 2, high = rows + 2;
     uint8_t *stops = scratch, *padded = scratch + (size_t)wide * (size_t)high;
-    /* A rim of cells that stop: a beam that leaves the map needs no question of its own at every step. */
     memset(stops, 1, (size_t)wide * (size_t)high);
     for (int32_t row = 0; row < rows; row++) {
         uint8_t *stop = stops + (size_t)(row + 1) * (size_t)wide + 1;
@@ -120,7 +119,6 @@ static double cast(const uint8_t *skips, int32_t rows, int32_t cols, const doubl
                    int32_t blocked_by, uint8_t *stops)
 {
     *stops = BLOCKS;
-    /* Negated, so that a start which is no number is outside, too. */
     if (!(start[0] >= 0.0 && start[1] >= 0.0 && start[0] < cols - 2 && start[1] < rows - 2))
         return 0.0;
     int64_t col = (int64_t)start[0] + 1, row = (int64_t)start[1] + 1;
@@ -141,7 +139,6 @@ static double cast(const uint8_t *skips, int32_t rows, int32_t cols, const doubl
         met += meets;
         if ((meets && met >= blocked_by) || col == 0 || row == 0 || col == cols - 1 || row == rows - 1)
             return run_way;
-        /* Past what it met a beam goes cell by cell: a wall may have to be met more than once before it blocks. */
         const int64_t skip = meets ? 1 : code;
         const int64_t side_x = right ? col - 1 + skip : col - skip, side_y = up ? row - 1 + skip : row - skip;
         const double to_x = ((double)side_x - start[0]) * per_col + never_x;

@@ -21,7 +21,6 @@ static void along_columns(const distance_job *job, int32_t first, int32_t end)
     int32_t *way = job->spare;
     for (int32_t col = first; col < end; col++)
         way[col] = job->outside && top == 0 ? 0 : NOWHERE;
-    /* Begun outside the window: sources up there have a say in it, though nothing is written there. */
     for (int32_t row = top; row < job->end_row; row++) {
         const uint8_t *sources = job->sources + (size_t)row * (size_t)job->cols;
         for (int32_t col = first; col < end; col++)
@@ -68,7 +67,6 @@ static inline void put(envelope *e, const distance_job *job, int32_t column, int
     int32_t from = job->first_col;
     if (e->last >= 0) {
         const int32_t other = e->column[e->last];
-        /* The first column where the new one is strictly lower; whole numbers, so no rounding decides. */
         from = 1 + (column * column - other * other + height - e->height[e->last]) / (2 * (column - other));
         if (from >= job->end_col)
             return;
@@ -89,7 +87,6 @@ static void along_row(const distance_job *job, const int32_t *along, int32_t fir
         put(&e, job, col, along[col]);
     if (job->outside && end == job->cols)
         put(&e, job, job->cols, 0);
-    /* No column has a source within the limit, so there is no envelope to walk along. */
     if (e.last < 0) {
         for (int32_t col = job->first_col; col < job->end_col; col++)
             squares[col] = NOWHERE;

@@ -42,7 +42,6 @@ static inline beam draw(const draw_job *job, int32_t reading, int32_t heading)
                         job->reach_cells);
     if (r[4] > 0.0)
         b.at.head[0] = b.at.head[1] = NO_HEAD;
-    /* Masked, not wrapped: bearings whole turns apart are one direction. */
     b.direction = nearest_of(*bearing * (DIRECTIONS / TURN)) & ((int64_t)DIRECTIONS - 1);
     b.length = b.at.cells + (b.at.start[0] != 0 || b.at.start[1] != 0);
     return b;
@@ -88,7 +87,6 @@ static void join(const draw_job *job, int32_t group, const beam *b)
 static int is_one_chain(const draw_job *job, int32_t group)
 {
     const double *s = job->steps + 4 * (size_t)group;
-    /* Exactly one step: no cell of the chain has to be looked at. */
     if (s[0] == s[2] && s[1] == s[3])
         return 1;
     for (int32_t k = 0; k < job->sizes[group]; k++)
@@ -102,7 +100,6 @@ static void share_scratch(draw_job *job, arena *from)
 {
     const size_t beams = (size_t)job->reading_count * (size_t)job->heading_count;
     job->table_size = 2;
-    /* Both tries put a key of a beam into it, and a full table would be searched for ever. */
     while ((size_t)job->table_size <= 2 * beams)
         job->table_size *= 2;
     TAKE(from, job->keys, 10 * beams);
@@ -246,7 +243,6 @@ void draw_chains(const draw_job *job, int32_t *numbers, drawn_beams *drawn)
         groups[group + 1] = groups[group] + job->sizes[group];
         chain(job, group, chains + 3 * (size_t)groups[group]);
     }
-    /* Marked first and numbered later: bodies that end in one cell of a chain share its slot. */
     for (int32_t i = 0; i < beam_count; i++)
         chains[3 * (size_t)(groups[job->drawn[4 * i]] + job->drawn[4 * i + 1] - 1) + 2] = 0;
     const int32_t batch_count = share_slots(job, groups, chains, batches);

@@ -49,7 +49,6 @@ static inline found look(const fit_job *job, const double *pose, double width, d
         double slope[3];
         const double distance = interpolated(job, pose[0] + to_x - 0.5, pose[1] + to_y - 0.5, slope, slope + 1);
         slope[2] = to_x * slope[1] - to_y * slope[0];
-        /* Tukey's biweight: what lies beyond the width pulls nothing, and what is near its edge hardly. */
         const double ratio = distance / width, rest = 1.0 - ratio * ratio, left = rest > 0.0 ? rest : 0.0;
         const double weight = left * left;
         f.cost += 1.0 - weight * left;
@@ -167,7 +166,6 @@ static void fit(const fit_job *job, const double *box, double *best)
             }
             bounded_step(f.normal, f.gradient, down, up, step);
         } else {
-            /* It got worse: the same way, but not as far. */
             for (int i = 0; i < 3; i++)
                 step[i] /= 4.0;
         }
@@ -175,7 +173,6 @@ static void fit(const fit_job *job, const double *box, double *best)
             farthest = fabs(step[i]) > farthest ? fabs(step[i]) : farthest;
         if (width > job->outlier_cells) {
             width = width * NARROWING > job->outlier_cells ? width * NARROWING : job->outlier_cells;
-            /* Costs of another width are no measure for this one. */
             least = INFINITY;
         } else if (farthest < CLOSE) {
             break;
@@ -214,7 +211,6 @@ static void judge(const fit_job *job, const found *f, double *quality, double *c
         for (int row = 0; row < 3; row++)
             for (int col = 0; col < 3; col++)
                 known[row][col] = f->normal[row][col] / variance;
-        /* What the heads leave open, as along a corridor, would make the system singular: it is known to lie on a map. */
         known[0][0] += 1.0 / (UNKNOWN_CELLS * UNKNOWN_CELLS);
         known[1][1] += 1.0 / (UNKNOWN_CELLS * UNKNOWN_CELLS);
         known[2][2] += 1.0 / (UNKNOWN_RAD * UNKNOWN_RAD);
@@ -243,7 +239,6 @@ static inline void add_head(const scan_job *job, double x, double y)
     const double col = floor(x) + steps[0] * (double)step, row = floor(y) + steps[2] * (double)step;
     const double last_col = floor(x) + steps[1] * (double)step, last_row = floor(y) + steps[3] * (double)step;
     int32_t *totals = job->totals;
-    /* Nearly always all of it lies on the map: then no cell is asked whether it does, and vectors can be made of it. */
     if (col >= 0.0 && row >= 0.0 && last_col < job->cols && last_row < job->rows) {
         const int8_t *codes = job->codes + (size_t)row * (size_t)job->cols + (size_t)col;
         for (int32_t i = steps[2]; i <= steps[3]; i++, codes += (size_t)step * (size_t)job->cols)

@@ -28,7 +28,6 @@ static void begin(const grow_job *job, int32_t height, int32_t width)
 static void pass_on(const uint8_t *restrict before, uint8_t *restrict ways, int32_t width)
 {
     for (int32_t k = 0; k < width; k++) {
-        /* FAR stays FAR: one more would be 0 again, the set itself. */
         const uint8_t farther = (uint8_t)(before[k] + (before[k] != FAR));
         ways[k] = farther < ways[k] ? farther : ways[k];
     }

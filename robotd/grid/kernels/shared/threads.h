@@ -13,7 +13,6 @@ void share_among_threads(void (*task)(void *shared, int32_t number), void *share
 /* The next of this many pieces of work, or -1 if all are taken. */
 static inline int32_t take_one(int32_t *next, int32_t count)
 {
-    /* Relaxed: what a piece comes to is read only after all threads were joined. */
     const int32_t one = __atomic_fetch_add(next, 1, __ATOMIC_RELAXED);
     return one < count ? one : -1;
 }

@@ -1,0 +1,127 @@
+"""The socket of a page: greeted, asked, told, and hung up on when it reads nothing or says too much."""
+
+import asyncio
+import contextlib
+from collections.abc import Coroutine
+from typing import Any
+
+from aiohttp import WSCloseCode, WSMsgType, web
+
+from robotd import __version__
+from robotd.core.clock import now_ns, wall_offset_ns
+from robotd.core.errors import ServerError
+from robotd.core.together import ended
+from robotd.gateway.browser import console_protocol as protocol
+from robotd.gateway.browser.liveness import EVERY_S
+from robotd.gateway.browser.page_connection import PageConnection, Person
+from robotd.gateway.house import House
+from robotd.gateway.http.route import Needs, Route
+
+_BLOCKED_S = 10.0
+"""How long one message may take to be sent."""
+
+
+async def serve(request: web.Request, house: House, person: Person | None) -> web.StreamResponse:
+    """Serve a page for as long as it lives."""
+    if person is None:
+        raise ServerError("not_signed_in", "sign in first")
+    house.crowd.enter(person.session)
+    try:
+        socket = web.WebSocketResponse(
+            protocols=(protocol.SUBPROTOCOL,), max_msg_size=protocol.LONGEST_TEXT, compress=False, timeout=1.0
+        )
+        await socket.prepare(request)
+        await _serve(socket, PageConnection(person, house.services), house)
+        return socket
+    finally:
+        house.crowd.leave(person.session)
+
+
+async def _serve(socket: web.WebSocketResponse, connection: PageConnection, house: House) -> None:
+    services = house.services
+    connection.say(_hello(connection, house))
+    connection.outbox.greet(services.fan.join(connection))
+    house.connections.add(connection)
+    services.enter(connection)
+    try:
+        await _first_of(_read(socket, connection), _write(socket, connection), _question(connection))
+    finally:
+        services.fan.leave(connection)
+        house.connections.discard(connection)
+        services.leave(connection)
+        house.dropped_messages += connection.outbox.dropped
+        await connection.end()
+        with contextlib.suppress(ConnectionError, TimeoutError):
+            async with asyncio.timeout(1.0):
+                await socket.close(code=WSCloseCode.POLICY_VIOLATION, message=(connection.ended or "").encode()[:120])
+
+
+def _hello(connection: PageConnection, house: House) -> str:
+    return protocol.hello(
+        gateway=__version__,
+        console=house.files.version,
+        robot=house.settings.robot.name,
+        name=connection.person.name,
+        role=connection.person.role,
+        browser=connection.driver.browser,
+        time_ns=now_ns(),
+        wall_offset_ns=wall_offset_ns(),
+        patience_s=house.settings.watching.patience_s,
+        unattended=house.settings.watching.unattended,
+    )
+
+
+async def _read(socket: web.WebSocketResponse, connection: PageConnection) -> None:
+    async for message in socket:
+        if message.type is not WSMsgType.TEXT:
+            connection.finish("a page sends text")
+            return
+        try:
+            connection.take(message.data)
+        except ServerError as error:
+            connection.finish(error.message)
+            return
+
+
+async def _write(socket: web.WebSocketResponse, connection: PageConnection) -> None:
+    while True:
+        await connection.woken.wait()
+        connection.woken.clear()
+        if connection.ended is not None:
+            return
+        while (item := connection.outbox.take()) is not None and connection.ended is None:
+            try:
+                async with asyncio.timeout(_BLOCKED_S):
+                    await _send(socket, item)
+            except (TimeoutError, ConnectionError):
+                connection.finish("it reads nothing")
+                return
+
+
+async def _send(socket: web.WebSocketResponse, item: str | bytes | dict[str, int]) -> None:
+    match item:
+        case bytes():
+            await socket.send_bytes(protocol.FRAME + item)
+        case str():
+            await socket.send_str(item)
+        case dict():
+            await socket.send_str(protocol.lost(item))
+
+
+async def _question(connection: PageConnection) -> None:
+    while True:
+        connection.ask()
+        await asyncio.sleep(EVERY_S)
+
+
+async def _first_of(*duties: Coroutine[Any, Any, None]) -> None:
+    """Do all until one ends; then end the others."""
+    tasks = [asyncio.create_task(duty) for duty in duties]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for error in await ended(tasks):
+            raise error
+
+
+ROUTES = (Route("GET", "/api/ws", Needs.VIEWER, "the socket of a page, robotd.console.v1", serve, is_socket=True),)

@@ -1,0 +1,43 @@
+"""What an address is: data, of which the server, its guards and its description are made."""
+
+import enum
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+
+from aiohttp import web
+
+from robotd.gateway.access.roles import Role
+from robotd.gateway.browser.page_connection import Person
+from robotd.gateway.house import House
+
+
+class Needs(enum.Enum):
+    """Who may."""
+
+    NOBODY = "nobody"
+    """Everybody, signed in or not."""
+    STOP = "stop"
+    """Whoever signed in within a day."""
+    VIEWER = "viewer"
+    OPERATOR = "operator"
+    ADMIN = "admin"
+
+    @property
+    def role(self) -> Role | None:
+        """The role that is needed, where one is."""
+        return None if self in {Needs.NOBODY, Needs.STOP} else Role(self.value)
+
+
+Answer = Callable[[web.Request, House, Person | None], Awaitable[web.StreamResponse]]
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """One address."""
+
+    method: str
+    path: str
+    needs: Needs
+    summary: str
+    answer: Answer
+    is_socket: bool = False

@@ -1,0 +1,85 @@
+// Drive: the map, and beside it motion, the mission, what to do, and where the robot is.
+import { html, nothing } from 'lit-html';
+import { ref } from 'lit-html/directives/ref.js';
+import { LAYERS } from '../map/layers.js';
+import { MapCanvas } from '../map/canvas.js';
+import { place } from '../parts/format.js';
+import { t } from '../texts/texts.js';
+import { actsCard } from './drive/acts.js';
+import { draftOf } from './drive/draft.js';
+import { missionCard } from './drive/mission.js';
+import { motionCard } from './drive/motion.js';
+import { poseCard } from './drive/pose.js';
+
+/** @typedef {import('../app.js').App} App */
+
+/** @type {HTMLElement | null} */
+let coordinates = null;
+
+/** @param {App} app */
+export function drivePage(app) {
+  return html`
+    <section class="map" aria-label=${t('page.drive')}>
+      <canvas tabindex="0" role="application" aria-label=${t('map.label')} ${ref((element) => mount(app, element))}></canvas>
+      ${app.grid.placement === null && app.state.status !== null && app.state.status.map_id === null
+        ? html`<div class="no-map"><p>${t('map.none')}</p><p class="quiet">${t('map.none_hint')}</p></div>` : nothing}
+      <div class="map-tools">
+        <div class="buttons">
+          <button @click=${() => zoom(app, '+')} aria-label=${t('map.in')}>+</button>
+          <button @click=${() => zoom(app, '-')} aria-label=${t('map.out')}>−</button>
+          <button @click=${() => app.canvas?.fit()} title=${`${t('map.fit')} (0)`}>${t('map.fit')}</button>
+          <button aria-pressed=${app.canvas?.follows ?? false} @click=${() => { app.canvas?.follow(); app.wake(true); }} title="F">${t('map.follow')}</button>
+        </div>
+        <fieldset class="layers"><legend>${t('map.layers')}</legend>
+          ${LAYERS.filter(({ name }) => isThere(app, name)).map(({ name, key }) => html`<label><input type="checkbox" .checked=${app.canvas?.shown.has(name) ?? false} @change=${() => { app.canvas?.toggle(name); app.wake(true); }}><span class=${`swatch ${name}`}></span>${t(`layer.${name}`)} <kbd>${key}</kbd></label>`)}
+        </fieldset>
+      </div>
+      <p class="coordinates" ${ref((element) => { coordinates = /** @type {HTMLElement} */ (element ?? null); })}></p>
+    </section>
+    <aside class="panel">${motionCard(app)}${missionCard(app)}${actsCard(app)}${poseCard(app)}</aside>`;
+}
+
+/** @param {App} app @param {string} name */
+function isThere(app, name) {
+  if (name === 'rank') return app.state.rank !== null;
+  return name !== 'clearance';
+}
+
+/** @param {App} app @param {Element | undefined} element */
+function mount(app, element) {
+  if (!(element instanceof HTMLCanvasElement)) {
+    app.canvas = null;
+    return;
+  }
+  if (app.canvas !== null) return;
+  const before = kept;
+  app.canvas = new MapCanvas(element, app.state, app.grid);
+  if (before !== null) {
+    app.canvas.view = before.view;
+    app.canvas.shown = before.shown;
+  }
+  kept = app.canvas;
+  app.canvas.draft = (pen) => draftOf(app).paint(pen);
+  app.canvas.onPoint = (at) => tell(app, at);
+}
+
+/** The map as it was looked at when another page was opened. @type {MapCanvas | null} */
+let kept = null;
+
+/** @param {App} app @param {{ x: number, y: number } | null} at */
+function tell(app, at) {
+  if (coordinates === null) return;
+  if (at === null) {
+    coordinates.textContent = '';
+    return;
+  }
+  const value = app.grid.valueAt(at.x, at.y);
+  const said = value === null ? '' : value === 128 ? t('map.unseen') : `${value < 128 ? t('map.free') : t('map.wall')} ${Math.round((value / 255) * 100)} %`;
+  coordinates.textContent = `(${place(at.x)}, ${place(at.y)}) ${said}`;
+}
+
+/** @param {App} app @param {string} key */
+function zoom(app, key) {
+  document.querySelector('canvas')?.dispatchEvent(new KeyboardEvent('keydown', { key }));
+  app.wake(true);
+}

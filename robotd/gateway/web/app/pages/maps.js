@@ -1,0 +1,4 @@
+import { html } from 'lit-html';
+import { t } from '../texts/texts.js';
+/** @param {import('../app.js').App} app */
+export function mapsPage(app) { return html`<h1>${t('page.maps')}</h1>`; }

@@ -1,0 +1,159 @@
+// What is known: events in, one object out. Pure but for the lists that it appends to.
+
+/** @typedef {import('../types').State} State */
+
+const LOG_LINES = 10_000;
+const WAY_POINTS = 5000;
+const STEP_M = 0.02;
+const STATUS_WORDS = ['ok', 'miss', 'too_near', 'weak', 'saturated', 'ambient', 'not_measured', 'timeout', 'device_error'];
+
+/** @returns {State} */
+export function nothing() {
+  return {
+    hello: null, session: null, isOtherLife: false, status: null, mission: null, pose: null, odometry: null, sweep: null,
+    progress: null, plan: null, way: [], log: [], lost: {}, rank: null, commander: null, wish: null, wishUntil: 0,
+    statusAt: -Infinity, odometryAt: -Infinity, questionAt: -Infinity, daemonSilent: null, isOpen: false, lines: [],
+  };
+}
+
+/**
+ * Take a message of the daemon.
+ * @param {State} state changed in place
+ * @param {import('../types').Frame} frame
+ * @param {number} now milliseconds
+ */
+export function accept(state, frame, now) {
+  if (frame.session !== state.session) begin(state, frame.session);
+  const fields = frame.fields;
+  const take = /** @type {Record<string, () => void>} */ ({
+    status: () => takeStatus(state, fields, now),
+    mission_progress: () => takeMission(state, fields),
+    pose_estimate: () => takePose(state, fields),
+    odometry: () => Object.assign(state, { odometry: fields, odometryAt: now - age(state, fields, now) }),
+    sweep_begun: () => beginSweep(state, fields.number, fields.total, fields.in_map),
+    sweep_readings: () => takeReadings(state, fields),
+    sweep_progress: () => takeProgress(state, fields),
+    sweep_done: () => takeSweep(state, fields),
+    plan: () => Object.assign(state, { plan: fields }),
+    rank_map: () => Object.assign(state, { rank: fields }),
+    log: () => takeLog(state, fields),
+  });
+  (take[frame.event] ?? (frame.topic === 'log' ? take['log'] : undefined))?.();
+}
+
+/**
+ * Take what the gateway says.
+ * @param {State} state @param {any} said @param {number} now
+ */
+export function hear(state, said, now) {
+  if (said.type === 'hello') Object.assign(state, { hello: said, questionAt: now });
+  if (said.type === 'question') Object.assign(state, { questionAt: now, daemonSilent: said.daemon_silent_s });
+  if (said.type === 'commander') {
+    Object.assign(state, { commander: said.commander, wish: said.wish, wishUntil: now + 1000 * (said.wish_left_s ?? 0) });
+  }
+  if (said.type === 'lost') for (const [topic, count] of Object.entries(said.topics)) state.lost[topic] = (state.lost[topic] ?? 0) + count;
+}
+
+/** Another life of the daemon: what is known of the first is not of this one. @param {State} state @param {string} session */
+function begin(state, session) {
+  const { hello, log, lost, commander, questionAt, isOpen, lines } = state;
+  Object.assign(state, nothing(), { hello, log, lost, commander, questionAt, isOpen, lines, session, isOtherLife: state.session !== null });
+}
+
+/** How old a message was when it came, by the robot's clock [ms]. @param {State} state @param {any} fields @param {number} now */
+function age(state, fields, now) {
+  if (state.hello === null) return 0;
+  // What came with the snapshot may be old; what came later is as new as the gateway heard it.
+  const then = (fields.time_ns - state.hello.time_ns) / 1e6;
+  return Math.max(0, -then);
+}
+
+/** @param {State} state @param {any} fields @param {number} now */
+function takeStatus(state, fields, now) {
+  const before = state.status;
+  state.status = fields;
+  state.statusAt = now - age(state, fields, now);
+  if (fields.mission_id === null) state.progress = null;
+  const at = fields.time_ns / 1e9;
+  const passed = before === null ? 0 : (fields.time_ns - before.time_ns) / 1e9;
+  if (passed < 0.5 && state.lines.length > 0) return;
+  /** @type {Record<string, number>} */
+  const rates = {};
+  for (const device of fields.devices) {
+    const frames = count(device, 'frames');
+    const old = before?.devices.find((one) => one.name === device.name);
+    rates[device.name] = old === undefined || passed === 0 ? 0 : Math.max(0, (frames - count(old, 'frames')) / passed);
+  }
+  state.lines.push({ at, rates, battery: fields.battery_v });
+  if (state.lines.length > 900) state.lines.shift();
+}
+
+/** @param {import('../types').Device} device @param {string} name */
+export function count(device, name) {
+  return device.counters.find(([counted]) => counted === name)?.[1] ?? 0;
+}
+
+/** @param {State} state @param {any} fields */
+function takeMission(state, fields) {
+  if (state.mission?.mission_id !== fields.mission_id) {
+    state.way = [];
+    if (state.plan?.mission_id !== fields.mission_id) state.plan = null;
+  }
+  state.mission = fields;
+}
+
+/** @param {State} state @param {any} fields */
+function takePose(state, fields) {
+  state.pose = fields;
+  if (fields.best === null) return;
+  const last = state.way.at(-1);
+  if (last === undefined || Math.hypot(fields.best.x_m - last[0], fields.best.y_m - last[1]) >= STEP_M) {
+    state.way.push([fields.best.x_m, fields.best.y_m]);
+    if (state.way.length > WAY_POINTS) state.way.splice(0, WAY_POINTS / 10);
+  }
+}
+
+/** @param {State} state @param {number} number @param {number} total @param {import('../types').Pose | null} inMap */
+function beginSweep(state, number, total, inMap) {
+  state.sweep = { number, total, in_map: inMap, readings: [], is_done: false };
+}
+
+/** @param {State} state @param {any} fields */
+function takeProgress(state, fields) {
+  state.progress = { taken: fields.taken, total: fields.total };
+}
+
+/** @param {State} state @param {any} fields */
+function takeReadings(state, fields) {
+  if (state.sweep?.number !== fields.number) return; // its begin was not heard: the whole comes at its end
+  const bearings = floats(fields.bearing_f32le), ranges = floats(fields.range_f32le);
+  const xs = floats(fields.origin_x_f32le), ys = floats(fields.origin_y_f32le);
+  bearings.forEach((bearing, index) => {
+    const range = ranges[index] ?? NaN;
+    const status = STATUS_WORDS[fields.status_u8[index]] ?? 'device_error';
+    state.sweep?.readings.push({
+      bearing_rad: bearing, range_m: Number.isNaN(range) ? null : range, status,
+      origin_x_m: xs[index] ?? 0, origin_y_m: ys[index] ?? 0,
+    });
+  });
+}
+
+/** @param {Uint8Array | undefined} bytes */
+function floats(bytes) {
+  if (bytes === undefined) return new Float32Array(0);
+  return new Float32Array(bytes.slice().buffer);
+}
+
+/** @param {State} state @param {any} fields */
+function takeSweep(state, fields) {
+  const before = state.sweep?.number === fields.sweep.number ? state.sweep : null;
+  const inMap = fields.in_map ?? before?.in_map ?? null;
+  state.sweep = { number: fields.sweep.number, total: fields.sweep.readings.length, in_map: inMap, readings: fields.sweep.readings, is_done: true };
+  state.progress = null;
+}
+
+/** @param {State} state @param {any} fields */
+function takeLog(state, fields) {
+  state.log.push(fields);
+  if (state.log.length > LOG_LINES) state.log.splice(0, LOG_LINES / 10);
+}
