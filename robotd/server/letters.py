@@ -1,10 +1,12 @@
 """What clients ask, a request of each in turn, and the answers on their way back.
 
 Nobody is served twice while somebody else waits: a client that pours in requests has as large a share as one that asks
-for one thing, and a stop waits for no more than one request of each other client.
+for one thing. What looks like a stop or a renewal has every second turn: it waits for no more than one such request of
+each other client, and as many others.
 """
 
 import asyncio
+import re
 from collections import deque
 from dataclasses import dataclass, replace
 from itertools import count
@@ -16,6 +18,9 @@ _LAST_BYTES = 2**23
 """Of what clients asked before they left, and nobody has read yet."""
 _SHOWN = 10
 """Digits of an identity that tell clients apart in a log."""
+_URGENT = re.compile(rb"stop|disarm|renew", re.IGNORECASE)
+_LOOKED_AT_BYTES = 256
+"""Of a request, for such a word. It is a guess, and only about whose turn it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +51,9 @@ class Letters:
         self._connections: dict[bytes, Connection] = {}
         self._asked: dict[Connection, deque[Letter]] = {}
         """What was read of those who are here; whose turn is next stands first."""
+        self._urgent: dict[Connection, None] = {}
+        """Those of them who asked for what must not wait, in the order of their turns."""
+        self._was_urgent = False
         self._left: deque[Letter] = deque()
         """What was asked by those who have gone since: a program that stops the robot and ends is obeyed."""
         self._left_bytes = 0
@@ -64,6 +72,8 @@ class Letters:
         """Let a request wait for its turn; until it had it, no more is read of this client."""
         asked = self._asked.setdefault(connection, deque())
         asked.append(_letter(connection, frames))
+        if _URGENT.search(frames[-1], 0, _LOOKED_AT_BYTES):
+            self._urgent[connection] = None
         connection.listen(to_it=False)
         self._news.set()
 
@@ -75,6 +85,7 @@ class Letters:
         """Forget a client, but for what it asked."""
         if self._connections.get(connection.identity) is connection:
             del self._connections[connection.identity]
+        self._urgent.pop(connection, None)
         for letter in self._asked.pop(connection, ()):
             self._put_by(letter)
 
@@ -87,7 +98,7 @@ class Letters:
             letter = self._left.popleft()
             self._left_bytes -= _size(letter)
             return letter
-        connection = next(iter(self._asked))
+        connection = self._whose_turn()
         asked = self._asked.pop(connection)
         letter = asked.popleft()
         if asked:
@@ -95,6 +106,12 @@ class Letters:
         else:
             connection.listen(to_it=True)
         return letter
+
+    def _whose_turn(self) -> Connection:
+        self._was_urgent = bool(self._urgent) and not self._was_urgent
+        connection = next(iter(self._urgent if self._was_urgent else self._asked))
+        self._urgent.pop(connection, None)
+        return connection
 
     def answer(self, route: tuple[bytes, ...], reply: bytes) -> None:
         """Answer; what cannot be sent is lost, as to a client that has gone, which will ask again."""
