@@ -152,7 +152,10 @@ class RankGrid:
 
         255 is all of them, 0 none or not one in 255; a level is that of the best of ``block x block`` cells.
         """
-        return kernels.in_use().count.heat(self._counters, self._map, max(1, self.readings), block)
+        readings = max(1, self.readings)
+        return kernels.in_use().count.heat(
+            self._counters, self._map, self._first_cell, self.spec.shape, readings=readings, block=block
+        )
 
     @property
     def best_rank(self) -> int:

@@ -9,7 +9,7 @@ from typing import NoReturn
 from robotd.contract.events import RankMap
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import now_ns
-from robotd.core.errors import RobotdError
+from robotd.core.log_limit import LogLimit
 from robotd.head.head import Head
 from robotd.head.jobs import Ranks, ShowRanks
 from robotd.mission.news import Publish
@@ -26,6 +26,7 @@ class RanksTold:
         self.are_wanted = False
         self._head = head
         self._publish = publish
+        self._complaints = LogLimit()
         self._wishes: Subscription[tuple[ShowRanks, str, int, int]] = Subscription(1)
         """The latest; one that was not begun yet is of no use any more."""
 
@@ -40,8 +41,9 @@ class RanksTold:
             job, map_id, generation, number = await self._wishes.get()
             try:
                 shown = await self._head.ask(job)
-            except RobotdError as error:
-                log.debug("no picture was made: %s", error)
+            except Exception as error:  # whatever it is: a picture must not stop a robot
+                if line := self._complaints.line(f"no picture of a stop was made: {error!r}"):
+                    log.error("%s", line)  # noqa: TRY400  # where it went wrong is the head's to say
                 continue
             if shown.ranks is not None:
                 self._publish(_rank_map(shown.ranks, map_id, generation, number))

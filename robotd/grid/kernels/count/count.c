@@ -234,7 +234,7 @@ static void keep_greater(uint64_t *best, const uint64_t *counter, int32_t bits)
     }
 }
 
-/* Enter one row of a tile: the counts of 64 cells, of which the first is column `left` of the map. */
+/* Enter one row of a tile: the counts of 64 cells, of which the first is column `left` of what is looked at. */
 static void enter_row(const heat_job *job, const uint64_t *counts, int32_t left, uint8_t *levels)
 {
     for (int32_t b = left < 0 ? -left : 0; b < 64 && left + b < job->cols; b++) {
@@ -256,9 +256,9 @@ void heat(const heat_job *job)
         memcpy(best, counters, size * sizeof *best);
         for (int32_t heading = 1; heading < job->headings; heading++)
             keep_greater(best, counters + (size_t)heading * size, job->bits);
-        const int32_t left = job->tiles[2 * tile] * 64 - job->origin[1];
+        const int32_t left = job->tiles[2 * tile] * 64 - job->first[1];
         for (int32_t i = 0; i < TILE; i++) {
-            const int32_t row = job->tiles[2 * tile + 1] + i - job->origin[0];
+            const int32_t row = job->tiles[2 * tile + 1] + i - job->first[0];
             if (row >= 0 && row < job->rows)
                 enter_row(job, best + i, left, job->levels + (size_t)(row / job->block) * across);
         }

@@ -39,8 +39,8 @@ typedef struct {
     int32_t headings; /* at least 1 */
     int32_t bits;     /* at most 16 */
     int32_t readings; /* at least 1 */
-    int32_t origin[2];
-    int32_t rows; /* of the map */
+    int32_t first[2]; /* row and column, counted from the first tile, of the first cell to look at */
+    int32_t rows;     /* to look at */
     int32_t cols;
     int32_t block;
     uint8_t *levels; /* [ceil(rows / block)][ceil(cols / block)], zeros */

@@ -46,7 +46,16 @@ class CountKernel(Protocol):
             least: not negative.
         """
 
-    def heat(self, counters: Words, the_map: PackedMap, readings: int, block: int) -> NDArray[np.uint8]:
+    def heat(
+        self,
+        counters: Words,
+        the_map: PackedMap,
+        first: tuple[int, int],
+        shape: tuple[int, int],
+        *,
+        readings: int,
+        block: int,
+    ) -> NDArray[np.uint8]:
         """Return the greatest count of each cell over all headings, ``uint8[rows / block, cols / block]``, rounded up.
 
         255 is a count of all readings, what is less is rounded down; a level is the greatest of ``block x block``
@@ -55,6 +64,8 @@ class CountKernel(Protocol):
         Args:
             counters: ``uint64[tiles, headings, bits, 32]``, of one heading or more; no count is above ``readings``.
             the_map: the map that they belong to.
+            first: row and column, counted from the first tile, of the first cell to look at.
+            shape: how many ``(rows, cols)`` to look at, none of them beyond the tiles.
             readings: how many were counted, one or more.
             block: how many cells along a side share a level, one or more.
         """

@@ -50,13 +50,21 @@ def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
     return masks
 
 
-def heat(counters: Words, the_map: PackedMap, readings: int, block: int) -> NDArray[np.uint8]:
+def heat(
+    counters: Words,
+    the_map: PackedMap,
+    first: tuple[int, int],
+    shape: tuple[int, int],
+    *,
+    readings: int,
+    block: int,
+) -> NDArray[np.uint8]:
     """See :class:`.CountKernel`."""
-    (rows, cols), (tiles, headings, bits, _) = the_map.shape, counters.shape
+    (rows, cols), (tiles, headings, bits, _) = shape, counters.shape
     levels = np.zeros((-(-rows // block), -(-cols // block)), np.uint8)
     job = ffi.new("heat_job *")
     job.counters, job.tiles, job.levels = words(counters), ints(the_map.tiles), octets(levels)
     job.tile_count, job.headings, job.bits, job.readings = tiles, headings, bits, readings
-    job.origin, job.rows, job.cols, job.block = the_map.origin, rows, cols, block
+    job.first, job.rows, job.cols, job.block = first, rows, cols, block
     lib.heat(job)
     return levels

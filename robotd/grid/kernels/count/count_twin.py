@@ -75,9 +75,17 @@ def at_least(counters: Words, the_map: PackedMap, least: int) -> Words:
     return masks
 
 
-def heat(counters: Words, the_map: PackedMap, readings: int, block: int) -> NDArray[np.uint8]:
+def heat(
+    counters: Words,
+    the_map: PackedMap,
+    first: tuple[int, int],
+    shape: tuple[int, int],
+    *,
+    readings: int,
+    block: int,
+) -> NDArray[np.uint8]:
     """See :class:`.CountKernel`."""
-    (rows, cols), (top, left) = the_map.shape, the_map.origin
+    (rows, cols), (top, left) = shape, first
     # Rows and columns until whole blocks are there.
     counts = np.zeros((-(-rows // block) * block, -(-cols // block) * block), np.uint32)
     tiled = np.zeros((the_map.rows // TILE_ROWS, TILE_ROWS, the_map.words), np.uint64)

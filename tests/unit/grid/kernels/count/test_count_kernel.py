@@ -211,14 +211,15 @@ def test_the_greatest_count_and_the_counts_that_reach_a_threshold(
 @settings(max_examples=40, deadline=None)
 @given(
     seed=st.integers(0, 2**32),
-    shape=st.tuples(st.integers(1, 70), st.integers(1, 150)),
+    shape=st.tuples(st.integers(2, 70), st.integers(2, 150)),
     headings=st.integers(1, 4),
     bits=st.integers(1, 6),
     block=st.sampled_from([1, 1, 2, 3, 64, 200]),
     more=st.integers(0, 40),
+    rim=st.integers(0, 1),
 )
 def test_heat_is_the_greatest_count_over_headings_and_over_blocks(  # six numbers make a case
-    kernels: Kernels, seed: int, shape: tuple[int, int], headings: int, bits: int, block: int, more: int
+    kernels: Kernels, seed: int, shape: tuple[int, int], headings: int, bits: int, block: int, more: int, rim: int
 ) -> None:
     the_map = drawn_map(seed, shape, True, True, 1)
     tiles = len(the_map.tiles)
@@ -227,13 +228,14 @@ def test_heat_is_the_greatest_count_over_headings_and_over_blocks(  # six number
     counts = np.zeros((the_map.rows, the_map.words * WORD_CELLS), np.int64)
     for (word, row), of_tile in zip(the_map.tiles.tolist(), values(counters), strict=True):
         counts[row : row + TILE_ROWS, word * WORD_CELLS : (word + 1) * WORD_CELLS] = of_tile.max(axis=0)
-    (top, left), (rows, cols) = the_map.origin, shape
+    top, left = the_map.origin[0] + rim, the_map.origin[1] + rim
+    rows, cols = shape = shape[0] - rim, shape[1] - rim
     counts = counts[top : top + rows, left : left + cols]
     slow = [
         [counts[row : row + block, col : col + block].max() * 255 // readings for col in range(0, cols, block)]
         for row in range(0, rows, block)
     ]
-    assert kernels.count.heat(counters, the_map, readings, block).tolist() == slow
+    assert kernels.count.heat(counters, the_map, (top, left), shape, readings=readings, block=block).tolist() == slow
 
 
 @both
@@ -243,7 +245,7 @@ def test_no_count_of_the_largest_numbers_is_lost(kernels: Kernels) -> None:
     assert kernels.count.greatest(counters) == 65535
     assert kernels.count.at_least(counters, the_map, 65535).all()
     assert not kernels.count.at_least(counters, the_map, 65536).any()
-    assert (kernels.count.heat(counters, the_map, 65535, 1) == 255).all()
+    assert (kernels.count.heat(counters, the_map, (0, 0), (32, 64), readings=65535, block=1) == 255).all()
 
 
 def counted(
