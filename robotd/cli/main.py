@@ -55,6 +55,7 @@ WORDS = {
     "schema": ("wire_schema", "print every request, reply and event as one JSON Schema, made from the types"),
     "exact": ("exact", "localize on a map of polygons by the exact combinatorial algorithm, without rounding"),
     "gateway": ("gateway", "say who may sign in to the console that robotd-gateway serves"),
+    "install": ("install", "put unit, rules, user and a commented configuration where systemd looks for them"),
     "doctor": ("doctor", "say what this installation consists of, which kernels it uses and why, and what it can see"),
     "demo": ("demo", "show the main job, end to end, on a simulated robot"),
 }

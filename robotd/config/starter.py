@@ -34,6 +34,8 @@ def _device(device: str, values: dict[str, object]) -> Iterable[str]:
     yield f"# What it speaks; each dialect has options of its own. Known: {', '.join(DIALECTS[device])}."
     for name, dialect in DIALECTS[device].items():
         yield from (f"# {name}: {hazard}" for hazard in dialect.hazards)
+        if name != chosen:
+            yield f"# {name} has the options {', '.join(_options(dialect.options))}."
     # A dialect that there is none of is refused when the text is read.
     kind: Any = DIALECTS[device].get(chosen, DIALECTS[device]["board"]).options
     bounds = bounds_of(kind)
@@ -46,6 +48,10 @@ def _device(device: str, values: dict[str, object]) -> Iterable[str]:
         meaning = _in_words(bounds[field.name]) if field.name in bounds else ""
         yield f"{'# ' if said is None else ''}{line}{meaning}"
     yield from (f"{key} = {write_value(value)}" for key, value in values.items())  # which loading will judge
+
+
+def _options(kind: Any) -> Iterable[str]:
+    return (field.name for field in dataclasses.fields(kind) if field.name not in {"dialect", "port", "line"})
 
 
 def _in_words(bounds: Within) -> str:

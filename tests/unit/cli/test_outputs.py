@@ -54,7 +54,7 @@ OUTPUTS = {
     "demo room --out",
     "demo building --out",
 }
-NO_OUTPUTS = {"--runtime-dir", "--config", "--maps", "log", "map", "readings", "file"}
+NO_OUTPUTS = {"--prefix", "--root", "--runtime-dir", "--config", "--maps", "log", "map", "readings", "file"}
 """Paths that are read; ``record start FILE`` is the daemon's to refuse, which has the file."""
 
 

@@ -1,0 +1,68 @@
+"""``install``: units, rules, users, directories and a first configuration, where this machine looks for them."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from robotd.cli.exit_codes import OK
+from robotd.cli.outputs import write
+from robotd.cli.service_files import service_files, systemd_version
+from robotd.cli.show.terminal import out, print_json, print_table
+from robotd.cli.verb import Verb
+from robotd.core.errors import RobotdError
+
+_NEXT = (
+    "systemd-sysusers",
+    "systemd-tmpfiles --create",
+    "udevadm control --reload && udevadm trigger",
+    "systemctl daemon-reload",
+    "systemctl enable --now robotd",
+)
+
+
+def _install(arguments: argparse.Namespace) -> int:
+    root, prefix = arguments.root.absolute(), arguments.prefix.absolute()
+    program = root / prefix.relative_to("/") / "bin" / "robotd"
+    if not os.access(program, os.X_OK):
+        raise RobotdError(
+            f"{program}: there is no such program; first: python3 -m venv {prefix}, then {prefix}/bin/pip install"
+            " robotd, or say with --prefix where it is"
+        )
+    is_here = root == Path("/")
+    files = tuple(service_files(prefix, root, systemd_version() if is_here else None))
+    for file in files:
+        if file.is_written and not arguments.dry_run:
+            write(file.path, file.content)
+    if arguments.json:
+        print_json([{"file": str(file.path), "fate": file.fate} for file in files])
+        return OK
+    print_table(("file", "would be" if arguments.dry_run else "is"), [(str(file.path), file.fate) for file in files])
+    if is_here and not arguments.dry_run:
+        out().print(f"now, as root: {'; '.join(_NEXT)}", markup=False)
+    return OK
+
+
+def _arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--prefix",
+        type=Path,
+        default=Path(sys.prefix),
+        metavar="DIR",
+        help="the virtual environment with the program (default: the one that this is of)",
+    )
+    parser.add_argument(
+        "--root", type=Path, default=Path("/"), metavar="DIR", help="what stands for / (default: / itself)"
+    )
+    parser.add_argument("--dry-run", action="store_true", help="say what would become of each file, and write nothing")
+
+
+VERBS = (
+    Verb(
+        "install",
+        "put the unit, rules, user and a commented configuration where systemd looks; what you changed is kept",
+        "robotctl install --prefix /opt/robotd --dry-run",
+        _install,
+        _arguments,
+    ),
+)

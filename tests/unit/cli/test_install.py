@@ -1,0 +1,63 @@
+"""What systemd needs, put where it looks: ours replaced, the owner's kept, and nothing written that was only asked."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from robotd.cli.main import main
+from robotd.cli.service_files import Fate, service_files
+
+PREFIX = "/usr/lib/robotd"
+
+
+@pytest.fixture(name="root")
+def _root(tmp_path: Path) -> Path:
+    program = tmp_path / PREFIX.lstrip("/") / "bin" / "robotd"
+    program.parent.mkdir(parents=True)
+    program.touch(0o755)
+    return tmp_path
+
+
+def installed(root: Path, *options: str) -> list[str]:
+    return ["install", "--prefix", PREFIX, "--root", str(root), *options]
+
+
+def test_everything_is_there_and_names_the_program(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(installed(root, "--dry-run", "--json")) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert {one["fate"] for one in told} == {Fate.NEW}
+    assert not (root / "etc").exists()
+    assert main(installed(root)) == 0
+    for name in ("systemd/system/robotd.service", "udev/rules.d/99-robotd.rules", "sysusers.d/robotd.conf"):
+        assert (root / "etc" / name).read_text()
+    assert "ExecStart=/usr/lib/robotd/bin/robotd\n" in (root / "etc/systemd/system/robotd.service").read_text()
+    assert (root / "etc/robotd/robotd.toml").read_text() == (Path("systemd") / "robotd.toml").read_text()
+    assert {str(one["file"]) for one in told} == {str(file) for file in (root / "etc").rglob("*") if file.is_file()}
+
+
+def test_what_the_owner_changed_is_kept_and_what_is_ours_replaced(root: Path) -> None:
+    assert main(installed(root)) == 0
+    config, unit = root / "etc/robotd/robotd.toml", root / "etc/systemd/system/robotd.service"
+    config.write_text("# mine\n")
+    unit.write_text("# mine\n")
+    assert main(installed(root)) == 0
+    assert config.read_text() == "# mine\n"
+    assert "ExecStart=" in unit.read_text()
+    fates = {file.path.name: file.fate for file in service_files(Path(PREFIX), root, None)}
+    assert (fates["robotd.toml"], fates["robotd.service"]) == (Fate.KEPT, Fate.SAME)
+
+
+def test_without_the_program_it_says_how_to_get_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(installed(tmp_path)) == 1
+    assert f"python3 -m venv {PREFIX}" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("version", "has_steps"), [(252, False), (254, True), (None, True)])
+def test_an_older_systemd_gets_no_words_that_it_does_not_know(version: int | None, has_steps: bool) -> None:
+    (unit,) = [
+        file for file in service_files(Path("/opt/robotd"), Path("/"), version) if file.path.name == "robotd.service"
+    ]
+    text = unit.content.decode()
+    assert ("RestartSteps=" in text, "RestartMaxDelaySec=" in text) == (has_steps, has_steps)
+    assert text.count("RestartSec=") == 1
