@@ -17,6 +17,7 @@ from robotd.head.compute import Compute
 from robotd.head.head import Head, NotedHead
 from robotd.head.settings import HeadSettings
 from robotd.maps.archive import Archive
+from robotd.maps.packed_content import PackedContent
 from robotd.mission.control import Control
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.settings import MissionSettings
@@ -86,7 +87,7 @@ def compose(
         make_lease=EndlessLease if leases_end_by_causes else Lease,
     )
     # What the files mean is for the head to say.
-    archive = Archive(Path(config.maps.dir), lambda content: content, keep=config.maps.keep)
+    archive = Archive(Path(config.maps.dir), PackedContent.read, keep=config.maps.keep)
     control = Control(
         supervisor,
         archive=archive,

@@ -28,6 +28,7 @@ from robotd.contract.requests import RecordStart, RecordStop, Stop
 from robotd.core.clock import now_ns, run_counting, wall_offset_ns
 from robotd.core.endpoints import Endpoints
 from robotd.core.errors import ConfigError, RobotdError
+from robotd.core.freed_memory import give_back_what_is_large
 from robotd.core.garbage import looked_at_once
 from robotd.core.log import LONGEST_LINE, configure
 from robotd.core.text import printable
@@ -107,6 +108,7 @@ async def run(config: Config) -> int:
         # First of all: the one that has it is the only daemon here, and may open the lines.
         stack.enter_context(lock_directory(Endpoints(Path(config.server.runtime_dir)).runtime_dir))
         stack.enter_context(looked_at_once())
+        give_back_what_is_large()
         journal = new_journal(config)
         disk = ThreadCompute()
         stack.callback(disk.close)

@@ -8,6 +8,7 @@ from typing import NoReturn
 from robotd.children.inside import Birth, adopted
 from robotd.core.clock import run_counting
 from robotd.core.errors import ChildError, RobotdError
+from robotd.core.freed_memory import give_back_what_is_large
 from robotd.core.garbage import looked_at_once
 from robotd.core.log import configure
 
@@ -17,6 +18,7 @@ log = logging.getLogger("robotd.front")
 async def _run(birth: Birth) -> None:
     from robotd.front.program import serve_clients  # noqa: PLC0415  # NumPy begins threads: they are to be confined, too
 
+    give_back_what_is_large()
     with looked_at_once():
         await serve_clients(*birth.channels())
 

@@ -16,7 +16,7 @@ from robotd.core.errors import MapError
 from robotd.maps.atomic import make_directory, publish_directory, remove_leftover, replace_file, withdraw_directory
 from robotd.maps.entry import UNSAVED, MapEntry
 from robotd.maps.lock import sole_writer
-from robotd.maps.manifest import check_name
+from robotd.maps.manifest import Manifest, check_name
 from robotd.maps.places import check_new_name, directories, leftovers, next_version, temporary_place, versions
 from robotd.maps.version_files import MANIFEST, Content, NewVersion, check_readable, read_content, read_manifest
 
@@ -32,16 +32,16 @@ T = TypeVar("T")
 class Archive(Generic[T]):
     """The maps under one directory. Blocks on the disk: call it on a thread. Writers of any process take turns."""
 
-    def __init__(self, root: Path, look: Callable[[Content], T], *, keep: int = 10) -> None:
+    def __init__(self, root: Path, read: Callable[[Path, Manifest], T], *, keep: int = 10) -> None:
         """Look at ``root``, which need not exist yet.
 
         Args:
             root: where the maps are.
-            look: returns what the content of a version is, once its checksums are right, or raises MapError.
+            read: returns what a version in a directory holds, its checksums right, or raises MapError.
             keep: how many versions of each map to keep.
         """
         self._root = root
-        self._look = look
+        self._read_version = read
         self._keep = keep
         self._loaded: tuple[str, int] | None = None
         """The version loaded last, which may be the map in use: however old, it is not dropped."""
@@ -222,7 +222,7 @@ class Archive(Generic[T]):
     def _load(self, name: str, version: int) -> tuple[MapEntry, T]:
         path = self._root / name / str(version)
         manifest = read_manifest(path, name, version)
-        return MapEntry.of(manifest, path), self._look(read_content(path, manifest))
+        return MapEntry.of(manifest, path), self._read_version(path, manifest)
 
     def _listed(self, name: str, version: int) -> MapEntry:
         path = self._root / name / str(version)

@@ -12,6 +12,7 @@ from robotd.maps.archive import Archive
 from robotd.maps.entry import MapEntry
 from robotd.maps.grid_files import content_of, map_of
 from robotd.maps.manifest import check_name
+from robotd.maps.version_files import read_content
 
 _log = logging.getLogger(__name__)
 
@@ -37,7 +38,7 @@ class MapStore:
             settings: how further readings change a map that was loaded.
             keep: how many versions of each map to keep.
         """
-        self._archive = Archive(root, lambda content: map_of(content, settings), keep=keep)
+        self._archive = Archive(root, lambda path, manifest: map_of(read_content(path, manifest), settings), keep=keep)
 
     @property
     def root(self) -> Path:

@@ -5,7 +5,8 @@ known); ``map.pgm`` and ``map.yaml`` are exports for other programs. Here they a
 is known to :mod:`robotd.maps.grid_files`.
 """
 
-from collections.abc import Mapping
+import hashlib
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from robotd.maps.manifest import FileSum, Manifest, decode_manifest
 
 MANIFEST, CELLS, STOPS, IMAGE, YAML = "manifest.json", "cells.bin", "stops.bin", "map.pgm", "map.yaml"
 _MANIFEST_MAX_BYTES = 1 << 20
+_BLOCK_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,9 +85,33 @@ def read_content(path: Path, manifest: Manifest) -> Content:
     Raises:
         MapError: one is missing or was altered; says which.
     """
-    wanted = (CELLS, IMAGE, YAML, *([] if manifest.stops is None else [STOPS]))
-    files = {file: _read_checked(path / file, manifest.files.get(file)) for file in wanted}
+    files = {file: b"".join(checked_blocks(path / file, manifest)) for file in files_of(manifest)}
     return Content(manifest.spec, manifest.digest, files, manifest.stops)
+
+
+def files_of(manifest: Manifest) -> tuple[str, ...]:
+    """Return which files a version has, beside its manifest."""
+    return (CELLS, IMAGE, YAML, *([] if manifest.stops is None else [STOPS]))
+
+
+def checked_blocks(path: Path, manifest: Manifest) -> Iterator[bytes]:
+    """Yield a file of a version, a mebibyte at a time; only when all was taken it is known to be right.
+
+    Raises:
+        MapError: it is missing or was altered; says so.
+    """
+    expected = manifest.files.get(path.name)
+    if expected is None:
+        raise MapError(f"{MANIFEST} does not list {path.name}")
+    size_bytes, digest = 0, hashlib.sha256()
+    for block in _blocks(path, expected.size_bytes):
+        size_bytes += len(block)
+        digest.update(block)
+        yield block
+    if size_bytes != expected.size_bytes:
+        raise MapError(f"{path.name} has {size_bytes} bytes, expected {expected.size_bytes}")
+    if digest.hexdigest() != expected.sha256:
+        raise MapError(f"{path.name} was altered: its checksum is wrong")
 
 
 def check_readable(name: str, described: bytes) -> None:
@@ -98,28 +124,23 @@ def check_readable(name: str, described: bytes) -> None:
         raise MapError(f"cannot save map {name}: it could not be read again: {error}") from error
 
 
-def _read_checked(path: Path, expected: FileSum | None) -> bytes:
-    if expected is None:
-        raise MapError(f"{MANIFEST} does not list {path.name}")
-    data = _read(path, expected.size_bytes)
-    if len(data) != expected.size_bytes:
-        raise MapError(f"{path.name} has {len(data)} bytes, expected {expected.size_bytes}")
-    if FileSum.of(data) != expected:
-        raise MapError(f"{path.name} was altered: its checksum is wrong")
-    return data
-
-
 def _read(path: Path, max_bytes: int) -> bytes:
+    return b"".join(_blocks(path, max_bytes))
+
+
+def _blocks(path: Path, max_bytes: int) -> Iterator[bytes]:
+    left = max_bytes
     try:
         if path.exists() and not path.is_file():
             raise MapError(f"{path.name} is no file")  # and opening a pipe would wait for ever
         with path.open("rb") as file:
             # One more than there may be, to see whether there is more.
-            data = file.read(max_bytes + 1)
+            while block := file.read(min(_BLOCK_BYTES, left + 1)):
+                left -= len(block)
+                if left < 0:
+                    raise MapError(f"{path.name} is longer than {max_bytes} bytes")
+                yield block
     except FileNotFoundError as error:
         raise MapError(f"{path.name} is missing") from error
     except OSError as error:
         raise MapError(f"{path.name} cannot be read: {error.strerror}") from error
-    if len(data) > max_bytes:
-        raise MapError(f"{path.name} is longer than {max_bytes} bytes")
-    return data

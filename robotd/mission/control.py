@@ -23,7 +23,7 @@ from robotd.core.errors import MissionError
 from robotd.head.compute import Compute
 from robotd.head.head import Head
 from robotd.maps.archive import Archive
-from robotd.maps.version_files import Content
+from robotd.maps.packed_content import PackedContent
 from robotd.mission.map_requests import MapRequests
 from robotd.mission.noted import NotedMap, noted, request_of
 from robotd.mission.safety.mode_table import Occasion
@@ -45,7 +45,7 @@ class Control:
         self,
         supervisor: Supervisor,
         *,
-        archive: Archive[Content],
+        archive: Archive[PackedContent],
         journal: PrerollJournal,
         head: Head,
         disk: Compute,

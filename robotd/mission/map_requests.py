@@ -26,7 +26,6 @@ from robotd.head.jobs import HeldMap, PreviewWay, ReadMap, ShowMap, TakeMap
 from robotd.maps.archive import Archive
 from robotd.maps.entry import MapEntry
 from robotd.maps.packed_content import PackedContent
-from robotd.maps.version_files import IMAGE, YAML, Content
 from robotd.mission.map_entries import entry_info
 from robotd.mission.noted import NotedMap, noted_grid, packed_of
 from robotd.mission.supervisor import Supervisor
@@ -46,7 +45,7 @@ class MapRequests:
     def __init__(
         self,
         supervisor: Supervisor,
-        archive: Archive[Content],
+        archive: Archive[PackedContent],
         journal: PrerollJournal,
         *,
         head: Head,
@@ -148,7 +147,7 @@ class MapRequests:
         Raises:
             MapError: it is missing or damaged.
         """
-        entry, content = await self._disk.run("read map", self._packed, name, version)
+        entry, content = await self._disk.run("read map", self._archive.load, name, version)
         number = self._head.number()
         try:
             yield entry, number, await self._held(entry, ReadMap(number, content))
@@ -156,10 +155,6 @@ class MapRequests:
             in_use = self._supervisor.whereabouts.map_in_use
             if in_use is None or in_use.number != number:
                 self._head.forget(number)
-
-    def _packed(self, name: str, version: int | None) -> tuple[MapEntry, PackedContent]:
-        entry, content = self._archive.load(name, version)
-        return entry, PackedContent.of(content, IMAGE, YAML)
 
     async def _held(self, entry: MapEntry, job: ReadMap) -> HeldMap:
         try:

@@ -18,7 +18,7 @@ from robotd.head.jobs import MakeFiles
 from robotd.head.wire import JobFailed
 from robotd.maps.archive import Archive
 from robotd.maps.entry import UNSAVED, MapEntry
-from robotd.maps.version_files import Content
+from robotd.maps.packed_content import PackedContent
 from robotd.mission.news import News
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.whereabouts import Whereabouts
@@ -49,7 +49,7 @@ class KeepingHost(Protocol):
 class Keeping:
     """Watches the map in use and keeps it when a mission has changed it, and every few stops while one does."""
 
-    def __init__(self, host: KeepingHost, archive: Archive[Content], head: Head, disk: Compute) -> None:
+    def __init__(self, host: KeepingHost, archive: Archive[PackedContent], head: Head, disk: Compute) -> None:
         self._host = host
         self._archive = archive
         self._head = head

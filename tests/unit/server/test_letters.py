@@ -1,7 +1,7 @@
 """Whose turn it is: nobody twice while somebody else waits, and stops and renewals every second time."""
 
 from dataclasses import dataclass, field
-from typing import cast
+from typing import Any, cast
 
 import pytest
 
@@ -28,7 +28,7 @@ class Client:
         return cast("Connection", self)
 
 
-def crowd(letters: Letters, count: int, request: Request[object]) -> list[Client]:
+def crowd(letters: Letters, count: int, request: Request[Any]) -> list[Client]:
     clients = [Client(b"client %d" % number) for number in range(count)]
     for client in clients:
         letters.joined(client.connection)
