@@ -153,6 +153,7 @@ class FarHead:
         (lane,) = lanes
         lane.send(self._settings)
         about = await lane.receive()
+        # Before anything new: a job may be about a map that only the one before held.
         for step in self._memory:
             step.check(await self._answered(lane, step.data))
         self._back(printable_bytes(about))
@@ -199,6 +200,7 @@ class FarHead:
                 answer = await lane.receive()
         except TimeoutError:
             raise ChildError(f"a job took more than {self._job_s:g} s") from None
+        # An answer that is one behind would be believed, and each after it.
         if answer[:NUMBER] != number:
             raise ChildError("it answered another job than it was asked, or one twice")
         return answer[NUMBER:]
@@ -210,6 +212,7 @@ class FarHead:
 
     def _no_longer_wanted(self, asked: _Asked) -> None:
         if asked is self._under_way:
+            # Not at once: it may be nearly done, and a new head must be fed all that this one holds.
             asyncio.get_running_loop().call_later(UNWANTED_S, self._end_unwanted, asked)
         elif asked in self._asked:
             self._asked.remove(asked)
@@ -228,6 +231,7 @@ class FarHead:
             if asked.deaths >= DEATHS:
                 self._refuse(asked, f"the head ended {DEATHS} times at {asked.job.name!r}, last: {death.cause}")
         self._why_away = death.cause
+        # Counted from the first death on: one that dies before it is back has been away all the time.
         if self._away is None:
             self._away = asyncio.get_running_loop().call_later(self._away_s, self._lose)
         self._tell()

@@ -45,19 +45,11 @@ class BoardDrive(BoardDevice):
         """Make the device; its ``odom`` frame begins where the base is first seen."""
         super().__init__(settings, wiring)
         self._odometer = JudgedOdometer(self.name, settings.calibration)
-        self._odometry: Broadcast[Odometry] = Broadcast()
-        self._readouts: Broadcast[DriveReadout] = Broadcast()
-        self._wanted = STANDSTILL
-
-    @property
-    def odometry(self) -> Broadcast[Odometry]:
+        self.odometry: Broadcast[Odometry] = Broadcast()
         """Wheel-derived pose, periodic."""
-        return self._odometry
-
-    @property
-    def readouts(self) -> Broadcast[DriveReadout]:
+        self.readouts: Broadcast[DriveReadout] = Broadcast()
         """Battery and bumpers, periodic and on change."""
-        return self._readouts
+        self._wanted = STANDSTILL
 
     @property
     def is_driven(self) -> bool:
@@ -72,7 +64,7 @@ class BoardDrive(BoardDevice):
     def link_lost(self, reason: str) -> None:
         """Note that there is no base, and why."""
         self._wanted = STANDSTILL
-        self._readouts.forget()
+        self.readouts.forget()
         super().link_lost(reason)
 
     def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
@@ -96,7 +88,7 @@ class BoardDrive(BoardDevice):
                 self._rest.told("moving", goes_on=bool(message.speed_mmps or message.turn_mradps))
                 self._moved(message)
             elif isinstance(message, DriveReport):
-                self._readouts.publish(self._read_out(message))
+                self.readouts.publish(self._read_out(message))
             else:
                 super().telemetry(message)
 
@@ -110,14 +102,14 @@ class BoardDrive(BoardDevice):
     def _moved(self, report: OdometryReport) -> None:
         """Publish where it is; a report older than the last one, as a line that doubles bytes gives, is let go."""
         time_ns = self._host_ns(report.board_us, periodic=True)
-        latest = self._odometry.latest
+        latest = self.odometry.latest
         if latest is not None and time_ns < latest.time_ns:
             return
         twist = Twist2(report.speed_mmps / _MILLI, report.turn_mradps / _MILLI)
         check_twist(self.name, twist)
         boot_id = self._talk().boot_id
         in_odom = self._odometer.update(boot_id, report.translate_counts, report.rotate_counts, time_ns)
-        self._odometry.publish(Odometry(time_ns, in_odom, twist, self._odometer.counts))
+        self.odometry.publish(Odometry(time_ns, in_odom, twist, self._odometer.counts))
 
     def _read_out(self, report: DriveReport) -> DriveReadout:
         pressed = (bit for bit in range(_BUMPERS) if report.bumpers & 1 << bit)

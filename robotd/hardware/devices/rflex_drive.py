@@ -94,8 +94,10 @@ class RflexDrive(VendorDevice[Message]):
         self._settings = settings
         self._scales = settings.calibration
         self._odometer = JudgedOdometer(self.NAME, settings.calibration)
-        self._odometry: Broadcast[Odometry] = Broadcast()
-        self._readouts: Broadcast[DriveReadout] = Broadcast()
+        self.odometry: Broadcast[Odometry] = Broadcast()
+        """Wheel-derived pose, periodic."""
+        self.readouts: Broadcast[DriveReadout] = Broadcast()
+        """Battery, periodic."""
         self._translated: AxisReport | None = None
         self._wanted = STANDSTILL
         self._deadline_ns = 0
@@ -105,16 +107,6 @@ class RflexDrive(VendorDevice[Message]):
         self._calm = asyncio.Event()
         """Set unless a stop is being said."""
         self._calm.set()
-
-    @property
-    def odometry(self) -> Broadcast[Odometry]:
-        """Wheel-derived pose, periodic."""
-        return self._odometry
-
-    @property
-    def readouts(self) -> Broadcast[DriveReadout]:
-        """Battery, periodic."""
-        return self._readouts
 
     @property
     def is_driven(self) -> bool:
@@ -136,7 +128,7 @@ class RflexDrive(VendorDevice[Message]):
 
     def line_lost(self, reason: str) -> None:
         """Note that there is no base, and why."""
-        self._readouts.forget()
+        self.readouts.forget()
         super().line_lost(reason)
 
     async def _greet(self, dialogue: Dialogue[Message]) -> None:
@@ -207,7 +199,7 @@ class RflexDrive(VendorDevice[Message]):
             if isinstance(heard.message, SystemStatus):
                 with contextlib.suppress(DeviceError), self._judging():
                     volts = battery_v(self.NAME, heard.message.centivolts / _CENTIVOLTS_PER_V)
-                    self._readouts.publish(DriveReadout(heard.time_ns, volts, ()))
+                    self.readouts.publish(DriveReadout(heard.time_ns, volts, ()))
             await asyncio.sleep(_STATUS_EVERY_S)
 
     async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
@@ -247,7 +239,7 @@ class RflexDrive(VendorDevice[Message]):
         twist = Twist2(self._translated.speed / self._scales.counts_per_m, report.speed / self._scales.counts_per_rad)
         check_twist(self.NAME, twist)
         in_odom = self._odometer.update(self.sessions, self._translated.position, report.position, time_ns)
-        self._odometry.publish(Odometry(time_ns, in_odom, twist, self._odometer.counts))
+        self.odometry.publish(Odometry(time_ns, in_odom, twist, self._odometer.counts))
         if not self._may_move and not twist.is_zero and self._calm.is_set():
             self.stop_now()  # it moves though nobody may let it
 

@@ -58,21 +58,13 @@ class RwiDrive(VendorDevice[Message]):
         super().__init__(RwiWire(), wiring)
         self._scales = settings.calibration
         self._odometer = JudgedOdometer(self.NAME, settings.calibration)
-        self._odometry: Broadcast[Odometry] = Broadcast()
-        self._readouts: Broadcast[DriveReadout] = Broadcast()
+        self.odometry: Broadcast[Odometry] = Broadcast()
+        """Wheel-derived pose, as quickly as the line allows."""
+        self.readouts: Broadcast[DriveReadout] = Broadcast()
+        """Battery and bumpers, periodic and on change."""
         self._directions = {"T": 0, "R": 0}
         """Which way each axis was last told to run."""
         self._bumpers_rad: tuple[float, ...] = ()
-
-    @property
-    def odometry(self) -> Broadcast[Odometry]:
-        """Wheel-derived pose, as quickly as the line allows."""
-        return self._odometry
-
-    @property
-    def readouts(self) -> Broadcast[DriveReadout]:
-        """Battery and bumpers, periodic and on change."""
-        return self._readouts
 
     @property
     def is_driven(self) -> bool:
@@ -99,7 +91,7 @@ class RwiDrive(VendorDevice[Message]):
 
     def line_lost(self, reason: str) -> None:
         """Note that there is no base, and why."""
-        self._readouts.forget()
+        self.readouts.forget()
         self._bumpers_rad = ()
         super().line_lost(reason)
 
@@ -154,7 +146,7 @@ class RwiDrive(VendorDevice[Message]):
                     _signed(counts[0] - counts_before[0]) / self._scales.counts_per_m / seconds,
                     _signed(counts[1] - counts_before[1]) / self._scales.counts_per_rad / seconds,
                 )
-                self._odometry.publish(Odometry(rotate.time_ns, in_odom, twist, self._odometer.counts))
+                self.odometry.publish(Odometry(rotate.time_ns, in_odom, twist, self._odometer.counts))
                 self._say_stop_again(twist)
             before, counts_before = rotate, counts
             if polls % _BATTERY_EVERY_POLLS == 0:
@@ -197,15 +189,15 @@ class RwiDrive(VendorDevice[Message]):
         panels = sorted({bit // 2 for bit in range(2 * _PANELS) if not switches & 1 << bit})
         # Panel 0 begins straight ahead. Which way round they follow is not documented; the base counts clockwise.
         self._bumpers_rad = tuple(wrap_rad(-(panel + 0.5) * math.tau / _PANELS) for panel in panels)
-        latest = self._readouts.latest
-        self._readouts.publish(DriveReadout(time_ns, latest.battery_v if latest else None, self._bumpers_rad))
+        latest = self.readouts.latest
+        self.readouts.publish(DriveReadout(time_ns, latest.battery_v if latest else None, self._bumpers_rad))
         if switches != BUMPERS_NONE:
             self._latch("bumper", "the base was bumped")
 
     def _read_out(self, battery: Heard[RwiAnswer]) -> None:
         with contextlib.suppress(DeviceError), self._judging():
             volts = battery_v(self.NAME, battery.message.value / _TENTHS_PER_V)
-            self._readouts.publish(DriveReadout(battery.time_ns, volts, self._bumpers_rad))
+            self.readouts.publish(DriveReadout(battery.time_ns, volts, self._bumpers_rad))
 
     async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
         """End the errors that the base has latched: after a servo or current error it runs no motor before."""
