@@ -111,6 +111,7 @@ def mission_settings(config: Config) -> MissionSettings:
         grid=config.grid,
         localization=config.localization,
         judgement=config.judgement,
+        planning=config.planning,
     )
 
 

@@ -27,6 +27,7 @@ WORDS = {
     "stop": ("status_and_arming", "stop now, whatever is under way; it needs arm before it moves again"),
     "clear": ("status_and_arming", "acknowledge latched faults; the robot stays disarmed"),
     "map": ("maps", "make, save, load and look at maps"),
+    "explore": ("explore", "map a place without being told where to stop"),
     "localize": ("where", "sweep where it stands and say where that is on the map in use"),
     "pose": ("where", "print the newest pose estimate"),
     "watch": ("where", "print what happens, as it happens, until Ctrl-C"),

@@ -11,6 +11,7 @@ from robotd.client.mission_run import MissionEvent, final_estimate, last_sweep, 
 from robotd.contract.missions import (
     DriveStraight,
     DriveTo,
+    Explore,
     Localize,
     Look,
     MapStart,
@@ -126,6 +127,7 @@ class Methods:
     start = asks(with_lease, _all)
     renew = asks(Renew, _all)
     make_map = carries_out(MapStart.of, _all)
+    explore = carries_out(Explore.of, _all)
     localize = carries_out(Localize, final_estimate)
     drive_to = carries_out(DriveTo, _all)
     drive = carries_out(DriveStraight, _all)

@@ -8,13 +8,16 @@ from robotd.client.feed import Gap
 from robotd.contract.answers import MissionStarted, Renewed
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import MissionPhase, MissionProgress, RangeMeasured, Status, SweepDone, SweepProgress
+from robotd.contract.explored import ExploringEnded, StopChosen
 from robotd.contract.topics import Published, Topic
 from robotd.core.errors import MissionError, ServerError
 from robotd.core.reading import Sweep
 
 MISSION_TOPICS = (Topic.MISSION, Topic.SWEEP, Topic.POSE)
 """What a mission's client listens to."""
-MissionEvent = MissionProgress | SweepProgress | SweepDone | RangeMeasured | PoseEstimate | Status
+MissionEvent = (
+    MissionProgress | SweepProgress | SweepDone | RangeMeasured | PoseEstimate | StopChosen | ExploringEnded | Status
+)
 """What a mission's client is told; a status when the mission is held, and when it goes on."""
 
 _RENEWALS_PER_LEASE = 4

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from robotd.contract.device_status import DeviceStatus
 from robotd.contract.estimate import PoseEstimate
+from robotd.contract.explored import ExploringEnded, StopChosen
 from robotd.contract.ways import MissionPlan
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry, Pose2
@@ -303,4 +304,6 @@ Event = (
     | LoopHeld
     | LoopClosed
     | Reconciled
+    | StopChosen
+    | ExploringEnded
 )

@@ -7,13 +7,13 @@ differ, and stay, because clients and recordings know them.
 
 import enum
 import math
-from typing import Annotated, ClassVar, get_args
+from typing import Annotated, Any, ClassVar, get_args
 
 import msgspec
 from msgspec import Meta
 
 from robotd.contract.answers import MissionStarted
-from robotd.contract.area import Area
+from robotd.contract.area import Area, Bounds
 from robotd.contract.arguments import Coordinate, Heading, LeaseTime, MapName, PoseArgument, Stops
 from robotd.contract.request import Request
 from robotd.core.pose import IDENTITY, Pose2
@@ -75,6 +75,34 @@ class MapStart(MissionRequest, frozen=True):
     ) -> "MapStart":
         """Return the request of a robot that stands at ``start``."""
         return cls(name, stops_m, PoseArgument.of(start), legs)
+
+
+class Explore(MissionRequest, frozen=True):
+    """Make a new map without being told where to stop, or go on with the one in use."""
+
+    cmd, kind, doing, noted = "explore", "explore", "exploring", "ExploreMission"
+    deadline_s = 60.0  # the map in use may have to be kept first
+    name: MapName
+    resume: bool = False
+    """Whether to go on with the map in use, which must be of that name, and on which the robot must be localized."""
+    start: PoseArgument = PoseArgument.of(IDENTITY)
+    """Where the robot stands now: it defines the frame of a new map."""
+    within: Bounds | None = None
+    """What to explore; without bounds, all that the map has room for."""
+    stops_m: Stops = ()
+    """Where to stop first, before it chooses for itself."""
+    stops_max: Annotated[int, Meta(ge=1, le=1000)] = 100
+    way_max_m: Annotated[float, Meta(gt=0.0, le=100_000.0)] | None = None
+    time_max_s: Annotated[float, Meta(gt=0.0, le=1_000_000.0)] | None = None
+    """Once one of these is reached, no further stop is made."""
+    returns: bool = False
+    """Whether to drive back to where it began, in the end."""
+    lease_s: LeaseTime | None = None
+
+    @classmethod
+    def of(cls, name: str, start: Pose2 = IDENTITY, **options: Any) -> "Explore":
+        """Return the request of a robot that stands at ``start``; options are the other fields."""
+        return cls(name, start=PoseArgument.of(start), **options)
 
 
 class Localize(MissionRequest, frozen=True):
@@ -152,7 +180,7 @@ class Measure(MissionRequest, frozen=True):
     lease_s: LeaseTime | None = None
 
 
-Mission = MapStart | Localize | DriveTo | DriveStraight | Turn | Look | Scan | Measure
+Mission = MapStart | Explore | Localize | DriveTo | DriveStraight | Turn | Look | Scan | Measure
 
 
 def with_lease(mission: Mission, lease_s: float | None = None) -> Mission:

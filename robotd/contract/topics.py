@@ -29,6 +29,7 @@ from robotd.contract.events import (
     SweepProgress,
     SweepReadings,
 )
+from robotd.contract.explored import ExploringEnded, StopChosen
 from robotd.contract.plain import VERSION, from_plain, to_plain
 from robotd.contract.ways import MissionPlan
 from robotd.core.errors import RemoteProtocolError
@@ -82,6 +83,8 @@ EVENTS: dict[type[Published], tuple[Topic, str]] = {
     LoopHeld: (Topic.MAP, "loop_held"),
     LoopClosed: (Topic.MAP, "loop_closed"),
     Reconciled: (Topic.MAP, "reconciled"),
+    StopChosen: (Topic.MISSION, "stop_chosen"),
+    ExploringEnded: (Topic.MISSION, "exploring_ended"),
     MissionProgress: (Topic.MISSION, "mission_progress"),
     MissionPlan: (Topic.MISSION, "plan"),
     RankMap: (Topic.RANK, "rank_map"),

@@ -1,9 +1,11 @@
-"""What was decided at a stop, as the world is told it."""
+"""What was decided at a stop, and where to go next, as the world is told it."""
 
 from typing import TypeVar
 
 from robotd.contract import events
-from robotd.head.jobs import StopLaid
+from robotd.contract.explored import CandidateStop, LeftOpen
+from robotd.exploring.choice import Choice
+from robotd.head.jobs import Chosen, StopLaid
 from robotd.head.stop_placing import MapWithStop
 from robotd.localization.outcome import Outcome
 from robotd.slam.loops import Loop
@@ -52,3 +54,18 @@ def _reconciled(one: Reconciled | None, time_ns: int, map_id: str) -> events.Rec
 
 def _loop(kind: type[E], loop: Loop, time_ns: int, map_id: str) -> E:
     return kind(time_ns, map_id, loop.stop, loop.old, loop.moved_m, loop.moved_rad)
+
+
+def chosen(choice: Choice) -> Chosen:
+    """Return the answer of a job that chose where to stop next."""
+    return Chosen(
+        goal_m=choice.goal_m,
+        ending=None if choice.ending is None else choice.ending.value,
+        candidates=tuple(
+            CandidateStop(*one.at_m, one.score, one.area_m2, one.opening_m, one.overlap, one.way_m)
+            for one in choice.candidates
+        ),
+        overlap_min=choice.overlap_min,
+        seen_m2=choice.seen_m2,
+        left=tuple(LeftOpen(*one.opening.at_m, one.opening.width_m, one.why.value) for one in choice.left),
+    )

@@ -1,5 +1,6 @@
 """A map as it is held where the work is done: a snapshot, of which an insertion makes the next."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from robotd.core.grid_bytes import packed_cells
 from robotd.core.map_stop import MapStop
 from robotd.core.pose import Pose2
 from robotd.core.reading import Sweep
-from robotd.grid.latest import latest_with
+from robotd.grid.latest import HIT, latest_with
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.window import CellWindow
@@ -51,6 +52,14 @@ class Held:
         """What is told of it."""
         stops = None if self.stops is None else len(self.stops.stops)
         return HeldMap(self.grid.spec, self.digest, packed_cells(self.grid.cells), stops, self.grid.settings)
+
+    def obstacles(self, met_m: Sequence[tuple[float, float]] = ()) -> NDArray[np.bool_]:
+        """Return the cells that are obstacles whatever their value, ``bool[rows, cols]``: hit last, or met there."""
+        # One beam is enough (decision 20).
+        hit: NDArray[np.bool_] = self.latest == HIT
+        cells = self.grid.spec.flat_at(np.array(met_m).reshape(-1, 2))
+        hit.reshape(-1)[cells[cells >= 0]] = True
+        return hit
 
     def with_sweep(self, sweep: Sweep, map_from_robot: Pose2) -> tuple["Held", NDArray[np.intp]]:
         """Return the map with a sweep laid in that was taken at ``map_from_robot``, and the cells that it changed.

@@ -6,17 +6,22 @@ from typing import Any
 
 from robotd.contract.ways import Way
 from robotd.core.grid_bytes import unpacked_cells
-from robotd.grid.latest import HIT
+from robotd.exploring.choice import ChoiceQuestion, choose
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.head.decided import stop_laid
+from robotd.grid.readings import Readings
+from robotd.head.decided import chosen, stop_laid
 from robotd.head.desk import Desk
 from robotd.head.held import Held
 from robotd.head.job import A, Done, Job
 from robotd.head.jobs import (
     BeginMap,
+    Choose,
+    Chosen,
     FilesMade,
     Forget,
+    Glance,
+    Glanced,
     HeldMap,
     Insert,
     Inserted,
@@ -43,6 +48,7 @@ from robotd.maps.packed_content import PackedContent
 from robotd.maps.stops_file import decode_stops
 from robotd.planning.path import Path, plan
 from robotd.recording.results import result_of
+from robotd.slam.glance import glanced
 
 _QUICK = 1
 """Level of zlib."""
@@ -101,6 +107,13 @@ def _place_stop(desk: Desk, job: PlaceStop) -> StopLaid:
     return stop_laid(made, job.time_ns, job.map_id)
 
 
+def _glance(desk: Desk, job: Glance) -> Glanced:
+    survey = desk.map(job.map).survey
+    if survey is None:  # odometry alone says where stops are
+        return Glanced(job.since @ job.travel.step, is_found=False)
+    return Glanced(*glanced(survey, Readings.of(job.readings), job.since, job.travel))
+
+
 def _prepare(desk: Desk, job: Prepare) -> Done:
     desk.begin(job)
     return Done()
@@ -131,11 +144,18 @@ def _show_ranks(desk: Desk, job: ShowRanks) -> RanksShown:
 
 def _plan(desk: Desk, job: Plan | PreviewWay) -> Way:
     held = desk.map(job.map)
-    # What was hit last is an obstacle whatever the cell's value: one beam is enough (decision 20).
-    way = plan(held.grid, job.start, job.goal_m, desk.settings.planning, held.latest == HIT)
+    way = plan(held.grid, job.start, job.goal_m, desk.settings.planning, held.obstacles(job.met_m))
     if isinstance(way, Path):
         return Way(way.waypoints_m, way.length_m)
     return Way((), 0.0, way.hindrance, way.reason, way.nearest_m)
+
+
+def _choose(desk: Desk, job: Choose) -> Chosen:
+    held = desk.map(job.map)
+    stops = () if held.stops is None else held.stops.stops
+    stops_m = tuple((stop.map_from_robot.x_m, stop.map_from_robot.y_m) for stop in stops)
+    question = ChoiceQuestion(job.start, stops_m, job.tried, job.within, job.cut_off_m, job.pace)
+    return chosen(choose(held.grid, held.obstacles(job.tried.met_m), question, desk.settings.planning))
 
 
 def _forget(desk: Desk, job: Forget) -> Done:
@@ -151,11 +171,13 @@ _TABLE: dict[type[Job[Any]], Callable[[Desk, Any], Any]] = {
     MakeFiles: _make_files,
     Insert: _insert,
     PlaceStop: _place_stop,
+    Glance: _glance,
     Prepare: _prepare,
     TakeReadings: _take_readings,
     Narrow: _narrow,
     ShowRanks: _show_ranks,
     Plan: _plan,
     PreviewWay: _plan,
+    Choose: _choose,
     Forget: _forget,
 }

@@ -12,11 +12,15 @@ import msgspec
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import LoopClosed, LoopHeld, Reconciled, StopPlaced
+from robotd.contract.explored import CandidateStop, LeftOpen
 from robotd.contract.ways import Point, Way
 from robotd.core.grid_spec import GridSpec
 from robotd.core.motion_error import Travel
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, Sweep
+from robotd.core.rectangle import Rectangle
+from robotd.exploring.settings import Pace
+from robotd.exploring.tried import Tried
 from robotd.grid.settings import GridSettings
 from robotd.head.job import Done, Job, Made
 from robotd.maps.packed_content import PackedContent
@@ -179,6 +183,27 @@ class PlaceStop(Job[StopLaid], frozen=True):
         return Made(self.map.number, 1 + self.map.generation)
 
 
+class Glanced(msgspec.Struct, frozen=True):
+    """Where a few readings were taken."""
+
+    map_from_robot: Pose2
+    is_found: bool
+    """Whether the map had a word in it; else it is odometry's, less what it errs by every time."""
+
+
+class Glance(Job[Glanced], frozen=True):
+    """Say where a few readings were taken between two stops of a map in the making, which stays as it is."""
+
+    name, answer, is_noted = "glance", Glanced, True
+    map: MapRef
+    readings: tuple[RangeReading, ...]
+    """Measured ones."""
+    since: Pose2
+    """Where the robot was when that was known last."""
+    travel: Travel
+    """Since then."""
+
+
 class Prepare(Job[Done], frozen=True):
     """Make a map ready, and begin a stop on it: a robot stands somewhere on it, and nothing was measured yet."""
 
@@ -277,6 +302,8 @@ class Plan(Job[Way], frozen=True):
     map: MapRef
     start: Pose2
     goal_m: Point
+    met_m: tuple[Point, ...] = ()
+    """Obstacles that the robot met, whatever the map says there."""
 
 
 class PreviewWay(Job[Way], frozen=True):
@@ -286,6 +313,34 @@ class PreviewWay(Job[Way], frozen=True):
     map: MapRef
     start: Pose2
     goal_m: Point
+    met_m: tuple[Point, ...] = ()
+
+
+class Chosen(msgspec.Struct, frozen=True):
+    """Where to stop next, or why there is nowhere."""
+
+    goal_m: Point | None
+    ending: str | None
+    """Why there is nowhere; None unless ``goal_m`` is None."""
+    candidates: tuple[CandidateStop, ...]
+    overlap_min: float
+    """What they had to overlap with the map to be chosen from."""
+    seen_m2: float
+    left: tuple[LeftOpen, ...]
+
+
+class Choose(Job[Chosen], frozen=True):
+    """Choose where to stop next on a map that is explored."""
+
+    name, answer, is_noted = "choose", Chosen, True
+    map: MapRef
+    start: Pose2
+    """Where the robot stands."""
+    tried: Tried
+    within: Rectangle | None
+    cut_off_m: float
+    """Farther than this the rangefinder is not asked."""
+    pace: Pace
 
 
 class Forget(Job[Done], frozen=True):
@@ -298,9 +353,9 @@ class Forget(Job[Done], frozen=True):
 JOBS: dict[str, type[Job[Any]]] = {
     kind.name: kind
     for kind in (
-        *(BeginMap, TakeMap, ReadMap, ShowMap, MakeFiles, Insert, PlaceStop),
+        *(BeginMap, TakeMap, ReadMap, ShowMap, MakeFiles, Insert, PlaceStop, Glance),
         *(Prepare, Narrow, TakeReadings, ShowRanks),
-        *(Plan, PreviewWay, Forget),
+        *(Plan, PreviewWay, Choose, Forget),
     )
 }
 """Every job there is, by its name."""

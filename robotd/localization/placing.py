@@ -147,7 +147,7 @@ def place(ground: Ground, readings: Readings, prior: Believed, settings: Placing
         nothing = np.zeros(len(readings), np.bool_)
         return Placed(Outcome.NEW_GROUND, _widened(prior, settings), Agreement(nothing, nothing))
     found, agreed = near
-    if _is_explained(agreed, settings):
+    if is_explained(agreed, settings):
         return Placed(Outcome.PLACED, prior.fused(found.pose, found.covariance), agreed)
     wide = _wide(ground, readings, prior, settings)
     if wide is not None and _worth(wide[1], settings) > _worth(agreed, settings) + settings.wide_gain:
@@ -217,7 +217,8 @@ def _wide(
     return None if found is None else near_prior(ground, readings, found, settings)
 
 
-def _is_explained(agreed: Agreement, settings: PlacingSettings) -> bool:
+def is_explained(agreed: Agreement, settings: PlacingSettings) -> bool:
+    """Return whether a map explains a sweep: most of what it speaks of, and enough of all."""
     return agreed.consent >= settings.placed_consent and agreed.explained_share >= settings.placed_share
 
 

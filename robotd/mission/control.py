@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from robotd.contract.answers import ConfigText, Done, MissionStarted, RecordingFile, Renewed
 from robotd.contract.events import Event, Status
-from robotd.contract.missions import MISSIONS, MapStart, Mission, with_lease
+from robotd.contract.missions import MISSIONS, Explore, MapStart, Mission, with_lease
 from robotd.contract.request import Request
 from robotd.contract.requests import Arm, Clear, Disarm, GetConfig, GetStatus, RecordStart, RecordStop, Renew, Stop
 from robotd.contract.topics import Topic
@@ -96,7 +96,7 @@ class Control:
             RobotdError: as the request's row says.
         """
         # Here and not in its row: a replay keeps nothing, and asks by the rows (map_load makes way by itself).
-        if isinstance(request, MapStart):
+        if isinstance(request, MapStart) or (isinstance(request, Explore) and not request.resume):
             await self._make_way()
         if isinstance(request, Mission):
             started: R = await self._start(request, client)  # type: ignore[assignment]  # what missions are answered

@@ -17,19 +17,19 @@ from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.tables import NO_INFORMATION
 from robotd.planning.distance_field import NEIGHBOURS, STEP_CELLS, distance_field
-from robotd.planning.line_of_sight import Position, centre_of, distances_of_leg, in_sight, pulled_straight
+from robotd.planning.line_of_sight import Cell, centre_of, distances_of_leg, pulled_straight
 from robotd.planning.settings import PlanningSettings
-from robotd.planning.traversable import free_cells, inflated, lone_hits
+from robotd.planning.terrain import Terrain, position
+from robotd.planning.traversable import lone_hits
 
 _AT_CELLS = 1.0
 """What was hit so near to the goal is where the robot is sent to, not something on its way."""
 
-Cell = tuple[int, int]
 _WORDS = {
     Hindrance.OUTSIDE: "the goal lies outside the map",
     Hindrance.OBSTACLE: "the goal lies in an obstacle",
     Hindrance.UNKNOWN: "the goal has not been seen",
-    Hindrance.TOO_NEAR: "the goal is too near to an obstacle or to unknown ground for the robot to fit",
+    Hindrance.TOO_NEAR: "the goal is too near to an obstacle or to unknown terrain for the robot to fit",
     Hindrance.START_OUTSIDE: "the robot stands outside the map",
     Hindrance.NO_WAY: "no way leads to the goal",
 }
@@ -98,106 +98,36 @@ def plan(
     if not spec.contains(*spec.cell_at(start.x_m, start.y_m)):
         return Unreachable(Hindrance.START_OUTSIDE, None)
     hit = np.zeros(spec.shape, np.bool_) if hit is None else hit
-    answer = _planned(grid, _Ground.of(grid, start, hit, None, settings), start, goal_m)
+    answer = _planned(grid, Terrain.of(grid, start, hit, None, settings), start, goal_m)
     lone = lone_hits(grid, hit)
     if isinstance(answer, Path) or not lone.any() or _is_at(lone, spec, goal_m):
         return answer
-    doubting = _planned(grid, _Ground.of(grid, start, hit, lone, settings), start, goal_m)
+    doubting = _planned(grid, Terrain.of(grid, start, hit, lone, settings), start, goal_m)
     # Where doubt does not help either, the answer without it names what is really in the way.
     return doubting if isinstance(doubting, Path) else answer
 
 
 def _is_at(lone: NDArray[np.bool_], spec: GridSpec, goal_m: Point) -> bool:
-    goal = _position(spec, goal_m)
+    goal = position(spec, goal_m)
     return bool((distances_of_leg(np.argwhere(lone), goal, goal) <= _AT_CELLS).any())
 
 
-def _planned(grid: OccupancyGrid, ground: "_Ground", start: Pose2, goal_m: Point) -> Path | Unreachable:
+def _planned(grid: OccupancyGrid, terrain: Terrain, start: Pose2, goal_m: Point) -> Path | Unreachable:
     spec = grid.spec
     here, there = spec.cell_at(start.x_m, start.y_m), spec.cell_at(*goal_m)
-    field = distance_field(ground.allowed, there) if spec.contains(*there) else np.full(spec.shape, np.inf)
-    exit_cell = ground.way_out(here, field)
+    field = distance_field(terrain.allowed, there) if spec.contains(*there) else np.full(spec.shape, np.inf)
+    exit_cell = terrain.way_out(here, field)
     if exit_cell is None:
-        return Unreachable(_hindrance(grid, ground, there), _nearest_reachable_m(ground, spec, here, goal_m))
+        return Unreachable(_hindrance(grid, terrain, there), _nearest_reachable_m(terrain, spec, here, goal_m))
     cells = _descent(field, exit_cell)
-    way = [centre_of(cell) for cell in cells] + [_position(spec, goal_m)]
+    way = [centre_of(cell) for cell in cells] + [position(spec, goal_m)]
     points_m = [spec.centre_of(*cell) for cell in cells] + [goal_m]
     # Where the robot does not fit, the leg out of there was checked by itself, and the string begins at its end.
-    if ground.allowed[here]:
-        way, points_m = [ground.start, *way], [(start.x_m, start.y_m), *points_m]
-    corners = pulled_straight(ground.allowed, way)
-    onward = corners[1:] if ground.allowed[here] else corners
+    if terrain.allowed[here]:
+        way, points_m = [terrain.start, *way], [(start.x_m, start.y_m), *points_m]
+    corners = pulled_straight(terrain.allowed, way)
+    onward = corners[1:] if terrain.allowed[here] else corners
     return Path((start.x_m, start.y_m), tuple(points_m[corner] for corner in onward))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Ground:
-    """Where the robot may be."""
-
-    free: NDArray[np.bool_]
-    """``bool[rows, cols]``: no obstacle as far as anybody knows, or under the robot."""
-    met: NDArray[np.bool_]
-    """``bool[rows, cols]``: an obstacle that a beam met; the others that are not free were never seen."""
-    allowed: NDArray[np.bool_]
-    """``bool[rows, cols]``: the robot fits."""
-    start: Position
-    robot_cells: float
-    """Radius of its disk."""
-    reach_cells: float
-    """How far to look for a way out of a place where it does not fit."""
-
-    @classmethod
-    def of(
-        cls,
-        grid: OccupancyGrid,
-        start: Pose2,
-        hit: NDArray[np.bool_],
-        doubted: NDArray[np.bool_] | None,
-        settings: PlanningSettings,
-    ) -> "_Ground":
-        resolution_m, here = grid.spec.resolution_m, grid.spec.cell_at(start.x_m, start.y_m)
-        robot_cells, clearance_cells = settings.robot_radius_m / resolution_m, settings.clearance_m / resolution_m
-        taken = hit if doubted is None else hit & ~doubted
-        free = free_cells(grid, settings.gap_cells, doubted) & ~taken
-        met = (grid.cells > NO_INFORMATION) | taken
-        rows, cols = np.ogrid[: free.shape[0], : free.shape[1]]
-        free |= (rows - here[0]) ** 2 + (cols - here[1]) ** 2 <= robot_cells**2
-        allowed = ~inflated(~free, robot_cells, clearance_cells)
-        reach_cells = 2.0 * (robot_cells + max(clearance_cells, 1.0))
-        return cls(free, met & ~free, allowed, _position(grid.spec, (start.x_m, start.y_m)), robot_cells, reach_cells)
-
-    def way_out(self, here: Cell, field: NDArray[np.float64]) -> Cell | None:
-        """Return where to start on the field: here, or the nearest cell that can be reached on which the robot fits."""
-        if self.allowed[here]:
-            return here if np.isfinite(field[here]) else None
-        cells = np.argwhere(self.allowed & np.isfinite(field))
-        distances = np.hypot(*(cells - here).T)
-        near = distances <= self.reach_cells
-        around = np.argwhere(self.met)
-        # Nothing farther can come within the robot's radius on a leg so short; two cells are for the size of the cells
-        # themselves.
-        around = around[np.hypot(*(around - here).T) <= self.reach_cells + self.robot_cells + 2.0]
-        # Stable: of several cells at one distance every replay must take the same one.
-        for row, col in cells[near][np.argsort(distances[near], kind="stable")].tolist():
-            if self._gets_out(around, (row, col)):
-                return row, col
-        return None
-
-    def _gets_out(self, around: NDArray[np.intp], to: Cell) -> bool:
-        """Whether on a straight leg from the start the robot meets no obstacle, and none it met before comes nearer.
-
-        Never seen is what lies round a robot that has just begun: its middle must keep to what is free, no more.
-        """
-        if not in_sight(self.free, self.start, centre_of(to)):
-            return False
-        at_first = distances_of_leg(around, self.start, self.start)
-        on_the_way = distances_of_leg(around, self.start, centre_of(to))
-        return bool((on_the_way >= np.minimum(at_first, self.robot_cells) - 1e-9).all())
-
-
-def _position(spec: GridSpec, point_m: Point) -> Position:
-    row, col = spec.positions_at(np.array([point_m]))[0].tolist()
-    return row, col
 
 
 def _descent(field: NDArray[np.float64], start: Cell) -> list[Cell]:
@@ -215,23 +145,21 @@ def _descent(field: NDArray[np.float64], start: Cell) -> list[Cell]:
     return way
 
 
-def _hindrance(grid: OccupancyGrid, ground: _Ground, goal: Cell) -> Hindrance:
+def _hindrance(grid: OccupancyGrid, terrain: Terrain, goal: Cell) -> Hindrance:
     if not grid.spec.contains(*goal):
         return Hindrance.OUTSIDE
-    if ground.allowed[goal]:
+    if terrain.allowed[goal]:
         return Hindrance.NO_WAY
-    if ground.free[goal]:
+    if terrain.free[goal]:
         return Hindrance.TOO_NEAR
     return Hindrance.UNKNOWN if grid.cells[goal] == NO_INFORMATION else Hindrance.OBSTACLE
 
 
-def _nearest_reachable_m(ground: _Ground, spec: GridSpec, here: Cell, goal_m: Point) -> Point | None:
-    # A field of zeros, for where to is not asked: only whether the robot gets onto any ground on which it fits.
-    start = ground.way_out(here, np.zeros(spec.shape))
-    if start is None:
-        return None
+def _nearest_reachable_m(terrain: Terrain, spec: GridSpec, here: Cell, goal_m: Point) -> Point | None:
     # Flooded from the robot's side, since from the goal there is no way.
-    cells = np.argwhere(np.isfinite(distance_field(ground.allowed, start)))
+    cells = np.argwhere(np.isfinite(terrain.ways_from(here)))
+    if not cells.size:
+        return None
     goal = spec.positions_at(np.array([goal_m]))[0] - 0.5
     row, col = cells[np.hypot(*(cells - goal).T).argmin()].tolist()
     return spec.centre_of(row, col)

@@ -19,6 +19,7 @@ from robotd.contract.events import (
     SweepProgress,
     SweepReadings,
 )
+from robotd.contract.explored import WHYS, ExploringEnded, StopChosen
 from robotd.contract.sweep_columns import from_columns
 from robotd.contract.topics import EVENTS, LogEntry, Published
 from robotd.contract.ways import MissionPlan, StopState
@@ -153,6 +154,15 @@ def odometry_in_words(now: Odometry, *, raw: bool = False) -> str:
     return f"{words}; counted {counted}"
 
 
+def ending_in_words(ended: ExploringEnded) -> str:
+    """Return why exploring ended, and a line for each opening that is left."""
+    lines = [
+        f"  left open at ({one.x_m:.2f}, {one.y_m:.2f}) m, {one.width_m:.1f} m wide: {WHYS.get(one.why, one.why)}"
+        for one in ended.left
+    ]
+    return "\n".join((ended.words, *lines))
+
+
 def mission_in_words(step: MissionProgress) -> str:
     """Return a step of a mission."""
     where = f" stop {step.stop + 1} of {step.stops}" if step.stops > 1 and not step.is_last else ""
@@ -179,6 +189,8 @@ _WORDS: dict[type[Published], Callable[[Any], str]] = {
         f"stop {event.stop + 1} {event.outcome.replace('_', ' ')}: {pose_in_words(event.pose)},"
         f" {event.explained:.0%} explained, {event.contradicted:.0%} contradicted"
     ),
+    StopChosen: lambda event: f"stop {event.stop + 1} will be at ({event.x_m:.2f}, {event.y_m:.2f}) m: {event.reason}",
+    ExploringEnded: lambda event: event.words,
     Status: lambda event: f"{event.mode}: {event.reason}",
     SweepDone: lambda event: (
         f"sweep {event.sweep.number} done: {len(event.sweep.measured)} of {len(event.sweep.readings)} measured"

@@ -55,7 +55,7 @@ def _start(arguments: argparse.Namespace) -> int:
 
 
 def _start_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", type=_name, help="what to call the map")
+    parser.add_argument("name", type=map_name, help="what to call the map")
     parser.add_argument(
         "--stop",
         action="append",
@@ -65,7 +65,7 @@ def _start_arguments(parser: argparse.ArgumentParser) -> None:
         metavar=("X", "Y"),
         help="where to stop and sweep [m], once for each; the robot's place at the start comes first by itself",
     )
-    _pose_argument(parser, "--start", "where the robot stands now, which fixes the map's axes (default: 0 0 0)")
+    pose_argument(parser, "--start", "where the robot stands now, which fixes the map's axes (default: 0 0 0)")
     parser.add_argument("--world", metavar="WORLD", help="take start and stops from a world of robotctl sim")
     odometry_argument(parser)
     legs_argument(parser)
@@ -76,7 +76,7 @@ def _start_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _name(text: str) -> str:
+def map_name(text: str) -> str:
     """Return the name of a map, as it may be."""
     try:
         return msgspec.convert(text, MapName)
@@ -94,7 +94,8 @@ class _PoseAction(argparse.Action):
         setattr(namespace, self.dest, Pose2(x_m, y_m, heading_of_deg(heading_deg)))
 
 
-def _pose_argument(parser: argparse.ArgumentParser, name: str, summary: str) -> None:
+def pose_argument(parser: argparse.ArgumentParser, name: str, summary: str) -> None:
+    """Let the command line name a pose, ``X Y DEG``."""
     parser.add_argument(name, action=_PoseAction, nargs=3, type=number, metavar=("X", "Y", "DEG"), help=summary)
 
 
@@ -219,13 +220,13 @@ def _facts(shown: MapChanged) -> dict[str, object]:
 
 
 def _save_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", nargs="?", type=_name, help="another name than the one it was made under")
+    parser.add_argument("name", nargs="?", type=map_name, help="another name than the one it was made under")
 
 
 def _load_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", help="the map")
     parser.add_argument("--version", type=whole(0), metavar="N", help="an older version of it (default: the newest)")
-    _pose_argument(parser, "--robot", "where the robot stands on it, if you know")
+    pose_argument(parser, "--robot", "where the robot stands on it, if you know")
 
 
 def _show_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,6 +1,6 @@
 """The kinds of mission, each a row: its request, what it needs, its stops, and what carries it out."""
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -8,6 +8,7 @@ from robotd.contract.estimate import PoseEstimate
 from robotd.contract.missions import (
     DriveStraight,
     DriveTo,
+    Explore,
     Localize,
     Look,
     MapStart,
@@ -22,6 +23,7 @@ from robotd.mission.missions.by_head import run_look, run_measure, run_scan
 from robotd.mission.missions.by_odometry import run_straight, run_turning
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.driving import run_driving
+from robotd.mission.missions.exploring import run_exploring
 from robotd.mission.missions.localizing import pose_text, run_localizing
 from robotd.mission.missions.looking_again import looking_again
 from robotd.mission.missions.mapping import run_mapping
@@ -31,6 +33,8 @@ from robotd.mission.whereabouts.tie import Tie
 
 _MARGIN_M = 3.0
 """A map reaches at least this far beyond its stops, and farther unless the stops fill it."""
+_REACH_M = 20.0
+"""How far from its start a robot explores that was given no bounds."""
 
 
 class Host(Protocol):
@@ -59,9 +63,17 @@ class MissionRow:
 
 
 async def _make_map(host: Host, context: MissionContext, mission: MapStart, report: Reporter) -> str:
-    place, tie = await _begin_map(context, mission, report)
-    host.adopt(place, tie)
+    points_m = ((mission.start.x_m, mission.start.y_m), *mission.stops_m)
+    place = await _begin_map(host, context, mission, points_m, report)
     return str(await run_mapping(context, place, mission, report))
+
+
+async def _explore(host: Host, context: MissionContext, mission: Explore, report: Reporter) -> str:
+    if mission.resume:
+        place = _place_named(context, mission.name)
+    else:
+        place = await _begin_map(host, context, mission, _corners_m(mission), report)
+    return await run_exploring(context, place, mission, report)
 
 
 async def _localize(_: Host, context: MissionContext, mission: Localize, report: Reporter) -> str:
@@ -98,6 +110,7 @@ async def _measure(_: Host, context: MissionContext, mission: Measure, report: R
 
 _ROWS = (
     MissionRow(MapStart, _make_map, stops=lambda mission: 1 + len(mission.stops_m)),
+    MissionRow(Explore, _explore, stops=lambda mission: mission.stops_max),
     MissionRow(Localize, _localize, needs_base=False, pauses_prediction=True),
     MissionRow(DriveTo, _drive),
     MissionRow(DriveStraight, _straight),
@@ -118,19 +131,43 @@ def _place(context: MissionContext) -> MapInUse:
     return place
 
 
-async def _begin_map(context: MissionContext, mission: MapStart, report: Reporter) -> tuple[MapInUse, Tie]:
+def _place_named(context: MissionContext, name: str) -> MapInUse:
+    place = _place(context)
+    if place.name != name:
+        raise MissionError(f"the map in use is {place.name}, not {name}; first: robotctl map load {name}")
+    return place
+
+
+def _corners_m(mission: Explore) -> tuple[tuple[float, float], ...]:
+    """Return what a map that is explored must have room for: its bounds, or the same to all sides of the start."""
+    (x_m, y_m), within = (mission.start.x_m, mission.start.y_m), mission.within
+    if within is None:
+        return ((x_m - _REACH_M, y_m - _REACH_M), (x_m + _REACH_M, y_m + _REACH_M), *mission.stops_m)
+    if not within.holds(x_m, y_m):
+        raise MissionError(f"the robot stands at ({x_m:.2f}, {y_m:.2f}) m, outside of the bounds of what to explore")
+    return ((within.west_m, within.south_m), (within.east_m, within.north_m), *mission.stops_m)
+
+
+async def _begin_map(
+    host: Host,
+    context: MissionContext,
+    mission: MapStart | Explore,
+    points_m: Sequence[tuple[float, float]],
+    report: Reporter,
+) -> MapInUse:
+    """Begin a map with room for some points, take it into use, and tie odometry to it."""
     settings = context.settings.grid
-    points_m = ((mission.start.x_m, mission.start.y_m), *mission.stops_m)
     try:
         spec = settings.spec_covering(points_m, _MARGIN_M)
     except ValueError as error:
-        raise MissionError(f"these stops do not fit on one map: {error}") from error
+        raise MissionError(f"this does not fit on one map: {error}") from error
     number = context.head.number()
     begun = await context.head.ask(BeginMap(number, spec, settings))
     silence_s = context.settings.driving.silence_s
     here = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
     place = MapInUse(f"new-{report.mission_id}", mission.name, number, begun)
-    return place, Tie.between(mission.start.pose, here.in_odom)
+    host.adopt(place, Tie.between(mission.start.pose, here.in_odom))
+    return place
 
 
 def describe(estimate: PoseEstimate) -> str:

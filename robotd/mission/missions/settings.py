@@ -8,6 +8,7 @@ from robotd.localization.judge.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
+from robotd.planning.settings import PlanningSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,3 +22,4 @@ class MissionSettings:
     grid: GridSettings = field(default_factory=GridSettings)
     localization: LocalizationSettings = field(default_factory=LocalizationSettings)
     judgement: Judgement = field(default_factory=Judgement)
+    planning: PlanningSettings = field(default_factory=PlanningSettings)

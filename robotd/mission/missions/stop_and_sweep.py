@@ -5,6 +5,7 @@ and the base turns between them; all readings end up in the frame of where the r
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Protocol
 
@@ -32,6 +33,8 @@ FAILED = frozenset(
     }
 )
 """Readings that the rangefinder owes; a miss, and what it cannot see, are answers."""
+_ASCENDING = 0
+"""Number of a sweep that goes counter-clockwise."""
 _LIMIT_MARGIN_RAD = 0.03  # the base turns only roughly as far as it should, and the head makes up for it
 
 
@@ -113,6 +116,22 @@ class Sweeper:
                 await self._check_enough(readings)
             await self.robot.rangefinder.switch_laser(on=False)
         return Sweep(number, start.in_odom, tuple(readings))
+
+    async def glance(self, bearings_rad: Sequence[float]) -> tuple[RangeReading, ...]:
+        """Take a few readings where the robot stands, bearings ascending; what is beyond the head's reach is left out.
+
+        Raises:
+            DeviceError, LinkTimeout, TransportError: as :meth:`sweep`.
+        """
+        limits = await self.robot.pantilt.limits()
+        lag_rad = self._lag_rad(_ASCENDING)
+        seen_rad = [rad for rad in bearings_rad if limits.pan_min_rad <= rad - lag_rad <= limits.pan_max_rad]
+        start = await self.hold.through(lambda: standing(self.robot, self.settings.settle_s, self.driving))
+        await self.robot.rangefinder.switch_laser(on=True)
+        await self._take_up_play(seen_rad[0], _ASCENDING)
+        readings = [await self._read_through_holds(rad, lag_rad, start, start) for rad in seen_rad]
+        await self.robot.rangefinder.switch_laser(on=False)
+        return tuple(readings)
 
     def _parts(self, limits: PanTiltLimits, number: int) -> tuple[SweepPart, ...]:
         margin_rad = _LIMIT_MARGIN_RAD + self.mount.backlash_rad

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.contract.events import MapChanged
+from robotd.contract.ways import Point
 from robotd.core.grid_spec import GridSpec
 from robotd.head.jobs import HeldMap, Inserted, MapRef
 
@@ -40,6 +41,8 @@ class MapInUse:
     """The change up to which it is in the store, though unsaved."""
     kept_version: int | None = None
     """Which version of its name that is."""
+    bumps_m: tuple[Point, ...] = ()
+    """What the robot bumped into: obstacles, whatever the laser sees there."""
 
     def __post_init__(self) -> None:
         """Begin as it came."""

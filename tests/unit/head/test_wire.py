@@ -14,6 +14,9 @@ from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.motion_error import Travel
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.core.rectangle import Rectangle
+from robotd.exploring.settings import Pace
+from robotd.exploring.tried import Tried
 from robotd.grid.settings import GridSettings
 from robotd.head.answering import answer_to
 from robotd.head.desk import Desk
@@ -22,7 +25,9 @@ from robotd.head.job_table import perform
 from robotd.head.jobs import (
     JOBS,
     BeginMap,
+    Choose,
     Forget,
+    Glance,
     Insert,
     Inserted,
     MakeFiles,
@@ -65,6 +70,8 @@ def a_life() -> list[Job[Any]]:
         *(ReadMap(2, content), TakeMap(3, SPEC, shown.packed, GRID, content.files["stops.bin"])),
         *(BeginMap(5, SPEC, GRID), PlaceStop(MapRef(5), "m", SWEEP, Travel(), HERE, 7)),
         PlaceStop(MapRef(5, 1), "m", SWEEP, Travel(Pose2(0.02, 0.0, 0.01), 0.02, 0.01), HERE, 8),
+        Glance(MapRef(5, 2), READINGS[1:7], HERE, Travel(Pose2(0.1, 0.0, 0.0), 0.1, 0.0)),
+        Choose(MapRef(1, 1), HERE, Tried(((0.2, 0.2),)), Rectangle(-1.0, -1.0, 1.0, 1.0), 3.0, Pace()),
         Prepare(4, MapRef(2), "a map", (0.1, 0.2, 0.3), Area(0.0, 0.0, 0.5)),
         *(TakeReadings(4, READINGS[:20]), Narrow(4, READINGS[20:], 5, True)),
         *(ShowRanks(4), Forget(4), ShowRanks(4)),

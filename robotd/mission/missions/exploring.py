@@ -1,0 +1,211 @@
+"""Map a place that nobody described: look round, go where the most is expected to be seen, until nothing is left."""
+
+from dataclasses import dataclass, field, replace
+
+import msgspec
+
+from robotd.contract.events import MissionPhase
+from robotd.contract.explored import CandidateStop, ExploringEnded, StopChosen
+from robotd.contract.missions import Explore
+from robotd.contract.ways import Hindrance, Point
+from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.errors import MissionError
+from robotd.core.pose import Pose2
+from robotd.core.rectangle import Rectangle
+from robotd.exploring.reasons import WhyEnded, WhyLeft
+from robotd.exploring.settings import Pace
+from robotd.exploring.tried import Tried
+from robotd.head.jobs import Choose, Chosen
+from robotd.localization.outcome import Outcome
+from robotd.mission.missions.context import MissionContext, Reporter
+from robotd.mission.missions.driving import NoWay
+from robotd.mission.missions.looking_ahead import drive_looking
+from robotd.mission.missions.plan_told import PlanTold
+from robotd.mission.missions.surveying import Surveyed, survey_stop
+from robotd.mission.motion.legs import next_odometry
+from robotd.mission.whereabouts.map_in_use import MapInUse
+
+_NEWS_CELLS = 20
+"""A stop that changed fewer cells was in vain."""
+_DETOURS = 5
+"""How often something may stand in the way to one goal."""
+_AGAINST = 3
+"""This many stops in a row that speak against the map are no bad luck."""
+_SWEEP_MIN_S = 1.0
+"""However fast the rangefinder is, a stop costs time."""
+
+
+@dataclass(slots=True)
+class Journey:
+    """How far one mission has come."""
+
+    began_m: Point
+    began_ns: int
+    now_ns: int
+    tried: Tried = field(default_factory=Tried)
+    pace: Pace = field(default_factory=Pace)
+    stops: int = 0
+    way_m: float = 0.0
+    against: int = 0
+    """Stops in a row that speak against the map."""
+
+    def is_spent(self, mission: Explore) -> bool:
+        """Return whether a budget is used up."""
+        return (
+            self.stops >= mission.stops_max
+            or (mission.way_max_m is not None and self.way_m >= mission.way_max_m)
+            or (mission.time_max_s is not None and self.now_ns - self.began_ns >= mission.time_max_s * NS_PER_S)
+        )
+
+    def stopped(self, stop: Surveyed, at_m: Point) -> None:
+        """Take note of a stop that was made."""
+        first_ns, self.now_ns = (stop.sweep.readings[at].time_ns for at in (0, -1))
+        self.pace = replace(self.pace, sweep_s=max(_SWEEP_MIN_S, (self.now_ns - first_ns) / NS_PER_S))
+        self.stops += 1
+        self.way_m += stop.way_m
+        self.against = self.against + 1 if stop.outcome is Outcome.CONTRADICTS else 0
+        # What stood in the way is on the map by now, or has gone.
+        self.tried = Tried(self.tried.in_vain_m)
+        if stop.cells < _NEWS_CELLS:
+            self.tried = self.tried.in_vain(at_m)
+
+
+async def run_exploring(context: MissionContext, place: MapInUse, mission: Explore, report: Reporter) -> str:
+    """Carry out an :class:`Explore` on a map that odometry is tied to; return what to tell the client.
+
+    Raises:
+        MissionError: too many readings failed, or the robot is not localized on the map; it stands.
+        DeviceError, LinkTimeout, TransportError: a device failed; the robot must be stopped.
+    """
+    exploring = Exploring(context, place, mission, report, await _begun(context))
+    await exploring.look_round()
+    for goal_m in mission.stops_m:
+        await exploring.visit(goal_m, "asked for")
+    while (chosen := await exploring.choose()).goal_m is not None:
+        await exploring.visit(chosen.goal_m, _reason(chosen), chosen.candidates)
+    if mission.returns:
+        await exploring.go_back()
+    return exploring.end(chosen)
+
+
+async def _begun(context: MissionContext) -> Journey:
+    time_ns, here = await _here(context)
+    return Journey((here.x_m, here.y_m), time_ns, time_ns)
+
+
+@dataclass(frozen=True, slots=True)
+class Exploring:
+    """An exploring mission under way."""
+
+    context: MissionContext
+    place: MapInUse
+    mission: Explore
+    report: Reporter
+    journey: Journey
+
+    async def look_round(self) -> None:
+        """Make a stop where the robot stands."""
+        self.report.stop = self.journey.stops
+        stop = await survey_stop(self.context, self.place, self.report)
+        _, here = await _here(self.context)
+        self.journey.stopped(stop, (here.x_m, here.y_m))
+
+    async def choose(self) -> Chosen:
+        """Return where to stop next, or why to end; a journey that is spent, or lost, ends whatever is left."""
+        _, start = await _here(self.context)
+        journey, bounds = self.journey, self.mission.within
+        within = None if bounds is None else Rectangle(bounds.west_m, bounds.south_m, bounds.east_m, bounds.north_m)
+        tried = replace(journey.tried, met_m=self._met_m)
+        cut_off_m = self.context.settings.rangefinder.range_max_m
+        chosen = await self.context.head.ask(Choose(self.place.ref, start, tried, within, cut_off_m, journey.pace))
+        if journey.against >= _AGAINST:
+            return _ended_by(WhyEnded.LOST, chosen)
+        if chosen.ending is None and journey.is_spent(self.mission):
+            return _ended_by(WhyEnded.BUDGET, chosen)
+        return chosen
+
+    async def visit(self, goal_m: Point, reason: str, candidates: tuple[CandidateStop, ...] = ()) -> None:
+        """Go to a place and look round there; if it is not reached, say so, and do not try it again."""
+        journey, (x_m, y_m) = self.journey, goal_m
+        if journey.is_spent(self.mission):
+            return
+        self.context.publish(StopChosen(now_ns(), self.place.map_id, journey.stops, x_m, y_m, reason, candidates))
+        self.report.at(MissionPhase.DRIVING, journey.stops, f"to ({x_m:.2f}, {y_m:.2f}) m: {reason}")
+        hindrance = await self._reach(goal_m)
+        if hindrance:
+            journey.tried = journey.tried.in_vain(goal_m)
+            self.report.at(MissionPhase.DRIVING, message=f"({x_m:.2f}, {y_m:.2f}) m not reached: {hindrance}")
+        else:
+            await self.look_round()
+
+    async def go_back(self) -> None:
+        """Return to where the mission began."""
+        self.report.at(MissionPhase.DRIVING, message="back to where it began")
+        hindrance = await self._reach(self.journey.began_m)
+        if hindrance:
+            self.report.at(MissionPhase.DRIVING, message=f"not got back: {hindrance}")
+
+    def end(self, chosen: Chosen) -> str:
+        """Tell why it ended and what is left; return that for people."""
+        journey = self.journey
+        ended = ExploringEnded(
+            now_ns(),
+            self.place.map_id,
+            chosen.ending or WhyEnded.COMPLETE,
+            journey.stops,
+            journey.way_m,
+            chosen.seen_m2,
+            chosen.left,
+        )
+        self.context.publish(ended)
+        self.report.stops = journey.stops
+        return ended.words
+
+    @property
+    def _met_m(self) -> tuple[Point, ...]:
+        return (*self.place.bumps_m, *self.journey.tried.met_m)
+
+    async def _reach(self, goal_m: Point) -> str:
+        """Drive to a place, round what stands in the way; return why it was not reached, empty if it was."""
+        plan = PlanTold(self.report, self.place.map_id)
+        for _ in range(1 + _DETOURS):
+            try:
+                met_m = await drive_looking(self.context, self.place, plan, goal_m, self._met_m)
+            # No way is an answer; a device that fails raises another error, which ends the mission.
+            except NoWay as error:
+                if error.reason is Hindrance.NOT_LOCALIZED:
+                    raise
+                return str(error)
+            if not met_m:
+                return ""
+            self.journey.tried = self.journey.tried.met(met_m)
+            words = f"at ({met_m[0][0]:.2f}, {met_m[0][1]:.2f}) m stands what is not on the map"
+            self.report.at(MissionPhase.DRIVING, message=words)
+        return "there is always something in the way"
+
+
+async def _here(context: MissionContext) -> tuple[int, Pose2]:
+    """Return the time, and where the robot is on the map by then.
+
+    Raises:
+        MissionError: it is not localized on it.
+    """
+    silence_s = context.settings.driving.silence_s
+    now = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
+    pose = context.whereabouts.pose_of(now)
+    if pose is None:
+        raise MissionError("the robot is not localized on this map; first: robotctl localize, then explore --resume")
+    return now.time_ns, pose
+
+
+def _ended_by(ending: WhyEnded, chosen: Chosen) -> Chosen:
+    """Return a choice as an end: what was not looked at yet, is left to do."""
+    left = tuple(replace(one, why=WhyLeft.TO_DO) if one.why == WhyLeft.HIDDEN else one for one in chosen.left)
+    return msgspec.structs.replace(chosen, goal_m=None, ending=ending.value, left=left)
+
+
+def _reason(chosen: Chosen) -> str:
+    best = chosen.candidates[0]
+    return (
+        f"{best.area_m2:.1f} m2 more expected after {best.way_m:.1f} m, {best.overlap:.0%} of the beams on known walls"
+    )

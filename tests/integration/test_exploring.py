@@ -1,0 +1,142 @@
+"""A whole daemon explores rooms that nobody described to it: it ends by itself, and says why."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from robotd.contract.area import Bounds
+from robotd.contract.events import Event, MissionPhase, MissionProgress, StopPlaced, SweepDone
+from robotd.contract.explored import ExploringEnded, StopChosen
+from robotd.contract.missions import Explore
+from robotd.contract.requests import RecordStart, RecordStop
+from robotd.sim.buildings.world import Wall, load_world
+from robotd.sim.physics.noise import NoiseSettings
+from robotd.sim.robot import SimSettings, SimulatedRobot
+from tests.integration.conftest import Live
+from tests.support.replayed import check, replayed
+
+pytestmark = pytest.mark.slow
+
+LYING = SimSettings(noise=NoiseSettings(translation_scale_error=0.05, drift_noise_rad=0.02))
+"""Wheels that count 5 % short, and wander."""
+
+
+def robot_in(world: str, *walls: Wall, seed: int = 1) -> SimulatedRobot:
+    room = load_world(world)
+    return SimulatedRobot(replace(room, wall=(*room.wall, *walls)), seed, LYING)
+
+
+def ended(said: list[Event]) -> ExploringEnded:
+    (end,) = (event for event in said if isinstance(event, ExploringEnded))
+    return end
+
+
+def chosen(said: list[Event]) -> list[StopChosen]:
+    return [event for event in said if isinstance(event, StopChosen)]
+
+
+async def test_it_explores_an_office_by_itself_and_the_replay_does_the_same(live: Live, tmp_path: Path) -> None:
+    robot = robot_in("office")
+    async with live(robot) as it:
+        recording = await it.daemon.control.perform(RecordStart())
+        said = await it.done(Explore.of("office", robot.start, returns=True))
+        await it.daemon.control.perform(RecordStop())
+        end = ended(said)
+        assert end.ending in {"complete", "good_enough", "unreachable"}
+        assert end.seen_m2 > 13.0
+        assert 3 <= end.stops <= 10
+        assert len(chosen(said)) == end.stops - 1
+        for choice in chosen(said):
+            best = choice.candidates[0]
+            assert (best.x_m, best.y_m) == (choice.x_m, choice.y_m)
+            assert all(one.score <= best.score for one in choice.candidates)
+            assert f"{best.way_m:.1f} m" in choice.reason
+        last = [event for event in said if isinstance(event, StopPlaced)][-1]
+        assert last.outcome == "placed"
+        assert robot.truth.distance_m(robot.start) < 0.15
+        assert recording.path is not None
+    check(replayed(Path(recording.path)))
+
+
+async def test_what_was_asked_for_comes_first_and_a_budget_ends_it(live: Live) -> None:
+    robot = robot_in("laboratory")
+    async with live(robot) as it:
+        said = await it.done(Explore.of("lab", robot.start, stops_m=((2.5, 1.2),), stops_max=3))
+    first, second = chosen(said)
+    assert ((first.x_m, first.y_m), first.reason, first.candidates) == ((2.5, 1.2), "asked for", ())
+    assert second.candidates
+    end = ended(said)
+    assert (end.ending, end.stops) == ("budget", 3)
+    assert {left.why for left in end.left} == {"to_do"}
+
+
+@pytest.mark.parametrize("budget", [{"way_max_m": 1.0}, {"time_max_s": 20.0}])
+async def test_way_and_time_are_budgets_too(live: Live, budget: dict[str, float]) -> None:
+    robot = robot_in("laboratory")
+    async with live(robot) as it:
+        end = ended(await it.done(Explore.of("lab", robot.start, **budget)))
+    assert end.ending == "budget"
+    assert end.stops <= 4
+
+
+async def test_bounds_keep_it_in_and_must_hold_the_robot(live: Live) -> None:
+    robot = robot_in("laboratory")
+    async with live(robot) as it:
+        _, end = await it.do(Explore.of("lab", robot.start, within=Bounds(3.0, 3.0, 6.0, 6.0)))
+        assert end.phase is MissionPhase.FAILED
+        assert "outside of the bounds" in end.message
+        said = await it.done(Explore.of("lab", robot.start, within=Bounds(0.0, 0.0, 3.0, 2.2)))
+        assert all(0.0 <= choice.x_m <= 3.0 and 0.0 <= choice.y_m <= 2.2 for choice in chosen(said))
+        assert ended(said).stops <= 5
+
+
+async def test_it_stops_for_what_was_not_there_when_it_looked_round(live: Live) -> None:
+    """A box comes to stand in its way while it turns towards its goal: it is seen, told, gone round or left."""
+    robot = robot_in("laboratory")
+    async with live(robot) as it:
+        mission_id = it.daemon.control.start(Explore.of("lab", robot.start, stops_m=((4.2, 1.2),), stops_max=2), 1e4)
+        words: list[str] = []
+        async for event in it.events:
+            if isinstance(event, StopChosen):
+                put(robot, Wall(((2.4, 1.0), (2.7, 1.0), (2.7, 1.4), (2.4, 1.4))))
+            if isinstance(event, MissionProgress) and event.mission_id == mission_id:
+                words.append(event.message)
+                phase = event.phase
+                if event.is_last:
+                    break
+        assert any("stands what is not on the map" in message for message in words)
+        assert phase is MissionPhase.DONE
+        assert not it.daemon.control.status.bumpers_rad
+
+
+def put(robot: SimulatedRobot, wall: Wall) -> None:
+    """Put a wall where the robot's world had none."""
+    world = load_world("laboratory")
+    walls = replace(world, wall=(*world.wall, wall)).walls
+    robot._body._walls = walls
+    robot._laser._walls = walls
+
+
+async def test_going_on_needs_a_map(live: Live) -> None:
+    async with live(robot_in("office")) as it:
+        _, end = await it.do(Explore.of("office", resume=True))
+        assert end.phase is MissionPhase.FAILED
+        assert "no map is in use" in end.message
+
+
+async def test_going_on_takes_the_map_in_use_and_its_name(live: Live) -> None:
+    robot = robot_in("office")
+    async with live(robot) as it:
+        await it.done(Explore.of("office", robot.start, stops_max=2))
+        _, end = await it.do(Explore.of("kitchen", resume=True))
+        assert "the map in use is office, not kitchen" in end.message
+        said = await it.done(Explore.of("office", resume=True))
+        assert ended(said).ending in {"complete", "good_enough", "unreachable"}
+        placed = [event for event in said if isinstance(event, StopPlaced)]
+        assert placed[0].stop == 2
+        assert {event.outcome for event in placed} == {"placed"}
+        sweeps = [event.sweep for event in said if isinstance(event, SweepDone)]
+        tie = it.daemon.supervisor.whereabouts.believed
+        assert tie is not None
+        assert tie.in_map(sweeps[-1].in_odom).distance_m(robot.truth) < 0.1
