@@ -21,12 +21,12 @@ _LEAST_S = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Patience:
-    """How long to wait for a child."""
+    """How long to wait for a child; what it waits for a processor itself comes on top."""
 
     ready_s: float = 10.0
-    """Until it is ready: interpreters start slowly beside busy programs."""
+    """Until it is ready."""
     silent_s: float = 0.3
-    """For the answer to a ping: what is stuck or stopped for so long is killed. What waits for a processor is not."""
+    """For the answer to a ping: what is stuck or stopped for so long is killed."""
     between_s: float = 0.1
     """From one ping to the next."""
     goodbye_s: float = 0.2
@@ -52,7 +52,7 @@ async def watch(
     Raises:
         ChildError: it is not well; says how. It is then for the caller to kill it.
     """
-    await _ready(life, version, patience.ready_s)
+    await _ready(life, version, patience.ready_s, share)
     is_ready()
     number = 0
     while True:
@@ -62,10 +62,9 @@ async def watch(
         await asyncio.sleep(patience.between_s)
 
 
-async def _ready(life: Channel, version: str, within_s: float) -> None:
+async def _ready(life: Channel, version: str, within_s: float, share: Callable[[], Share]) -> None:
     try:
-        async with within(within_s, of=""):
-            said = await life.receive()
+        said = await _said(life, within_s, share)
     except TimeoutError:
         raise ChildError(f"it was not ready within {within_s:g} s") from None
     if not said.startswith(READY):
@@ -74,21 +73,27 @@ async def _ready(life: Channel, version: str, within_s: float) -> None:
         raise ChildError(f"it is version {_shown(said[len(READY) :])}, this is {version}")
 
 
-async def _answered(life: Channel, number: int, silent_s: float, share: Callable[[], Share]) -> None:
-    before, waited_s, left_s = share(), 0.0, silent_s
+async def _answered(life: Channel, number: int, within_s: float, share: Callable[[], Share]) -> None:
+    try:
+        said = await _said(life, within_s, share)
+    except TimeoutError:
+        raise ChildError(f"it was silent for {within_s:g} s") from None
+    # One ping is under way at a time: any other number is an answer twice given, or to what was never asked.
+    if said != number.to_bytes(_NUMBER, "little"):
+        raise ChildError(f"it answered ping {number} with {_shown(said)}")
+
+
+async def _said(life: Channel, within_s: float, share: Callable[[], Share]) -> bytes:
+    """Return what it says next; TimeoutError if it does not within the time that it was free to."""
+    before, waited_s, left_s = share(), 0.0, within_s
     while left_s > _LEAST_S:
         try:
             async with within(left_s, of=""):
-                said = await life.receive()
+                return await life.receive()
         except TimeoutError:
             waited_s += left_s
-            left_s = silent_s - share().could_act_s(before, waited_s)
-            continue
-        # One ping is under way at a time: any other number is an answer twice given, or to what was never asked.
-        if said != number.to_bytes(_NUMBER, "little"):
-            raise ChildError(f"it answered ping {number} with {_shown(said)}")
-        return
-    raise ChildError(f"it was silent for {silent_s:g} s")
+            left_s = within_s - share().could_act_s(before, waited_s)
+    raise TimeoutError
 
 
 def _shown(said: bytes) -> str:

@@ -110,8 +110,8 @@ def spawn(program: Program) -> Process:
     """
     try:
         return _spawn(program)
-    except (OSError, subprocess.SubprocessError) as error:
-        raise ChildError(f"it cannot be started: {error}") from error
+    except (OSError, MemoryError, subprocess.SubprocessError) as error:
+        raise ChildError(f"it cannot be started: {str(error) or 'no memory'}") from error
 
 
 def _spawn(program: Program) -> Process:

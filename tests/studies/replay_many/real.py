@@ -156,8 +156,10 @@ class _Session:
             "boards killed": self._boards_killed,
             "daemon frozen": lambda: self._still(self._daemon),
             "daemon stalled": self._stall,
-            "head killed": lambda: self._to_head(signal.SIGKILL),
-            "head frozen": lambda: self._to_head(signal.SIGSTOP),  # and killed, when it was silent for long enough
+            "head killed": lambda: self._to_child("head", signal.SIGKILL),
+            "head frozen": lambda: self._to_child("head", signal.SIGSTOP),  # and killed, when it was silent for long
+            "front killed": lambda: self._to_child("front", signal.SIGKILL),
+            "front frozen": lambda: self._to_child("front", signal.SIGSTOP),  # as above
         }
 
     async def _mission(self, mission: Mission) -> None:
@@ -223,12 +225,12 @@ class _Session:
             await asyncio.sleep(self.rng.uniform(0.05, _STILL_MAX_S))
             process.send_signal(signal.SIGCONT)
 
-    async def _to_head(self, number: signal.Signals) -> None:
-        """Send a signal to the process that computes; in a replay none dies."""
-        head = child_of(self._daemon.pid, "robotd.head")
-        if head is not None:
+    async def _to_child(self, name: str, number: signal.Signals) -> None:
+        """Send a signal to one of the daemon's other processes; in a replay none dies."""
+        child = child_of(self._daemon.pid, f"robotd.{name}")
+        if child is not None:
             with contextlib.suppress(ProcessLookupError):
-                os.kill(head, number)
+                os.kill(child, number)
 
     async def _boards_killed(self) -> None:
         """Cut the power of all boards, and give it back."""

@@ -15,10 +15,14 @@ from robotd.app import daemon as program
 from robotd.app.compose import Daemon, compose
 from robotd.app.daemon import main, run
 from robotd.app.daemon_lock import lock_directory
+from robotd.children.process import Process
+from robotd.client import AsyncClient
 from robotd.config import Config
+from robotd.contract.device_status import LinkState
 from robotd.contract.requests import Arm
-from robotd.core.errors import TransportError
+from robotd.core.errors import ChildError, TransportError
 from robotd.core.grid_spec import GridSpec
+from robotd.front import supervised as front
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.head.compute import Compute
@@ -33,6 +37,7 @@ from robotd.sim.runtime import connectors
 from tests.support.living import until_ready
 from tests.support.own_boards import own_board
 from tests.support.places import head_of, place_of
+from tests.support.real_rig import child_of
 
 
 @pytest.fixture(name="short")
@@ -191,3 +196,40 @@ async def test_a_map_that_nobody_saved_outlives_sigterm(short: Path, monkeypatch
     stored = MapStore(short / "maps").load("lab")
     loaded, entry = stored.grid, stored.entry
     assert (entry.is_unsaved, loaded.digest()) == (True, grid.digest())
+
+
+@pytest.mark.real_clock
+async def test_without_a_front_it_is_disarmed_says_so_tries_again_and_keeps_its_lines(
+    short: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    starts, start_it = 0, front._start
+
+    def start(runtime_dir: str) -> Process:
+        nonlocal starts
+        starts += 1
+        if starts in {2, 3, 4}:
+            raise ChildError("it cannot be started: Cannot allocate memory")
+        return start_it(runtime_dir)
+
+    robot = SimulatedRobot(load_world("office"), seed=1)
+    monkeypatch.setattr(front, "_start", start)
+    async with connectors(robot) as connects:
+        captured = Captured(connects, monkeypatch)
+        running = asyncio.create_task(run(config_in(short)))
+        daemon = await captured.composed
+        await until_ready(daemon)
+        async with AsyncClient(short / "run", deadline_s=30.0) as client:
+            first = (await client.hello()).session
+            await client.arm()
+            dying = child_of(os.getpid(), "robotd.front")
+            assert dying is not None
+            os.kill(dying, signal.SIGKILL)
+            while (await client.hello()).session == first:
+                """It is not the next one yet."""
+            status = await client.status()
+        assert (status.mode, starts) == ("disarmed", 5)
+        assert "no client can be heard: it cannot be started: Cannot allocate memory" in status.reason
+        assert [device.link for device in status.devices] == [LinkState.READY] * 3
+        assert BoardState.ARMED not in {own_board(robot, name).state for name in robot.boards}
+        os.kill(os.getpid(), signal.SIGTERM)
+        await asyncio.wait_for(running, 5.0)

@@ -197,6 +197,20 @@ async def test_the_time_for_which_it_was_given_no_processor_is_not_its_silence()
         assert [death.cause for death in seen.deaths] == ["it was silent for 0.3 s"]
 
 
+async def test_one_that_is_given_few_turns_may_start_slowly() -> None:
+    async def starts_slowly(life: Channel, lanes: Sequence[Channel]) -> None:
+        await asyncio.sleep(60.0)
+        await live(life, NOW)
+
+    loop = asyncio.get_running_loop()
+    began_s = loop.time()
+    async with supervised(
+        starts_slowly, share=lambda: Share(0.1 * (loop.time() - began_s), 0.0, wants_it=True)
+    ) as seen:
+        await seen.child.is_ready.wait()
+        assert seen.deaths == []
+
+
 async def test_one_that_computes_without_end_is_killed_when_it_had_its_time() -> None:
     loop = asyncio.get_running_loop()
     began_s = loop.time()

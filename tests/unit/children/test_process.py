@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import errno
 import os
 import pty
 import resource
@@ -140,6 +141,27 @@ async def test_what_cannot_be_started_says_why(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(sys, "executable", "/nowhere/python")
     with pytest.raises(ChildError, match=r"it cannot be started: .*No such file"):
         spawn(Program(ECHO))
+
+
+@pytest.mark.parametrize(
+    ("error", "why"),
+    [
+        (OSError(errno.ENOMEM, os.strerror(errno.ENOMEM)), "Cannot allocate memory"),
+        (BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN)), "Resource temporarily unavailable"),
+        (MemoryError(), "no memory"),
+    ],
+)
+async def test_without_memory_or_processes_it_cannot_be_started_and_no_descriptor_is_lost(
+    monkeypatch: pytest.MonkeyPatch, error: Exception, why: str
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr("robotd.children.process.subprocess.Popen", refuse)
+    before = open_descriptors()
+    with pytest.raises(ChildError, match=f"it cannot be started: .*{why}"):
+        spawn(Program(ECHO, lanes=2))
+    assert open_descriptors() == before
 
 
 async def test_without_descriptors_it_cannot_be_started_and_none_is_lost() -> None:

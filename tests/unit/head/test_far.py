@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from robotd import __version__
-from robotd.children.channel import Channel
+from robotd.children.channel import Channel, Part
 from robotd.children.in_process import InProcess, Main
 from robotd.children.inside import live
 from robotd.children.process import Running
@@ -22,7 +22,7 @@ from robotd.head.desk import Desk
 from robotd.head.far import AWAY_S, JOB_S, FarHead
 from robotd.head.jobs import BeginMap, Insert, Inserted, MapRef, Narrow, Narrowed, Plan, Prepare, ShowMap
 from robotd.head.settings import HeadSettings
-from robotd.head.wire import NUMBER, JobFailed, pack_answer, unpack_job
+from robotd.head.wire import NUMBER, JobFailed, NotHeld, pack_answer, pack_error, unpack_job
 
 GRID = GridSettings(rows=60, cols=80)
 SPEC = GRID.spec_covering(((0.0, 0.0),), 1.0)
@@ -150,11 +150,18 @@ async def twice(lane: Channel, number: bytes, answer: bytes) -> None:
     lane.send(number, answer)
 
 
+async def has_lost_what_it_held(lane: Channel, number: bytes, answer: bytes) -> None:
+    lane.send(number, pack_error(NotHeld("no map 1 of generation 0 is held")))
+
+
 async def hung_up(lane: Channel, number: bytes, answer: bytes) -> None:
     lane.close()
 
 
-MISDEEDS = (dies, says_nothing, garbage, nothing_at_all, of_another_type, to_an_older_one, twice, hung_up)
+MISDEEDS = (
+    *(dies, says_nothing, garbage, nothing_at_all, of_another_type),
+    *(to_an_older_one, twice, has_lost_what_it_held, hung_up),
+)
 
 
 @pytest.mark.parametrize("at", ["begin map", "insert", "prepare", "narrow"])
@@ -171,6 +178,46 @@ async def test_whatever_a_head_does_wrong_another_goes_on_where_it_was_and_nothi
         assert told.lost == []
         # A second answer may come when nobody waits any more.
         assert (len(told.away), told.away[-1:]) == (2, [None]) or reply is twice
+
+
+@dataclass
+class Full:
+    """A lane that has room for the settings alone."""
+
+    lane: Channel
+    sent: int = 0
+
+    def send(self, *parts: Part) -> bool:
+        self.sent += 1
+        return self.sent == 1 and self.lane.send(*parts)
+
+    async def receive(self) -> bytes:
+        return await self.lane.receive()
+
+    async def room(self) -> None:
+        await self.lane.room()
+
+    def close(self) -> None:
+        self.lane.close()
+
+
+async def test_one_that_takes_no_more_jobs_is_killed_and_the_next_one_has_them() -> None:
+    heads = Heads()
+
+    def start() -> Running:
+        running = heads.start()
+        if heads.lives == 1:
+            running.lanes = [Full(running.lanes[0])]  # type: ignore[misc]  # of a child that is a test
+        return running
+
+    head, told = FarHead(HeadSettings(), start), Told()
+    head.host = told
+    running = asyncio.create_task(head.run())
+    await mapped_and_looked_round(head)
+    assert told.away == ["it takes no more jobs", None]
+    assert heads.lives == 2
+    running.cancel()
+    await asyncio.wait((running,))
 
 
 async def test_a_new_head_is_fed_the_map_and_the_stop_again_and_estimates_nothing_twice() -> None:
