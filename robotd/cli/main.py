@@ -32,6 +32,7 @@ WORDS = {
     "pose": ("where", "print the newest pose estimate"),
     "watch": ("where", "print what happens, as it happens, until Ctrl-C"),
     "top": ("top", "show mode, links, pose, mission, sweep and log as they change; keys stop and arm"),
+    "plan": ("where", "say by which way a place is reached, or why not, before anybody drives there"),
     "drive-to": ("where", "drive to a place on the map in use, and stand there"),
     "drive": ("hands", "drive straight ahead, or back, by odometry; needs no map"),
     "turn": ("hands", "turn on the spot by odometry; needs no map"),

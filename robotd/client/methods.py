@@ -30,11 +30,15 @@ from robotd.contract.requests import (
     GetStatus,
     Hello,
     ListMaps,
+    ListRecordings,
+    MapDelete,
     MapDiscard,
     MapLoad,
+    MapRename,
     MapSave,
     MapShow,
     PlanTo,
+    RecordDelete,
     RecordStart,
     RecordStop,
     Renew,
@@ -140,6 +144,10 @@ class Methods:
     map_discard = asks(MapDiscard, _nothing)
     map_list = asks(ListMaps, lambda answer: answer.maps)
     map_show = asks(MapShow, _all)
+    map_delete = asks(MapDelete, _nothing)
+    map_rename = asks(MapRename, _nothing)
     plan_to = asks(PlanTo, _all)
     record_start = asks(RecordStart, lambda answer: answer.path)
     record_stop = asks(RecordStop, lambda answer: answer.path)
+    record_list = asks(ListRecordings, _all)
+    record_delete = asks(RecordDelete, _nothing)

@@ -91,6 +91,26 @@ class RecordingFile(msgspec.Struct, frozen=True):
     path: str | None
 
 
+class RecordingInfo(msgspec.Struct, frozen=True):
+    """A file that was recorded to."""
+
+    path: str
+    """From ``recording.dir`` on."""
+    size_bytes: int
+    changed_unix_ns: int
+    """When it was written to last."""
+    is_open: bool
+    """Whether it is being recorded to now."""
+
+
+class RecordingList(msgspec.Struct, frozen=True):
+    """What was recorded, the newest first."""
+
+    recordings: tuple[RecordingInfo, ...]
+    left_out: int
+    """Older ones beyond those."""
+
+
 class ConfigText(msgspec.Struct, frozen=True):
     """The effective configuration, as TOML."""
 

@@ -14,6 +14,7 @@ Heading = Annotated[float, Meta(ge=-2.0 * math.pi, le=2.0 * math.pi)]
 LeaseTime = Annotated[float, Meta(ge=0.1, le=10.0)]
 # \A and \Z: with ^ and $ a newline at the end would pass, and a name becomes a directory.
 MapName = Annotated[str, Meta(pattern=r"\A[A-Za-z0-9][A-Za-z0-9._-]{0,63}\Z")]
+RecordingPath = Annotated[str, Meta(min_length=1, max_length=1024, pattern=r"\A[^\x00]*\Z")]
 Number = Annotated[int, Meta(ge=0, le=2**53)]
 """Up to which whole numbers are exact in languages that have doubles alone."""
 Stops = Annotated[tuple[tuple[Coordinate, Coordinate], ...], Meta(max_length=1000)]

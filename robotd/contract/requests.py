@@ -16,9 +16,10 @@ from robotd.contract.answers import (
     MapEntryInfo,
     MapList,
     RecordingFile,
+    RecordingList,
     Renewed,
 )
-from robotd.contract.arguments import Coordinate, MapName, Number, PoseArgument
+from robotd.contract.arguments import Coordinate, MapName, Number, PoseArgument, RecordingPath
 from robotd.contract.events import MapChanged, Status
 from robotd.contract.missions import MISSIONS
 from robotd.contract.request import Request
@@ -136,6 +137,22 @@ class MapShow(Request[MapChanged], frozen=True):
             raise ValueError("a version needs a name")
 
 
+class MapDelete(Request[Done], frozen=True):
+    """Remove a stored version of a map, or all of them; never of the map in use."""
+
+    cmd, result, deadline_s = "map_delete", Done, 60.0
+    name: MapName
+    version: Number | None = None
+
+
+class MapRename(Request[Done], frozen=True):
+    """Give a stored map another name, all of its versions; never the map in use."""
+
+    cmd, result, deadline_s = "map_rename", Done, 60.0
+    name: MapName
+    new_name: MapName
+
+
 class PlanTo(Request[Way], frozen=True):
     """Ask for the way from here to a place on the map in use; nothing moves."""
 
@@ -148,13 +165,26 @@ class RecordStart(Request[RecordingFile], frozen=True):
     """Start recording, into a new file of the daemon's or into this one, which lies below its ``recording.dir``."""
 
     cmd, result = "record_start", RecordingFile
-    path: Annotated[str, Meta(min_length=1, max_length=1024, pattern=r"\A[^\x00]*\Z")] | None = None
+    path: RecordingPath | None = None
 
 
 class RecordStop(Request[RecordingFile], frozen=True):
     """Close the recording."""
 
     cmd, result, deadline_s = "record_stop", RecordingFile, 30.0
+
+
+class ListRecordings(Request[RecordingList], frozen=True):
+    """List what was recorded."""
+
+    cmd, result, only_looks, deadline_s = "record_list", RecordingList, True, 30.0
+
+
+class RecordDelete(Request[Done], frozen=True):
+    """Remove a recording, which must not be under way."""
+
+    cmd, result, deadline_s = "record_delete", Done, 30.0
+    path: RecordingPath
 
 
 class GetConfig(Request[ConfigText], frozen=True):
@@ -169,8 +199,8 @@ REQUESTS: dict[str, type[Request[Any]]] = {
         *(Hello, GetStatus, GetConfig),
         *(Arm, Disarm, Stop, Clear),
         *(*MISSIONS, Renew),
-        *(MapSave, MapLoad, MapDiscard, ListMaps, MapShow, PlanTo),
-        *(RecordStart, RecordStop),
+        *(MapSave, MapLoad, MapDiscard, ListMaps, MapShow, MapDelete, MapRename, PlanTo),
+        *(RecordStart, RecordStop, ListRecordings, RecordDelete),
     )
 }
 """Every request there is, by its name on the wire."""

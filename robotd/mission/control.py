@@ -11,11 +11,23 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from robotd.contract.answers import ConfigText, Done, MissionStarted, RecordingFile, Renewed
+from robotd.contract.answers import ConfigText, Done, MissionStarted, RecordingFile, RecordingList, Renewed
 from robotd.contract.events import Event, Status
 from robotd.contract.missions import MISSIONS, Explore, MapStart, Mission, with_lease
 from robotd.contract.request import Request
-from robotd.contract.requests import Arm, Clear, Disarm, GetConfig, GetStatus, RecordStart, RecordStop, Renew, Stop
+from robotd.contract.requests import (
+    Arm,
+    Clear,
+    Disarm,
+    GetConfig,
+    GetStatus,
+    ListRecordings,
+    RecordDelete,
+    RecordStart,
+    RecordStop,
+    Renew,
+    Stop,
+)
 from robotd.contract.topics import Topic
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns, wall_offset_ns
@@ -32,6 +44,7 @@ from robotd.mission.whereabouts.keeping import Keeping
 from robotd.recording.entries import CommandEntry
 from robotd.recording.place import make_place
 from robotd.recording.preroll import PrerollJournal
+from robotd.recording.shelf import delete_recording, list_recordings
 
 R = TypeVar("R")
 
@@ -72,6 +85,8 @@ class Control:
             **self._maps.rows,
             RecordStart: self._start_recording,
             RecordStop: self._stop_recording,
+            ListRecordings: self._list_recordings,
+            RecordDelete: self._delete_recording,
         }
 
     @property
@@ -215,6 +230,20 @@ class Control:
         await self._disk.run("end recording", finish)
         log.info("the recording %s is complete", path)
         return RecordingFile(str(path))
+
+    async def _list_recordings(self, _: ListRecordings) -> RecordingList:
+        return await self._disk.run("list recordings", list_recordings, *self._shelf)
+
+    async def _delete_recording(self, request: RecordDelete) -> Done:
+        """Remove a recording; RecordingError says why not."""
+        await self._disk.run("delete recording", delete_recording, *self._shelf, request.path)
+        log.info("the recording %s was deleted", request.path)
+        return Done()
+
+    @property
+    def _shelf(self) -> tuple[Path, Path, Path | None]:
+        """Where recordings are, what they are not, and the one under way."""
+        return self._recordings_dir, self._archive.root, self._journal.path
 
     def _note(self, request: Request[Any], time_ns: int) -> None:
         self._journal.command(time_ns, *noted(request))

@@ -15,7 +15,7 @@ import msgspec
 from robotd.contract.answers import Done, MapEntryInfo, MapList
 from robotd.contract.events import MapChanged
 from robotd.contract.request import Request
-from robotd.contract.requests import ListMaps, MapDiscard, MapLoad, MapSave, MapShow, PlanTo
+from robotd.contract.requests import ListMaps, MapDelete, MapDiscard, MapLoad, MapRename, MapSave, MapShow, PlanTo
 from robotd.contract.ways import Hindrance, Way
 from robotd.core.clock import now_ns
 from robotd.core.errors import MapError, MissionError
@@ -64,6 +64,8 @@ class MapRequests:
             MapDiscard: self._discard,
             ListMaps: self._list,
             MapShow: self._show,
+            MapDelete: self._delete,
+            MapRename: self._rename,
             PlanTo: self._plan,
         }
 
@@ -122,6 +124,29 @@ class MapRequests:
         place.given_up()
         self._supervisor.publish_status()
         return Done()
+
+    async def _delete(self, request: MapDelete) -> Done:
+        """Remove a stored map; MapError if there is none, MissionError if it is the one in use."""
+        async with self._stored(request.name, "deleted"):
+            gone = await self._disk.run("delete map", self._archive.delete, request.name, request.version)
+        log.info("map %s version %s was deleted", request.name, ", ".join(map(str, gone)))
+        return Done()
+
+    async def _rename(self, request: MapRename) -> Done:
+        """Give a stored map another name; MapError if there is none, MissionError if it is the one in use."""
+        async with self._stored(request.name, "renamed"):
+            await self._disk.run("rename map", self._archive.rename, request.name, request.new_name)
+        log.info("map %s is called %s now", request.name, request.new_name)
+        return Done()
+
+    @contextlib.asynccontextmanager
+    async def _stored(self, name: str, done: str) -> AsyncIterator[None]:
+        """Let nothing be kept meanwhile, and refuse it for the map in use, which would be told of as saved."""
+        async with self._keeping.turn:
+            in_use = self._supervisor.whereabouts.map_in_use
+            if in_use is not None and in_use.name == name:
+                raise MissionError(f"map {name} is in use and cannot be {done}: load another one first")
+            yield
 
     async def _load(self, request: MapLoad) -> MapEntryInfo:
         """Make a stored map the one in use.

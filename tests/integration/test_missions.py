@@ -12,7 +12,20 @@ from robotd.contract.answers import RecordingFile
 from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.contract.modes import Mode
-from robotd.contract.requests import REQUESTS, Hello, MapLoad, MapSave, MapShow, RecordStart, RecordStop
+from robotd.contract.requests import (
+    REQUESTS,
+    Hello,
+    ListMaps,
+    ListRecordings,
+    MapDelete,
+    MapLoad,
+    MapRename,
+    MapSave,
+    MapShow,
+    RecordDelete,
+    RecordStart,
+    RecordStop,
+)
 from robotd.core.errors import MapError, MissionError, RecordingError
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.recording.entries import CommandEntry
@@ -170,3 +183,35 @@ async def test_a_board_that_restarts_while_mapping_ends_the_mission_and_leaves_n
         assert after.in_odom.distance_m(before.in_odom) < 0.1
         assert it.daemon.supervisor.mode is Mode.DISARMED
         assert not it.daemon.robot.absent
+
+
+async def test_stored_maps_are_renamed_and_deleted_but_never_the_one_in_use(live: Live) -> None:
+    async with live(office(), QUICK) as it:
+        control = it.daemon.control
+        await it.done(MapStart.of("office", (), it.robot.start))
+        await control.perform(MapSave())
+        await control.perform(MapSave("old"))
+        for request in (MapDelete("office"), MapRename("office", "lab")):
+            with pytest.raises(MissionError, match="map office is in use"):
+                await control.perform(request)
+        await control.perform(MapRename("old", "lab"))
+        assert [entry.name for entry in (await control.perform(ListMaps())).maps] == ["lab", "office"]
+        with pytest.raises(MapError, match="no version 7"):
+            await control.perform(MapDelete("lab", 7))
+        await control.perform(MapDelete("lab"))
+        assert [entry.name for entry in (await control.perform(ListMaps())).maps] == ["office"]
+        with pytest.raises(MapError, match="there is no map 'lab'"):
+            await control.perform(MapDelete("lab"))
+
+
+async def test_recordings_are_listed_and_deleted_but_not_the_one_under_way(live: Live) -> None:
+    async with live(office(), QUICK) as it:
+        control = it.daemon.control
+        await control.perform(RecordStart("monday.mcap"))
+        (one,) = (await control.perform(ListRecordings())).recordings
+        assert (one.path, one.is_open) == ("monday.mcap", True)
+        with pytest.raises(RecordingError, match="being recorded"):
+            await control.perform(RecordDelete("monday.mcap"))
+        await control.perform(RecordStop())
+        await control.perform(RecordDelete("monday.mcap"))
+        assert (await control.perform(ListRecordings())).recordings == ()

@@ -1,4 +1,4 @@
-"""``record start``, ``record stop``, ``record info`` and ``replay``."""
+"""``record start``, ``stop``, ``list``, ``delete`` and ``info``, and ``replay``."""
 
 import argparse
 from dataclasses import asdict
@@ -6,10 +6,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import msgspec
+
 from robotd.cli.connection import connect
 from robotd.cli.exit_codes import FAILED, OK
-from robotd.cli.show.terminal import complain, out, print_json, print_pairs
+from robotd.cli.show.terminal import complain, out, print_json, print_pairs, print_table
 from robotd.cli.verb import Verb
+from robotd.contract.answers import RecordingInfo
 from robotd.core.clock import NS_PER_S
 from robotd.recording.entries import BytesEntry
 from robotd.recording.reader import Recording, read
@@ -28,6 +31,39 @@ def _stop(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client:
         path = client.record_stop()
     return _tell(arguments, f"recorded {path}" if path else "nothing was being recorded", {"path": path})
+
+
+def _list(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        found = client.record_list()
+    if arguments.json:
+        print_json(msgspec.to_builtins(found))
+        return OK
+    rows = [
+        (one.path, _size(one.size_bytes), _when(one), "under way" if one.is_open else "") for one in found.recordings
+    ]
+    print_table(("recording", "size", "written to last", ""), rows)
+    if found.left_out:
+        out().print(f"and {found.left_out} older ones")
+    return OK
+
+
+def _size(size_bytes: int) -> str:
+    return f"{size_bytes / 1e6:.1f} MB"
+
+
+def _when(one: RecordingInfo) -> str:
+    return f"{datetime.fromtimestamp(one.changed_unix_ns // NS_PER_S, UTC):%Y-%m-%d %H:%M:%S} UTC"
+
+
+def _delete(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        client.record_delete(arguments.path)
+    return _tell(arguments, f"deleted {arguments.path}", {"path": arguments.path})
+
+
+def _path(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("path", metavar="RECORDING", help="as robotctl record list names it")
 
 
 def _tell(arguments: argparse.Namespace, words: str, document: dict[str, Any]) -> int:
@@ -136,6 +172,21 @@ VERBS = (
         asks_daemon=True,
     ),
     Verb("record stop", "close the recording", "robotctl record stop", _stop, asks_daemon=True),
+    Verb(
+        "record list",
+        "list what the daemon recorded, the newest first",
+        "robotctl record list",
+        _list,
+        asks_daemon=True,
+    ),
+    Verb(
+        "record delete",
+        "remove a recording of the daemon's",
+        "robotctl record delete monday.mcap",
+        _delete,
+        _path,
+        asks_daemon=True,
+    ),
     Verb(
         "record info",
         "say what a recording holds, and whether it is whole",

@@ -1,11 +1,13 @@
-"""``localize``, ``pose``, ``watch`` and ``drive-to``."""
+"""``localize``, ``pose``, ``watch``, ``plan`` and ``drive-to``."""
 
 import argparse
 from dataclasses import asdict
 from datetime import datetime
 
+import msgspec
+
 from robotd.cli.connection import connect
-from robotd.cli.exit_codes import AMBIGUOUS, LOST, OK
+from robotd.cli.exit_codes import AMBIGUOUS, FAILED, LOST, OK
 from robotd.cli.motion import MissionOutcome, carry_out, legs_argument, mission_verb
 from robotd.cli.quantities import heading_of_deg, number
 from robotd.cli.show.quiet import Quiet
@@ -76,10 +78,27 @@ def _drive_to(arguments: argparse.Namespace) -> int:
     return carry_out(arguments, DriveTo(arguments.x_m, arguments.y_m, Legs(arguments.legs)))
 
 
-def _goal(parser: argparse.ArgumentParser) -> None:
+def _place(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("x_m", type=number, metavar="X", help="map x [m]")
     parser.add_argument("y_m", type=number, metavar="Y", help="map y [m]")
+
+
+def _goal(parser: argparse.ArgumentParser) -> None:
+    _place(parser)
     legs_argument(parser)
+
+
+def _plan(arguments: argparse.Namespace) -> int:
+    with connect(arguments) as client:
+        way = client.plan_to(arguments.x_m, arguments.y_m)
+    if arguments.json:
+        print_json(msgspec.to_builtins(way))
+    elif way.reason is None:
+        corners = ", ".join(f"({x_m:.2f}, {y_m:.2f})" for x_m, y_m in way.waypoints_m)
+        out().print(f"{way.length_m:.2f} m, by {corners} m")
+    else:
+        out().print(f"no way: {way.message}")
+    return OK if way.reason is None else FAILED
 
 
 def _pose(arguments: argparse.Namespace) -> int:
@@ -156,6 +175,14 @@ VERBS = (
     Verb("pose", "print the newest pose estimate", "robotctl pose --json", _pose, asks_daemon=True),
     Verb(
         "watch", "print what happens, as it happens, until Ctrl-C", "robotctl watch pose sweep", _watch, _topics, True
+    ),
+    Verb(
+        "plan",
+        "say by which way a place on the map in use is reached, or why not; nothing moves",
+        "robotctl plan 2.5 -0.8",
+        _plan,
+        _place,
+        asks_daemon=True,
     ),
     mission_verb(
         "drive-to",

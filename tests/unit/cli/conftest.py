@@ -10,13 +10,14 @@ import pytest
 
 from robotd.client.feed import Gap
 from robotd.client.mission_run import MissionEvent
-from robotd.contract.answers import HelloResult, MapEntryInfo
+from robotd.contract.answers import HelloResult, MapEntryInfo, RecordingInfo, RecordingList
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.contract.events import MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
 from robotd.contract.missions import Mission
 from robotd.contract.modes import Mode
 from robotd.contract.topics import Published
+from robotd.contract.ways import Hindrance, Way
 from robotd.core.errors import MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
@@ -150,6 +151,18 @@ class FakeClient:
         values[2:4, 2:4] = 0
         spec = GridSpec(0.1, 0.0, 0.0, (6, 6))
         return MapChanged(1, "abc", 2, spec, whole=True, cells=np.empty(0, np.intp), values=values, stops=7)
+
+    def plan_to(self, x_m: float, y_m: float) -> Way:
+        self.asked.append(("plan_to", x_m, y_m))
+        if x_m < 0.0:
+            return Way((), 0.0, Hindrance.OUTSIDE, "the goal lies outside the map", (0.5, 1.0))
+        return Way(((1.0, 0.0), (x_m, y_m)), 3.25)
+
+    def record_list(self) -> RecordingList:
+        return RecordingList((RecordingInfo("monday.mcap", 2_500_000, 1_700_000_000_000_000_000, True),), 2)
+
+    def record_delete(self, path: str) -> None:
+        self.asked.append(("record_delete", path))
 
     def record_start(self, path: str | None) -> str | None:
         self.asked.append(("record_start", path))

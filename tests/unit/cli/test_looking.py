@@ -250,6 +250,27 @@ def test_recording_is_started_and_stopped(client: Any, capsys: pytest.CaptureFix
     assert stopped == "recorded recordings/new.mcap"
 
 
+def test_recordings_are_listed_and_deleted(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["record", "list"]) == 0
+    printed = capsys.readouterr().out
+    assert re.search(r"monday\.mcap\s+2\.5 MB\s+2023-11-14 22:13:20 UTC\s+under way", printed)
+    assert "and 2 older ones" in printed
+    assert main(["record", "list", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["recordings"][0]["size_bytes"] == 2_500_000
+    assert main(["record", "delete", "monday.mcap"]) == 0
+    assert ("record_delete", "monday.mcap") in client.asked
+    assert capsys.readouterr().out == "deleted monday.mcap\n"
+
+
+def test_a_way_is_told_before_anybody_drives_it(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plan", "2.5", "0.75"]) == 0
+    assert capsys.readouterr().out == "3.25 m, by (1.00, 0.00), (2.50, 0.75) m\n"
+    assert main(["plan", "-9", "0"]) == 1
+    assert capsys.readouterr().out == "no way: the goal lies outside the map\n"
+    assert main(["plan", "--json", "-9", "0"]) == 1
+    assert json.loads(capsys.readouterr().out)["nearest_m"] == [0.5, 1.0]
+
+
 def test_a_file_that_cannot_be_written_is_one_line(
     client: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
