@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help console demo demo-real demo-busy test bench bench-peers paper conservative exact faults interop replay-many liars fuzz safety stops heads heart lag worlds firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help console demo demo-real demo-busy test bench bench-peers paper conservative exact docs faults interop replay-many liars fuzz safety stops heads heart lag worlds firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -86,6 +86,10 @@ heart: .venv/.dev  ## Whether a stop is on the wires in time, whatever clients d
 first-hour: .venv/.dev  ## A new user's first hour, by commands alone: wheel, config init, calibrate, maps in and out; needs ROBOTD_DATA (minutes)
 	@$(BIN)/python -m tests.studies.first_hour.run
 
+docs: .venv/.docs  ## The pages as a site, in build/docs: every warning an error, every link followed, nothing foreign
+	@$(BIN)/sphinx-build -q -W --keep-going -b html -c docs/site . build/docs
+	@$(BIN)/python docs/site/check.py build/docs
+
 interop: .venv/.dev  ## Each form of other programs, written and read, a line each: sizes, counts, how far what comes back is (a minute)
 	@$(BIN)/python -m tests.studies.interop.run
 
@@ -131,4 +135,9 @@ clean:  ## Remove the environment and all that was made
 .venv/.dev: pyproject.toml $(COMPILED) | .venv/bin/python
 	@echo "robotd: installing robotd and its development tools (once, about a minute)"
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[dev]'
+	@touch $@
+
+.venv/.docs: pyproject.toml | .venv/.dev
+	@echo "robotd: installing what makes a site of the pages (once)"
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[docs]'
 	@touch $@
