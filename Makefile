@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help console demo demo-real demo-busy test bench bench-peers paper conservative exact docs faults interop replay-many liars fuzz safety stops heads heart lag worlds firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help console demo demo-real demo-busy test bench bench-peers paper conservative exact docs faults interop replay-many liars fuzz safety stops heads heart lag worlds truth firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -79,6 +79,9 @@ stops: .venv/.dev  ## Whether the robot comes to rest whatever ends the daemon, 
 
 worlds: .venv/.dev  ## Whether whole daemons map hard worlds and find themselves in them, 20 robots in each: a table (ten minutes; make worlds SEEDS=3 ONLY=hall)
 	@$(BIN)/python -m tests.studies.worlds.run $(if $(SEEDS),--seeds $(SEEDS)) $(if $(ONLY),--only $(ONLY))
+
+truth: .venv/.dev  ## All ways to ask of all logs in ROBOTD_DATA, by robotctl eval: writes docs/truth/<date>.md (hours; make truth SHARE=0.1)
+	@$(BIN)/python -m tests.studies.truth.run $(if $(SHARE),--share $(SHARE)) $(if $(ONLY),--only $(ONLY))
 
 heart: .venv/.dev  ## Whether a stop is on the wires in time, whatever clients do and whatever becomes of the front: writes docs/benchmarks/heart.md (two hours; TRIALS=20)
 	@$(BIN)/python -m tests.studies.heart.run $(if $(TRIALS),--trials $(TRIALS) --endings $(TRIALS)) $(if $(ONLY),--only "$(ONLY)")

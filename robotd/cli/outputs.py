@@ -165,6 +165,11 @@ def write(path: Path, content: bytes) -> None:
         raise RobotdError(f"cannot write {path}: {error.strerror or error}") from error
 
 
+def part_of(path: Path) -> Path:
+    """Return where a file is while it is written piece by piece."""
+    return path.with_name(f"{path.name}.part")
+
+
 @contextmanager
 def writing(path: Path) -> Iterator[Callable[[bytes], None]]:
     """Write a file piece by piece, beside the old one first and in its place at the end, whatever ends it but a kill.
@@ -174,7 +179,7 @@ def writing(path: Path) -> Iterator[Callable[[bytes], None]]:
     Raises:
         RobotdError: it cannot be written; an older one is as it was.
     """
-    part = path.with_name(f"{path.name}.part")
+    part = part_of(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with part.open("wb") as file:

@@ -44,8 +44,10 @@ class CaseResult:
     is_best_right: bool
     """Whether the best answer is right, however sure of it."""
     best: Pose2 | None
+    regions: int
+    """How many answers there are."""
     answers: tuple[Pose2, ...]
-    """The middles of all regions, map frame, the best first."""
+    """The middles of all regions, map frame, the best first; none of a result that was read from a line."""
     best_rank: int | None
     readings: int
     cpu_s: float
@@ -66,6 +68,7 @@ class CaseResult:
             belief=0.0 if first is None else first.belief,
             is_best_right=first is not None and truth is not None and is_near(first.pose, truth),
             best=estimate.best,
+            regions=len(estimate.regions),
             answers=tuple(region.centre for region in estimate.regions),
             best_rank=estimate.best_rank,
             readings=estimate.readings,
@@ -100,7 +103,30 @@ class CaseResult:
             "error_rad": self.error_rad,
             "best_rank": self.best_rank,
             "readings": self.readings,
-            "regions": len(self.answers),
+            "regions": self.regions,
             "cpu_s": self.cpu_s,
             "wall_s": self.wall_s,
         }
+
+    @classmethod
+    def of_document(cls, document: dict[str, Any]) -> "CaseResult":
+        """Return the result that a line told.
+
+        Raises:
+            KeyError: it is no document of a result.
+        """
+        key = CaseKey(**{field.name: document[field.name] for field in dataclasses.fields(CaseKey)})
+        truth, best = (None if document[name] is None else Pose2(**document[name]) for name in ("truth", "best"))
+        told = (
+            "has_truth",
+            "is_near",
+            "belief",
+            "is_best_right",
+            "best_rank",
+            "readings",
+            "regions",
+            "cpu_s",
+            "wall_s",
+        )
+        others = {name: document[name] for name in told}
+        return cls(key=key, verdict=CaseVerdict(document["verdict"]), truth=truth, best=best, answers=(), **others)

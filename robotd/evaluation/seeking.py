@@ -70,8 +70,11 @@ class Seeking:
         localizer.add(*readings)
         estimate = localizer.estimate(0, final=True)
         cpu_s, wall_s = time.process_time() - cpu_s, time.perf_counter() - wall_s
-        key = CaseKey(self.log, query.number, self.seed, self.digest, self.commit, self.protocol)
-        return CaseResult.of(key, query, estimate, cpu_s=cpu_s, wall_s=wall_s)
+        return CaseResult.of(self.key_of(query), query, estimate, cpu_s=cpu_s, wall_s=wall_s)
+
+    def key_of(self, query: Query) -> CaseKey:
+        """Return by what the result of a query is known."""
+        return CaseKey(self.log, query.number, self.seed, self.digest, self.commit, self.protocol)
 
 
 def run(job: Seeking, queries: Iterable[Query], map_: Map = map) -> Iterator[CaseResult]:

@@ -56,7 +56,7 @@ class Tally:
         self.ambiguous_with_truth += result.verdict is CaseVerdict.AMBIGUOUS and result.has_truth
         self.near += result.is_near
         self.near_right += result.is_near and result.verdict is CaseVerdict.RIGHT
-        if result.answers:
+        if result.regions:
             tenth = min(int(10 * result.belief), 9)
             self.said[tenth] += 1
             self.said_right[tenth] += result.is_best_right

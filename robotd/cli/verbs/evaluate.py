@@ -1,10 +1,9 @@
 """``eval``: read logs, seek their scans, report."""
 
 import argparse
-import json
 import subprocess
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -12,9 +11,10 @@ from typing import Any
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from robotd import __version__, config
+from robotd.cli.eval_lines import Say, answered_before, is_standard_output, result_lines
 from robotd.cli.exit_codes import INTERRUPTED, OK
 from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
-from robotd.cli.outputs import EVAL_LINES, PICTURES, STANDARD_OUTPUT, output_argument, writing
+from robotd.cli.outputs import EVAL_LINES, PICTURES, STANDARD_OUTPUT, output_argument
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import positive, whole, within
 from robotd.cli.show.evaluation_tables import print_parameters, print_report, print_summary
@@ -22,6 +22,7 @@ from robotd.cli.show.terminal import err
 from robotd.cli.surveys import evaluate_surveys
 from robotd.cli.verb import Verb
 from robotd.core.errors import RecordingError
+from robotd.evaluation.answered import Answered
 from robotd.evaluation.division import Division
 from robotd.evaluation.log_report import LogReport, MapFacts
 from robotd.evaluation.processes import over_processes
@@ -38,7 +39,6 @@ from robotd.head.cores import cores
 from robotd.logs.scan import RecordedLog, Scan
 
 _Draw = Callable[[Path, Seeking, Scan, CaseResult], None]
-_Say = Callable[[dict[str, Any]], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,24 +81,28 @@ class _Task:
 
 def _eval(arguments: argparse.Namespace) -> int:
     if arguments.slam:
-        with _lines(arguments.json) as say:
-            return evaluate_surveys(arguments, say, shows=not _is_standard_output(arguments.json))
+        with result_lines(arguments.json) as say:
+            return evaluate_surveys(arguments, say, shows=not is_standard_output(arguments.json))
     plan = _plan(arguments)
     draw = _drawing() if arguments.pictures is not None else None
     logs = _logs(arguments)
     tasks = [
         _Task(name, log, protocol, grid) for name, log in logs for protocol in plan.protocols for grid in plan.grids
     ]
+    # Read before the file is begun again; and then written first, so that a second end loses nothing of the first run.
+    before = answered_before(arguments.json) if arguments.resume else Answered({})
     reports: list[LogReport] = []
-    with _lines(arguments.json) as say:
+    with result_lines(arguments.json) as say:
         say({"parameters": plan.document()})
+        for result in before.results.values():
+            say(result.document())
         with suppress(KeyboardInterrupt):
             for task in tasks:
-                reports.append(_evaluate(plan, task, say, draw and _into(arguments.pictures, draw)))
+                reports.append(_evaluate(plan, task, before, say, draw and _into(arguments.pictures, draw)))
                 say(reports[-1].document())
                 if reports[-1].is_cut:
                     break
-    if not _is_standard_output(arguments.json):
+    if not is_standard_output(arguments.json):
         _tell(plan, reports)
     return OK if len(reports) == len(tasks) and not reports[-1].is_cut else INTERRUPTED
 
@@ -154,36 +158,24 @@ def _into(directory: Path, draw: _Draw) -> Callable[[Seeking, Scan, CaseResult],
     return lambda job, scan, result: draw(directory, job, scan, result)
 
 
-@contextmanager
-def _lines(file: Path | None) -> Iterator[_Say]:
-    """Say documents as JSON lines, each as soon as it is known, to a file, to standard output, or to nobody."""
-    if file is None:
-        yield lambda _: None
-    elif _is_standard_output(file):
-        yield lambda document: print(_line(document), flush=True)
-    else:
-        with writing(file) as write:
-            yield lambda document: write(f"{_line(document)}\n".encode())
-
-
-def _line(document: dict[str, Any]) -> str:
-    return json.dumps(document, allow_nan=False)
-
-
-def _is_standard_output(file: Path | None) -> bool:
-    return str(file) == STANDARD_OUTPUT
-
-
 def _evaluate(
-    plan: _Plan, task: _Task, say: _Say, draw: Callable[[Seeking, Scan, CaseResult], None] | None
+    plan: _Plan,
+    task: _Task,
+    before: Answered,
+    say: Say,
+    draw: Callable[[Seeking, Scan, CaseResult], None] | None,
 ) -> LogReport:
-    """Make the map of a log and seek its queries; Ctrl-C keeps what was done."""
+    """Make the map of a log and seek its queries but those that were answered before; Ctrl-C keeps what was done."""
     job, division = _job(plan, task)
     scans = {query.number: query.scan for query in division.queries}
+    known = before.part(map(job.key_of, division.queries))
+    left = [query for query in division.queries if job.key_of(query) not in known]
     tally = Tally()
+    for result in known.values():
+        tally.add(result)
     with _bar() as bar, suppress(KeyboardInterrupt):
-        shown = bar.add_task(task.name, total=len(division.queries))
-        for result in run(job, division.queries, map if plan.workers == 1 else over_processes(plan.workers)):
+        shown = bar.add_task(task.name, total=len(division.queries), completed=len(known))
+        for result in run(job, left, map if plan.workers == 1 else over_processes(plan.workers)):
             tally.add(result)
             say(result.document())
             if draw is not None:
@@ -225,27 +217,7 @@ def _protocol_word(text: str) -> str:
         raise argparse.ArgumentTypeError(str(error)) from error
 
 
-def _arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("log", type=Path, nargs="+", metavar="LOG", help=f"{LOG_HELP}; its poses are the truth")
-    parser.add_argument("--raw", action="store_true", help=RAW_HELP)
-    parser.add_argument(
-        "--slam",
-        action="store_true",
-        help="map each log from its raw odometry, as the daemon maps, and tell how far it is from the relations in the "
-        "file beside it (intel.relations beside intel.raw.clf); nothing is sought then",
-    )
-    parser.add_argument("--cases", type=whole(1), default=100, metavar="N", help="scans to seek (default: 100)")
-    parser.add_argument("--seed", type=whole(0), default=0, metavar="N", help="chooses them (default: 0)")
-    parser.add_argument(
-        "--protocol",
-        type=_protocol_word,
-        action="append",
-        metavar="P",
-        help=f"how to ask, once for each: {', '.join(PROTOCOL_WORDS)} (default: interleaved)",
-    )
-    parser.add_argument(
-        "--workers", type=whole(1), default=1, metavar="N", help="processes that share the cases (default: 1)"
-    )
+def _map_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--resolution",
         type=within(GridSettings, "resolution_m"),
@@ -282,7 +254,37 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="take the settings of localization from a configuration of robotd",
     )
+
+
+def _arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("log", type=Path, nargs="+", metavar="LOG", help=f"{LOG_HELP}; its poses are the truth")
+    parser.add_argument("--raw", action="store_true", help=RAW_HELP)
+    parser.add_argument(
+        "--slam",
+        action="store_true",
+        help="map each log from its raw odometry, as the daemon maps, and tell how far it is from the relations in the "
+        "file beside it (intel.relations beside intel.raw.clf); nothing is sought then",
+    )
+    parser.add_argument("--cases", type=whole(1), default=100, metavar="N", help="scans to seek (default: 100)")
+    parser.add_argument("--seed", type=whole(0), default=0, metavar="N", help="chooses them (default: 0)")
+    parser.add_argument(
+        "--protocol",
+        type=_protocol_word,
+        action="append",
+        metavar="P",
+        help=f"how to ask, once for each: {', '.join(PROTOCOL_WORDS)} (default: interleaved)",
+    )
+    parser.add_argument(
+        "--workers", type=whole(1), default=1, metavar="N", help="processes that share the cases (default: 1)"
+    )
+    _map_arguments(parser)
     output_argument(parser, "--pictures", PICTURES, "draw each case that is not right into a file there")
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on where the run was ended that wrote the file of --json: what it answered, by the same program and "
+        "settings, is not asked again",
+    )
     words = "write results to a file as they come, a JSON line each; without a file print them instead of the tables"
     output_argument(parser, "--json", EVAL_LINES, words, nargs="?", const=STANDARD_OUTPUT)
 

@@ -9,18 +9,31 @@ from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.grid.binary import BinaryMap
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
 from robotd.grid.settings import BetweenBeams, GridSettings, OverRange, UpdatePolicy
-from robotd.localization.count.rank_grid import RankGrid
-from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.obstacles.error_radius import ErrorRadius
+from robotd.localization.obstacles.thick_walls import ThickWalls
+from robotd.localization.obstacles.unknown_cells import UnknownCells
 from robotd.localization.places.pieces import pieces_of
+from robotd.localization.ready_map import ReadyMap
+from robotd.localization.settings import LocalizationSettings
 from tests.studies.paper.robot import ROBOT_RADIUS_M
 
 ERROR_M = 0.075
 """The paper's eps, which it does not tell."""
+AS_DEFINED = LocalizationSettings(
+    range_error_m=ERROR_M,
+    error_radius=ErrorRadius.CONSTANT,
+    unknown=UnknownCells.OCCUPIED,
+    blocked_by=1,
+    thick_walls=ThickWalls.AS_DRAWN,
+    # The paper's loc: the cells that explain the most, however few that is, and no others.
+    rival_share=0.0,
+    localized_share=0.01,
+)
+"""The daemon's own localizer, set to what the paper defines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,23 +99,24 @@ class Outcome:
 def outcome_of(manner: Manner, grid: OccupancyGrid, readings: Sequence[RangeReading], truth: Pose2) -> Outcome:
     """Localize on a map and compare with the truth."""
     counted = manner.counted(readings)
-    the_map = PreparedMap.of_binary(BinaryMap.from_grid(grid), ERROR_M / grid.spec.resolution_m)
-    ranks = RankGrid(the_map, (truth.heading_rad,))
-    ranks.add(Readings.of(counted))
-    loc = ranks.best_poses()
-    best, pieces = loc.poses, pieces_of(loc, ranks.headings_rad, most=len(loc)).best
+    stop = ReadyMap.of(grid, AS_DEFINED).stop((truth.heading_rad,))
+    stop.add(Readings.of(counted))
+    # One heading is few, so readings are counted as they come.
+    assert stop.counted is not None
+    loc = stop.best_poses()
+    best, pieces = loc.poses, pieces_of(loc, stop.headings_rad, most=len(loc)).best
     centres_m = tuple(_centre_m(piece, grid) for piece in pieces)
     cells_m = np.array([grid.spec.centre_of(row, col) for _, row, col in best.tolist()])
     return Outcome(
         probes=len(readings),
         in_range=sum(reading.status is ReadingStatus.OK for reading in readings),
         counted=len(counted),
-        consistent=ranks.best_rank,
+        consistent=loc.best_rank,
         cells=len(best),
         centres_m=centres_m,
         errors_m=tuple(math.dist(centre_m, (truth.x_m, truth.y_m)) for centre_m in centres_m),
         within_robot=float((np.hypot(*(cells_m - (truth.x_m, truth.y_m)).T) <= ROBOT_RADIUS_M).mean()),
-        rank=ranks.rank[0],
+        rank=stop.counted.rank[0],
     )
 
 

@@ -139,6 +139,41 @@ def test_ctrl_c_keeps_what_was_done(
     assert (len(results), report["cases"], report["interrupted"]) == (1, 1, True)
 
 
+def test_a_run_that_was_ended_goes_on_where_it_was(
+    log_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Ended by a kill: what it had written lies beside the file, and its last line is cut off."""
+    whole, file = tmp_path / "whole.jsonl", tmp_path / "report.jsonl"
+    assert run_eval(log_file, "--cases", "4", "--json", whole) == 0
+    first, *lines = whole.read_text().splitlines(keepends=True)
+    Path(f"{file}.part").write_text(first + "".join(lines[:2]) + lines[2][:40])
+    asked: list[int] = []
+    answer = Seeking.__call__
+
+    def counted(self: Seeking, query: Query) -> CaseResult:
+        asked.append(query.number)
+        return answer(self, query)
+
+    monkeypatch.setattr(Seeking, "__call__", counted)
+    assert run_eval(log_file, "--cases", "4", "--json", file, "--resume") == 0
+    expected, [report] = documents(whole.read_text())[1:]
+    _, results, [resumed] = documents(file.read_text())
+    assert asked == [result["scan"] for result in expected[2:]]
+    assert results[:2] == expected[:2]
+    timeless = [{k: v for k, v in case.items() if k not in {"cpu_s", "wall_s"}} for case in (*results, *expected)]
+    assert timeless[:4] == timeless[4:]
+    assert {k: v for k, v in resumed.items() if k not in {"cpu_s", "wall_s"}} == {
+        k: v for k, v in report.items() if k not in {"cpu_s", "wall_s"}
+    }
+    # Of another program no answer is taken over, and without a file there is nothing to go on with.
+    file.write_text(file.read_text().replace('"commit": "', '"commit": "another'))
+    asked.clear()
+    assert run_eval(log_file, "--cases", "4", "--json", file, "--resume") == 0
+    assert len(asked) == 4
+    assert run_eval(log_file, "--cases", "4", "--resume") == 1
+    assert "name it by --json" in capsys.readouterr().err
+
+
 def test_a_damaged_log_is_named_with_line_and_expectation_before_any_work(
     log_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
