@@ -208,6 +208,23 @@ async def test_it_reaches_its_program_and_its_sockets_and_nothing_else_of_this_m
     assert (maps / "cells.bin").read_bytes() == b"a map"
 
 
+async def test_it_gives_up_the_real_time_that_its_parent_may_have() -> None:
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+    except PermissionError:
+        pytest.skip("no real time for this user")
+    try:
+        child = spawn(Program(ECHO))
+    finally:
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+    await child.life.receive()  # it is ready
+    threads = os.listdir(f"/proc/{child.pid}/task")  # noqa: PTH208  # numbers are what is wanted
+    assert {os.sched_getscheduler(int(thread)) for thread in threads} == {os.SCHED_OTHER}
+    child.kill()
+    await child.ended()
+    child.close()
+
+
 async def test_where_the_kernel_does_not_confine_it_that_is_said_and_it_serves(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
