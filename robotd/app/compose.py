@@ -8,6 +8,7 @@ from typing import Any
 
 from robotd.config import Config, effective_text
 from robotd.core.clock import now_ns
+from robotd.core.counted import Counted
 from robotd.hardware.devices.catalogue import drive, line_format, pantilt, rangefinder
 from robotd.hardware.devices.gaze import Gaze
 from robotd.hardware.devices.wiring import Wiring
@@ -74,7 +75,13 @@ def compose(
         pantilt(config.pantilt, wirings["pantilt"]),
         rangefinder(config.rangefinder, wirings["rangefinder"]),
     )
-    noted = NotedHead(head, lambda name, index: journal.computed(now_ns(), name, index))
+    counted = Counted()
+    noted = NotedHead(head, lambda name, index: journal.computed(now_ns(), name, index), counted)
+
+    def note_cause(name: str, arguments: dict[str, int]) -> None:
+        counted.count("causes_total", cause=name)
+        journal.cause(now_ns(), name, arguments)
+
     settings = mission_settings(config)
     news = News(journal.note)
     supervisor = Supervisor(
@@ -83,8 +90,9 @@ def compose(
         # A recording that ended by itself is none: its file is not written any more.
         lambda: None if journal.path is None or journal.error is not None else str(journal.path),
         battery_min_v=config.drive.battery_min_v,
-        note_cause=lambda name, arguments: journal.cause(now_ns(), name, arguments),
+        note_cause=note_cause,
         make_lease=EndlessLease if leases_end_by_causes else Lease,
+        counted=counted,
     )
     # What the files mean is for the head to say.
     archive = Archive(Path(config.maps.dir), PackedContent.read, keep=config.maps.keep)

@@ -18,14 +18,17 @@ from robotd.app.compose import Daemon, compose, head_settings, serial_connectors
 from robotd.app.daemon_lock import lock_directory
 from robotd.app.ending import Ending
 from robotd.app.first_map import load_first_map
+from robotd.app.loop_lag import measure_lag
 from robotd.app.stall_guard import guarded
 from robotd.app.stalls import Stalls, keep_going
 from robotd.app.watchdog import Notifier, feed_watchdog, watchdog_s
 from robotd.children.child import Child
+from robotd.children.resident import resident_bytes
 from robotd.config import Config, default_path, effective_text, load
 from robotd.contract.modes import Mode
 from robotd.contract.requests import RecordStart, RecordStop, Stop
 from robotd.core.clock import now_ns, run_counting, wall_offset_ns
+from robotd.core.counted import Counted
 from robotd.core.endpoints import Endpoints
 from robotd.core.errors import ConfigError, RobotdError
 from robotd.core.freed_memory import give_back_what_is_large
@@ -36,6 +39,7 @@ from robotd.front.heart_side import HeartSide
 from robotd.front.supervised import front_of
 from robotd.head.compute import ThreadCompute
 from robotd.head.far import FarHead
+from robotd.mission.counting import count_events
 from robotd.recording.entries import CAUSES_ARE_NOTED, SILENCES_ARE_NOTED, RecordingHeader
 from robotd.recording.preroll import PrerollJournal
 
@@ -115,6 +119,7 @@ async def run(config: Config) -> int:
         head = FarHead.spawned(head_settings(config), logging.getLevelName(logging.root.level))
         daemon = compose(config, serial_connectors(config), head, disk, journal)
         head.host = daemon.causes
+        _show_gauges(daemon.supervisor.counted, head)
         ending = Ending(daemon.robot.stop_now)
         # Longer than all the rest: the last map must be made into files.
         thinking = asyncio.create_task(head.run(), name="head")
@@ -134,6 +139,12 @@ async def run(config: Config) -> int:
                     thinking.cancel()
                 await asyncio.wait({thinking})
     return ending.exit_code
+
+
+def _show_gauges(counted: Counted, head: FarHead) -> None:
+    counted.show("compute_queue", lambda: float(head.waiting))
+    counted.show("resident_bytes", resident_bytes, process="heart")
+    counted.show("resident_bytes", lambda: resident_bytes(head.pid), process="head")
 
 
 async def _keep_last(daemon: Daemon) -> None:
@@ -162,7 +173,10 @@ async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoRetur
         going_on = group.create_task(keep_going(daemon, config.driving.silence_s), name="keep going")
         following = group.create_task(side.follow(), name="outcomes")
         headed = group.create_task(_as_long_as(thinking), name="head is well")
-        tasks = [serving, following, *parts.values(), keeping, going_on, headed]
+        counted = daemon.supervisor.counted
+        lag = group.create_task(measure_lag(counted), name="measure lag")
+        counting = group.create_task(count_events(daemon.control.events, counted), name="count events")
+        tasks = [serving, following, *parts.values(), keeping, going_on, headed, lag, counting]
         for task in tasks:
             task.add_done_callback(partial(_stop_if_failed, daemon))
         within_s = watchdog_s()

@@ -27,6 +27,7 @@ from robotd.contract.requests import (
     Clear,
     Disarm,
     GetConfig,
+    GetMetrics,
     GetStatus,
     Hello,
     ListMaps,
@@ -124,6 +125,7 @@ class Methods:
     hello = asks(Hello, _all)
     status = asks(GetStatus, _all)
     config = asks(GetConfig, lambda answer: answer.text)
+    metrics = asks(GetMetrics, _all)
     arm = asks(Arm, _nothing)
     disarm = asks(Disarm, _nothing)
     stop = asks(Stop.because, _nothing)

@@ -21,6 +21,7 @@ from robotd.contract.answers import (
 )
 from robotd.contract.arguments import Coordinate, MapName, Number, PoseArgument, RecordingPath
 from robotd.contract.events import MapChanged, Status
+from robotd.contract.metrics import Metrics
 from robotd.contract.missions import MISSIONS
 from robotd.contract.request import Request
 from robotd.contract.ways import Way
@@ -187,6 +188,12 @@ class RecordDelete(Request[Done], frozen=True):
     path: RecordingPath
 
 
+class GetMetrics(Request[Metrics], frozen=True):
+    """Ask for what was counted since the start."""
+
+    cmd, result, only_looks = "metrics", Metrics, True
+
+
 class GetConfig(Request[ConfigText], frozen=True):
     """Ask for the effective configuration."""
 
@@ -196,7 +203,7 @@ class GetConfig(Request[ConfigText], frozen=True):
 REQUESTS: dict[str, type[Request[Any]]] = {
     kind.cmd: kind
     for kind in (
-        *(Hello, GetStatus, GetConfig),
+        *(Hello, GetStatus, GetConfig, GetMetrics),
         *(Arm, Disarm, Stop, Clear),
         *(*MISSIONS, Renew),
         *(MapSave, MapLoad, MapDiscard, ListMaps, MapShow, MapDelete, MapRename, PlanTo),

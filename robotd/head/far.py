@@ -19,7 +19,7 @@ from robotd import __version__
 from robotd.children.channel import Channel
 from robotd.children.child import Child, Death
 from robotd.children.pings import Patience
-from robotd.children.process import Program, Running, spawn
+from robotd.children.process import Process, Program, Running, spawn
 from robotd.core.errors import ChildError, RemoteProtocolError, RobotdError
 from robotd.core.text import printable_bytes
 from robotd.head.job import A, Job
@@ -88,6 +88,8 @@ class FarHead:
             job_s: how long a job may take.
         """
         self.host: Host | None = None
+        self.pid: int | None = None
+        """Of the process that was started last."""
         self._settings = msgspec.msgpack.encode(settings)
         self._away_s = away_s
         self._job_s = job_s
@@ -106,7 +108,19 @@ class FarHead:
     @classmethod
     def spawned(cls, settings: HeadSettings, log_level: str) -> "FarHead":
         """Return one that will be started as a process."""
-        return cls(settings, lambda: spawn(program(log_level)))
+
+        def start() -> Process:
+            process = spawn(program(log_level))
+            head.pid = process.pid
+            return process
+
+        head = cls(settings, start)
+        return head
+
+    @property
+    def waiting(self) -> int:
+        """How many jobs are under way, or wait for their turn."""
+        return len(self._asked)
 
     def number(self) -> int:
         """Return the next number."""

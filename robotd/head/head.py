@@ -4,6 +4,8 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Protocol
 
+from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.counted import Counted
 from robotd.head.job import A, Job
 
 
@@ -27,8 +29,10 @@ class Head(Protocol):
 class NotedHead:
     """Notes when each job that a mission goes on by was handed back: a replay hands it back no sooner."""
 
-    def __init__(self, inner: Head, note: Callable[[str, int], None]) -> None:
+    def __init__(self, inner: Head, note: Callable[[str, int], None], counted: Counted) -> None:
+        """Ask ``inner``; how long each answer took goes to ``counted``."""
         self._inner = inner
+        self._counted = counted
         self._note = note
         self._done: Counter[str] = Counter()
         self.number = inner.number
@@ -36,12 +40,14 @@ class NotedHead:
 
     async def ask(self, job: Job[A]) -> A:
         """Return the answer of a job, or raise what it raises, and note that it is done."""
+        asked_ns = now_ns()
         try:
             answer = await self._inner.ask(job)
         except Exception:  # that it failed is taken up too, and leads to something
             self._note_next(job)
             raise
         self._note_next(job)
+        self._counted.observe("job_seconds", (now_ns() - asked_ns) / NS_PER_S, job=job.name.replace(" ", "_"))
         return answer
 
     def _note_next(self, job: Job[A]) -> None:

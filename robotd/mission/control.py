@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 from robotd.contract.answers import ConfigText, Done, MissionStarted, RecordingFile, RecordingList, Renewed
 from robotd.contract.events import Event, Status
+from robotd.contract.metrics import Metrics
 from robotd.contract.missions import MISSIONS, Explore, MapStart, Mission, with_lease
 from robotd.contract.request import Request
 from robotd.contract.requests import (
@@ -20,6 +21,7 @@ from robotd.contract.requests import (
     Clear,
     Disarm,
     GetConfig,
+    GetMetrics,
     GetStatus,
     ListRecordings,
     RecordDelete,
@@ -76,6 +78,7 @@ class Control:
         self._rows: dict[type[Request[Any]], Callable[[Any], Awaitable[object]]] = {
             GetStatus: self._status,
             GetConfig: self._config,
+            GetMetrics: self._metrics,
             Arm: self._arm,
             Disarm: self._stop,
             Stop: self._stop,
@@ -171,6 +174,9 @@ class Control:
 
     async def _config(self, _: GetConfig) -> ConfigText:
         return ConfigText(self._config_text)
+
+    async def _metrics(self, _: GetMetrics) -> Metrics:
+        return Metrics.of(self._supervisor.counted)
 
     async def _arm(self, request: Arm) -> Done:
         self._supervisor.arming.require_armable()

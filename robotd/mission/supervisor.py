@@ -13,6 +13,7 @@ from collections.abc import Callable
 from robotd.contract.events import Status
 from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns
+from robotd.core.counted import Counted
 from robotd.core.errors import MissionError
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.under_way import MakeLease, MissionUnderWay, NoteCause
@@ -43,6 +44,7 @@ class Supervisor:
         battery_min_v: float = 0.0,
         note_cause: NoteCause = lambda _name, _arguments: None,
         make_lease: MakeLease = Lease,
+        counted: Counted | None = None,
     ) -> None:
         """Prepare; nothing happens before :meth:`run`.
 
@@ -53,6 +55,7 @@ class Supervisor:
             battery_min_v: below it, stop and latch a fault.
             note_cause: told what stops the robot by a clock of the daemon, before it does.
             make_lease: makes what calls a function once this many seconds have passed.
+            counted: where stops are counted.
         """
         self.robot = context.robot
         self.news = news
@@ -62,6 +65,7 @@ class Supervisor:
         self._is_untold = False
         """Whether the last status could not be told: the log has it once, not each second."""
         self._started_ns = now_ns()
+        self.counted = counted or Counted()
         self.halts = 0
         """How often the robot was stopped: who waited for something compares, and sees whether a stop came between."""
         self._current = CurrentMode(self.publish_status)
@@ -144,6 +148,7 @@ class Supervisor:
         """Stop first, then everything else."""
         self.robot.stop_now()
         self.halts += 1
+        self.counted.count("stops_total", cause=occasion)
         self.holding.end()
         self.mission.cancel(reason)
         self._current.apply(occasion, reason)

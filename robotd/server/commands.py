@@ -25,6 +25,7 @@ from robotd.contract.refusal import as_refusal
 from robotd.contract.request import Request
 from robotd.contract.requests import Disarm, Renew, Stop
 from robotd.contract.stopping import STOPPING
+from robotd.core.counted import Counted
 from robotd.core.errors import RobotdError, ServerError
 from robotd.core.text import printable
 from robotd.server.handlers import Handlers
@@ -57,9 +58,17 @@ class Commands:
     """Serves who asks."""
 
     def __init__(
-        self, letters: Asking, handlers: Handlers, *, max_bytes: int, max_pending: int, remembered: int
+        self,
+        letters: Asking,
+        handlers: Handlers,
+        counted: Counted,
+        *,
+        max_bytes: int,
+        max_pending: int,
+        remembered: int,
     ) -> None:
         self._letters = letters
+        self._counted = counted
         self._handlers = handlers
         self._max_bytes = max_bytes
         self._replies = Replies(remembered)
@@ -84,7 +93,7 @@ class Commands:
         if isinstance(numbered, BadRequest):
             if numbered.means_stop:
                 self._obey(_UNREADABLE, letter)
-            self._letters.answer(letter.route, encode_error(numbered.id, numbered.error))
+            self._letters.answer(letter.route, self._error(numbered.id, numbered.error))
             return False
         letter = letter.signed(numbered.client)
         if is_stop := isinstance(numbered.request, STOPPING):
@@ -122,8 +131,8 @@ class Commands:
         if no_room is None:
             return None
         if is_stop:  # it was obeyed; only nobody waits for the mission's last word
-            return encode_result(numbered.id, Done())
-        return encode_error(numbered.id, ServerError(ErrorCode.BUSY, no_room))
+            return self._counting("ok", encode_result(numbered.id, Done()))
+        return self._error(numbered.id, ServerError(ErrorCode.BUSY, no_room))
 
     def _no_room(self, identity: bytes, request: Request[Any], *, is_stop: bool) -> str | None:
         if is_stop:
@@ -170,8 +179,15 @@ class Commands:
             internal = ServerError(ErrorCode.INTERNAL, f"internal error: {type(error).__name__}")
             return self._refuse(numbered, letter, internal)
         self._log.done(letter.sender, numbered.request, result)
-        return reply
+        return self._counting("ok", reply)
 
     def _refuse(self, numbered: NumberedRequest, letter: Letter, error: ServerError) -> bytes:
         self._log.refused(letter.sender, numbered.request, error)
-        return encode_error(numbered.id, error)
+        return self._error(numbered.id, error)
+
+    def _error(self, number: int | None, error: ServerError) -> bytes:
+        return self._counting(error.code, encode_error(number, error))
+
+    def _counting(self, code: str, reply: bytes) -> bytes:
+        self._counted.count("requests_total", code=code)
+        return reply

@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import Callable
 
 from robotd.contract.topics import EVENTS, Published, Topic, encode_frame, to_wire
+from robotd.core.counted import Counted
 from robotd.server.client_connection import Connection
 from robotd.server.zmtp import Violation, message
 
@@ -18,14 +19,16 @@ GREETED_AFTER_S = 0.01
 class Outlet:
     """Publishes single frames to those who subscribed, as far as they take them."""
 
-    def __init__(self, session: str, asked_for: Callable[[Topic], None] | None = None) -> None:
+    def __init__(self, session: str, counted: Counted, asked_for: Callable[[Topic], None] | None = None) -> None:
         """Publish in this session.
 
         Args:
             session: goes with every message.
+            counted: where messages are counted that somebody missed.
             asked_for: told of each topic that somebody joins, in place of telling that one what was said last.
         """
         self._session = session
+        self._counted = counted
         self._asked_for = asked_for
         self._loop = asyncio.get_running_loop()
         self._seq: dict[Topic, int] = {}
@@ -40,7 +43,7 @@ class Outlet:
         topic, name = EVENTS[type(event)]
         fields = to_wire(event)[1]  # before it is numbered: what has no form is no message missed
         seq = self._number(topic)
-        data = self._send(encode_frame(topic, self._session, seq, fields))
+        data = self._send(topic, encode_frame(topic, self._session, seq, fields))
         self._last[name] = topic, seq, data
 
     async def send_large(self, event: Published) -> None:
@@ -49,7 +52,7 @@ class Outlet:
         It is not kept: who joins is told it anew.
         """
         topic, _ = EVENTS[type(event)]
-        self._send(await asyncio.to_thread(_frame_of, event, self._session, self._number(topic)))
+        self._send(topic, await asyncio.to_thread(_frame_of, event, self._session, self._number(topic)))
 
     def is_read(self, topic: Topic) -> bool:
         """Return whether anybody is subscribed to a topic."""
@@ -110,11 +113,11 @@ class Outlet:
         self._seq[topic] = seq + 1
         return seq
 
-    def _send(self, frame: bytes) -> bytes:
+    def _send(self, topic: Topic, frame: bytes) -> bytes:
         data = message(frame)  # made once: what waits for many readers is one and the same
         for connection, prefixes in tuple(self._readers.items()):
-            if any(frame.startswith(prefix) for prefix in prefixes):
-                connection.send(data)
+            if any(frame.startswith(prefix) for prefix in prefixes) and not connection.send(data):
+                self._counted.count("dropped_messages_total", topic=topic)
         return data
 
 

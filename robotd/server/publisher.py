@@ -11,6 +11,7 @@ from robotd.contract.requests import GetStatus, MapShow
 from robotd.contract.topics import EVENTS, Published, Topic
 from robotd.core.broadcast import Subscription
 from robotd.core.clock import now_ns
+from robotd.core.counted import Counted
 from robotd.core.errors import RobotdError, ServerError
 from robotd.core.log_limit import LogLimit
 from robotd.server.map_queue import MapQueue
@@ -28,11 +29,11 @@ log = logging.getLogger(__name__)
 class Publisher:
     """Publishes the events of the mission, and the lines of its log."""
 
-    def __init__(self, control: MissionPort, events: Subscription[Published], session: str) -> None:
+    def __init__(self, control: MissionPort, events: Subscription[Published], session: str, counted: Counted) -> None:
         """Take the events of ``control`` by a subscription that is open already, so that the very first are there."""
-        self.state = Outlet(session)
+        self.state = Outlet(session, counted)
         """Everything small."""
-        self.maps = Outlet(session, self._joined_maps)
+        self.maps = Outlet(session, counted, self._joined_maps)
         self._control = control
         self._events = events
         self._map_queue = MapQueue()

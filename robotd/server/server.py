@@ -6,6 +6,8 @@ import secrets
 from collections.abc import Iterator
 from pathlib import Path
 
+from robotd.children.resident import resident_bytes
+from robotd.core.counted import Counted
 from robotd.core.endpoints import Endpoints
 from robotd.server.client_connection import Manners
 from robotd.server.commands import Commands
@@ -45,6 +47,8 @@ class Server:
         self._endpoints = Endpoints(Path(settings.runtime_dir))
         self.session = secrets.token_hex(8)
         """Changes with every start, so that clients notice one."""
+        self._counted = Counted()
+        self._counted.show("resident_bytes", resident_bytes, process="front")
         self.serving = asyncio.Event()
         """Set while clients can connect."""
 
@@ -56,7 +60,7 @@ class Server:
         """
         letters = Letters()
         with self._control.events.subscribe(DEPTH) as events:
-            publisher = Publisher(self._control, events, self.session)
+            publisher = Publisher(self._control, events, self.session, self._counted)
             commands = self._commands(letters)
             with self._open(letters, publisher):
                 try:
@@ -72,7 +76,8 @@ class Server:
         settings = self._settings
         return Commands(
             letters,
-            Handlers(self._control, self.session, settings.lease_s),
+            Handlers(self._control, self.session, settings.lease_s, self._counted),
+            self._counted,
             max_bytes=settings.max_request_bytes,
             max_pending=settings.max_pending_requests,
             remembered=settings.remembered_replies,

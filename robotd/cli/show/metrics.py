@@ -6,9 +6,11 @@ The daemon has no network and serves no pages. Anyone who watches many robots le
 """
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import groupby
 
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.events import Status
+from robotd.contract.metrics import Buckets, Metrics
 from robotd.contract.modes import MODE_WORDS
 
 _Sample = tuple[dict[str, str], float]
@@ -28,6 +30,28 @@ def exposition(status: Status) -> str:
         _family("battery_volts", "gauge", "Of the base.", [] if status.battery_v is None else [({}, status.battery_v)]),
     )
     return "".join(families)
+
+
+def counted(metrics: Metrics) -> str:
+    """Return the lines that say what was counted since the start."""
+    lines: list[str] = []
+    for kind, samples in (("counter", metrics.counters), ("gauge", metrics.gauges)):
+        for name, alike in groupby(samples, key=lambda one: one.name):
+            lines.append(f"# TYPE robotd_{name} {kind}\n")
+            lines += [f"robotd_{name}{_labels(one.labels)} {one.value:.12g}\n" for one in alike]
+    for name, distributions in groupby(metrics.histograms, key=lambda one: one.name):
+        lines.append(f"# TYPE robotd_{name} histogram\n")
+        for one in distributions:
+            lines += _buckets(one)
+    return "".join(lines)
+
+
+def _buckets(one: Buckets) -> Iterator[str]:
+    bounds = [*(f"{bound:g}" for bound in one.bounds), "+Inf"]
+    for bound, count in zip(bounds, one.counts, strict=True):
+        yield f"robotd_{one.name}_bucket{_labels({**one.labels, 'le': bound})} {count}\n"
+    yield f"robotd_{one.name}_sum{_labels(one.labels)} {one.sum:.12g}\n"
+    yield f"robotd_{one.name}_count{_labels(one.labels)} {one.counts[-1]}\n"
 
 
 def _family(name: str, kind: str, meaning: str, samples: Iterable[_Sample]) -> str:

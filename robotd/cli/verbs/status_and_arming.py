@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robotd.cli.connection import connect
 from robotd.cli.exit_codes import OK
-from robotd.cli.show.metrics import exposition
+from robotd.cli.show.metrics import counted, exposition
 from robotd.cli.show.terminal import err, out, print_json, print_pairs, print_table
 from robotd.cli.show.wording import as_json, estimate_in_words
 from robotd.cli.verb import Verb
@@ -27,11 +27,12 @@ _PATIENCE_S = 0.5
 
 def _status(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client:
+        if arguments.metrics:
+            print(exposition(client.status()) + counted(client.metrics()), end="")
+            return OK
         status, hello = client.status(), client.hello()
         pose = _newest_pose(client)
-    if arguments.metrics:
-        print(exposition(status), end="")
-    elif arguments.json:
+    if arguments.json:
         print_json({**as_json(status), "robotd": hello.robotd, "pose": None if pose is None else as_json(pose)})
     else:
         _print_status(status, hello, pose)

@@ -14,6 +14,7 @@ from robotd.contract.answers import HelloResult, MapEntryInfo, RecordingInfo, Re
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import Circle, Cover, Extent, PoseEstimate, PoseState, Region
 from robotd.contract.events import MapChanged, MissionPhase, MissionProgress, Status, SweepProgress
+from robotd.contract.metrics import Buckets, Metrics, Sample
 from robotd.contract.missions import Mission
 from robotd.contract.modes import Mode
 from robotd.contract.topics import Published
@@ -106,6 +107,13 @@ class FakeClient:
         if isinstance(self.raises, Exception):
             raise self.raises
         return STATUS
+
+    def metrics(self) -> Metrics:
+        return Metrics(
+            (Sample("missions_total", {"kind": "map", "end": "done"}, 2),),
+            (Sample("compute_queue", {}, 0.0),),
+            (Buckets("loop_lag_seconds", {}, (0.001, 0.0025), (7, 9, 10), 0.5),),
+        )
 
     def arm(self) -> None:
         self.asked.append("arm")

@@ -231,7 +231,8 @@ def test_metrics_are_lines_that_a_collector_reads(client: Any, capsys: pytest.Ca
     assert main(["status", "--metrics"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert all(
-        re.fullmatch(r'# (HELP|TYPE) robotd_\w+ .+|robotd_\w+(\{(\w+="\w+",?)+\})? -?[\d.e+]+', one) for one in lines
+        re.fullmatch(r'# (HELP|TYPE) robotd_\w+ .+|robotd_\w+(\{(\w+="[\w.+]+",?)+\})? -?[\d.e+]+', one)
+        for one in lines
     )
     for line in (
         'robotd_mode{mode="idle"} 1',
@@ -239,6 +240,11 @@ def test_metrics_are_lines_that_a_collector_reads(client: Any, capsys: pytest.Ca
         'robotd_device_ready{device="pantilt"} 0',
         'robotd_line{device="drive",what="frames"} 1203',
         "robotd_battery_volts 24.5",
+        'robotd_missions_total{kind="map",end="done"} 2',
+        "# TYPE robotd_loop_lag_seconds histogram",
+        'robotd_loop_lag_seconds_bucket{le="0.0025"} 9',
+        'robotd_loop_lag_seconds_bucket{le="+Inf"} 10',
+        "robotd_loop_lag_seconds_count 10",
     ):
         assert line in lines
 

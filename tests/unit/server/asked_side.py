@@ -7,6 +7,7 @@ from typing import Any
 
 from robotd.contract.envelope import Reply, decode_reply, encode_request
 from robotd.contract.request import Request
+from robotd.core.counted import Counted
 from robotd.core.errors import ServerError
 from robotd.server.commands import Commands
 from robotd.server.handlers import Handlers
@@ -47,7 +48,8 @@ async def served(control: Any) -> AsyncIterator[ListSocket]:
     socket = ListSocket()
     commands = Commands(
         socket,
-        Handlers(control, "session", 0.5),
+        Handlers(control, "session", 0.5, Counted()),
+        Counted(),
         max_bytes=65536,
         max_pending=4,
         remembered=8,

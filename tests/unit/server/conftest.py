@@ -24,6 +24,7 @@ from robotd.contract.events import (
     SweepDone,
     SweepProgress,
 )
+from robotd.contract.metrics import Metrics
 from robotd.contract.missions import Measure, Mission, Scan
 from robotd.contract.modes import Mode
 from robotd.contract.request import Request
@@ -32,6 +33,7 @@ from robotd.contract.requests import (
     Clear,
     Disarm,
     GetConfig,
+    GetMetrics,
     GetStatus,
     ListMaps,
     MapDiscard,
@@ -46,6 +48,7 @@ from robotd.contract.requests import (
 from robotd.contract.topics import Topic
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
+from robotd.core.counted import Counted
 from robotd.core.errors import MapError, MissionError
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, Pose2
@@ -141,6 +144,10 @@ class FakeControl:
         match request:
             case GetStatus():
                 return self.status
+            case GetMetrics():
+                counted = Counted()
+                counted.count("stops_total", 3, cause="stop")
+                return Metrics.of(counted)
             case GetConfig():
                 return ConfigText("[server]\nlease_s = 0.5\n")
             case Arm():

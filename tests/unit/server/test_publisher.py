@@ -14,6 +14,7 @@ from robotd.contract.events import MapChanged, StopPlaced, SweepDone, SweepProgr
 from robotd.contract.request import Request
 from robotd.contract.requests import GetStatus, MapShow
 from robotd.contract.topics import Frame, Topic
+from robotd.core.counted import Counted
 from robotd.core.errors import LinkTimeout
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry
 from robotd.core.reading import Sweep
@@ -53,7 +54,7 @@ class AConnection:
 @asynccontextmanager
 async def published(control: Any) -> AsyncIterator[tuple[asyncio.Task[None], AConnection, AConnection, Publisher]]:
     with control.events.subscribe(100) as events:
-        publisher = Publisher(control, events, "session")
+        publisher = Publisher(control, events, "session", Counted())
         state, maps = AConnection(), AConnection()
         for outlet, connection in ((publisher.state, state), (publisher.maps, maps)):
             outlet.joined(connection)  # type: ignore[arg-type]  # what it uses of it

@@ -357,4 +357,4 @@ def test_impossible_settings_are_refused_by_name(key: str, value: Any) -> None:
 
 
 def test_topics_are_the_ones_promised() -> None:
-    assert [*Topic] == ["pose", "odometry", "sweep", "map", "mission", "status", "log"]
+    assert [*Topic] == ["pose", "odometry", "sweep", "map", "mission", "rank", "status", "log"]
