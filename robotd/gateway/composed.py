@@ -29,7 +29,7 @@ from robotd.gateway.settings import GatewaySettings
 
 _IDLE_LOOK_S = 1.0
 _BACKLOG = 64
-_ON_DEMAND = {"rank"}
+_ON_DEMAND = (Topic.RANK,)
 """Topics that the daemon works for only while somebody listens."""
 
 log = logging.getLogger(__name__)
@@ -55,6 +55,7 @@ async def gateway(settings: GatewaySettings) -> AsyncIterator[tuple[House, str]]
             house = House(settings, services)
             duties = together(
                 fan.follow(lambda: client.frames(*(topic for topic in Topic if topic not in _ON_DEMAND))),
+                fan.follow_rank(lambda: client.frames(*_ON_DEMAND)),
                 fan.keep_map(),
                 services.missions.watch(),
                 house.watch_access(),

@@ -93,6 +93,8 @@ class PageConnection:
         match said:
             case protocol.Answer():
                 self.liveness.answer(said.n, _now_s())
+            case protocol.Look():
+                self._services.fan.show_rank(self, show=said.rank)
             case protocol.Command():
                 self._begin(self._answered(said.id, self._command(said)))
             case protocol.StartMission():

@@ -38,6 +38,8 @@ class FanOut:
         self._ask_map = ask_map
         self._listeners: set[Listener] = set()
         self._map_work = asyncio.Event()
+        self._see_rank: set[Listener] = set()
+        self._rank_wanted = asyncio.Event()
         self.frames = 0
         """Messages handed on since the start."""
 
@@ -49,6 +51,15 @@ class FanOut:
     def leave(self, listener: Listener) -> None:
         """Tell somebody nothing any more."""
         self._listeners.discard(listener)
+        self.show_rank(listener, show=False)
+
+    def show_rank(self, listener: Listener, *, show: bool) -> None:
+        """Tell somebody of the heat map, or no more: the daemon makes it only while somebody looks."""
+        (self._see_rank.add if show else self._see_rank.discard)(listener)
+        if self._see_rank:
+            self._rank_wanted.set()
+        else:
+            self._rank_wanted.clear()
 
     async def follow(self, subscribe: Callable[[], AsyncGenerator[Frame | Gap, None]]) -> None:
         """Hand on frames as they come, for ever: a duty."""
@@ -61,6 +72,24 @@ class FanOut:
                 # Of another version, or damaged: the page shows that nothing is heard, which is true.
                 log.warning("what the daemon says cannot be read: %s", error)
                 await asyncio.sleep(_AGAIN_S)
+
+    async def follow_rank(self, subscribe: Callable[[], AsyncGenerator[Frame | Gap, None]]) -> None:
+        """Hand on heat maps while somebody looks at them: a duty."""
+        while True:
+            await self._rank_wanted.wait()
+            try:
+                async with contextlib.aclosing(subscribe()) as frames:
+                    await self._hand_rank_on(frames)
+            except RemoteProtocolError as error:
+                log.warning("a heat map cannot be read: %s", error)
+                await asyncio.sleep(_AGAIN_S)
+
+    async def _hand_rank_on(self, frames: AsyncGenerator[Frame | Gap, None]) -> None:
+        async for item in frames:
+            if not self._see_rank:
+                return
+            for listener in tuple(self._see_rank) if isinstance(item, Frame) else ():
+                listener.hear(HeardFrame.read(item))
 
     def _take(self, item: Frame | Gap) -> None:
         if isinstance(item, Gap):

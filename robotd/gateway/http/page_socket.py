@@ -8,6 +8,7 @@ from typing import Any
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from robotd import __version__
+from robotd.contract.requests import REQUESTS
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import ServerError
 from robotd.core.together import ended
@@ -64,6 +65,7 @@ def _hello(connection: PageConnection, house: House) -> str:
         name=connection.person.name,
         role=connection.person.role,
         browser=connection.driver.browser,
+        commands=list(REQUESTS),
         time_ns=now_ns(),
         wall_offset_ns=wall_offset_ns(),
         patience_s=house.settings.watching.patience_s,

@@ -2,77 +2,21 @@
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import aiohttp
 import pytest
 from yarl import URL
 
 from robotd.core.errors import ConfigError
-from robotd.gateway.access.roles import Role
-from robotd.gateway.access.tokens import TokenFile, Tokens, make_token
 from robotd.gateway.access.visitor_limits import WRONG_TOKENS
 from robotd.gateway.composed import gateway
-from robotd.gateway.house import House
 from robotd.gateway.http.routes import ROUTES, openapi
-from robotd.gateway.settings import AccessSettings, GatewaySettings, ListenSettings, RobotSettings, WatchingSettings
+from robotd.gateway.settings import AccessSettings, GatewaySettings, ListenSettings
 from tests.unit.gateway.pages import PATIENCE_S, page_of, until
-from tests.unit.server.conftest import FakeControl, Serving
+from tests.unit.gateway.rig import Opening
 
 pytestmark = pytest.mark.real_clock
-
-
-@dataclass
-class Rig:
-    """A gateway, its address, a secret of each role, and the robot behind it."""
-
-    house: House
-    address: URL
-    secrets: dict[str, str]
-    control: FakeControl
-
-    @property
-    def origin(self) -> dict[str, str]:
-        return {"Origin": str(self.address.origin())}
-
-    @contextlib.asynccontextmanager
-    async def browser(self, role: str = "operator") -> AsyncIterator[aiohttp.ClientSession]:
-        """A browser that signed in."""
-        jar = aiohttp.CookieJar(unsafe=True)
-        async with aiohttp.ClientSession(self.address, headers=self.origin, cookie_jar=jar) as session:
-            async with session.post("api/session", json={"token": self.secrets[role]}) as answer:
-                assert answer.status == 200
-            yield session
-
-
-Opening = Callable[..., contextlib.AbstractAsyncContextManager[Rig]]
-
-
-@pytest.fixture
-def opening(tmp_path: Path, serving: Serving) -> Opening:
-    """``async with opening() as rig``: a robot, its front and a gateway."""
-
-    @contextlib.asynccontextmanager
-    async def open_(**driving: Any) -> AsyncIterator[Rig]:
-        state = tmp_path / "state"
-        made = {role.value: make_token(f"some {role}", role, 0.0) for role in Role}
-        TokenFile(state / "tokens.json").write(Tokens(tuple(token for _, token in made.values())))
-        recordings = tmp_path / "recordings"
-        recordings.mkdir()
-        settings = GatewaySettings(
-            ListenSettings(port=0, allowed_hosts=("robot.lab",)),
-            RobotSettings("dusty", str(tmp_path), str(recordings)),
-            WatchingSettings(**driving),
-            AccessSettings(state_dir=str(state)),
-        )
-        async with serving() as control, gateway(settings) as (house, address):
-            await until(lambda: house.services.fan.snapshot.status)
-            yield Rig(house, URL(address), {role: secret for role, (secret, _) in made.items()}, control)
-
-    return open_
 
 
 async def test_without_a_token_there_is_no_gateway(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 import { render } from 'lit-html';
 import { Grid } from './map/grid.js';
 import { alarm, Stopping } from './parts/stopping.js';
+import { rankOverlay } from './map/overlays.js';
 import { accept, hear, nothing } from './state/store.js';
 import { Link, Refused } from './wire/link.js';
 import { t } from './texts/texts.js';
@@ -15,6 +16,7 @@ export class App {
   /** Who is signed in; null while nobody is. @type {{ name: string, role: string, robot: string } | null} */
   who = null;
   page = 'drive';
+  robotRadius = 0.3;
   isMenuOpen = false;
   /** What is said about what was asked, the latest last. @type {{ id: number, kind: 'done' | 'refused' | 'news', text: string }[]} */
   notices = [];
@@ -111,10 +113,25 @@ export class App {
     }
   }
 
+  /** Ask for the layers that the daemon makes only while somebody looks at them. */
+  look() {
+    this.link.say({ type: 'look', rank: this.canvas?.shown.has('rank') ?? false });
+  }
+
+  /** What a page asks for itself when it is greeted. */
+  async #begin() {
+    this.look();
+    const config = await this.link.ask('command', { cmd: 'config' }).catch(() => null);
+    const radius = Number(/^robot_radius_m = ([\d.]+)$/m.exec(config?.text ?? '')?.[1]);
+    if (radius > 0) this.robotRadius = radius;
+    this.wake();
+  }
+
   /** @param {import('./types').Frame} frame */
   #frame(frame) {
     if (frame.session !== this.state.session) this.grid.forget();
     accept(this.state, frame, performance.now());
+    if (frame.event === 'rank_map') rankOverlay(frame.fields).then((rank) => { if (this.canvas !== null) this.canvas.rank = rank; this.wake(); }, () => {});
     if (frame.event === 'map_changed') this.grid.accept(frame.fields).then(() => this.wake());
     this.wake();
   }
@@ -124,6 +141,7 @@ export class App {
     if (said.type === 'stopped') this.stopping.confirmed();
     else if (said.type === 'problem') this.notice('refused', t('refused', { message: said.message }));
     else hear(this.state, said, performance.now());
+    if (said.type === 'hello') this.#begin();
     if (said.type !== 'question') this.wake();
   }
 

@@ -10,6 +10,8 @@ const TICK_MS = 250;
 applyTheme(theme());
 const root = /** @type {HTMLElement} */ (document.getElementById('root'));
 const app = new App(root, page, () => raiseStop());
+// For whoever looks at the page from its own tools.
+Object.assign(globalThis, { robotd: app });
 
 addEventListener('hashchange', () => open_());
 document.addEventListener('visibilitychange', () => watchHidden());

@@ -36,7 +36,7 @@ export type Driver = { browser: string; who: string };
 export type Commander = { driver: Driver; mission_id: number; kind: string; attended: boolean; since_ns: number };
 export type Hello = {
   gateway: string; console: string; robot: string; name: string; role: string; browser: string; time_ns: number;
-  wall_offset_ns: number; patience_s: number; unattended: boolean;
+  wall_offset_ns: number; patience_s: number; unattended: boolean; commands: string[];
 };
 export type Frame = { topic: string; event: string; session: string; seq: number; fields: any };
 export type State = {

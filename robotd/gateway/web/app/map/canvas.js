@@ -1,6 +1,7 @@
 // The map on the screen: drawn when something changed, moved by hand, wheel, fingers and keys.
 import { silent } from '../state/silence.js';
 import * as layers from './layers.js';
+import { Clearance, drawOverlay } from './overlays.js';
 import { Tiles } from './tiles.js';
 import { fitted, panned, seen, toMap, toPixel, zoomed } from './view.js';
 
@@ -14,6 +15,11 @@ const COLOURS = ['paper', 'ink', 'quiet', 'grid', 'robot', 'robot_edge', 'way', 
 export class MapCanvas {
   view = { x: 0, y: 0, scale: 60 };
   follows = false;
+  /** The heat map, while there is one. @type {import('./overlays.js').Overlay | null} */
+  rank = null;
+  clearance = new Clearance();
+  /** Is told which layers are shown. @type {() => void} */
+  onLayers = () => {};
   shown = new Set(['belief', 'sweep', 'way', 'plan']);
   robotRadius = 0.3;
   /** What is drawn of an act that is being prepared. @type {((pen: Pen) => void) | null} */
@@ -94,6 +100,7 @@ export class MapCanvas {
   /** @param {string} layer */
   toggle(layer) {
     if (!this.shown.delete(layer)) this.shown.add(layer);
+    this.onLayers();
     this.wake();
   }
 
@@ -128,6 +135,9 @@ export class MapCanvas {
     const pen = { context, px: 1 / scale, colour: (name) => this.#colours[name] ?? '#f0f', robotRadius: this.robotRadius };
     if (this.tiles.draw(context)) this.wake();
     const corner = toMap(this.view, this.size, 0, height), other = toMap(this.view, this.size, width, 0);
+    if (this.shown.has('rank') && this.rank !== null) drawOverlay(context, this.rank);
+    const narrow = this.shown.has('clearance') ? this.clearance.look(this.grid, this.robotRadius, performance.now()) : null;
+    if (narrow !== null) drawOverlay(context, narrow);
     const step = layers.drawGrid(pen, { x0: corner.x, y0: corner.y, x1: other.x, y1: other.y });
     this.#drawLayers(pen);
     this.draft?.(pen);

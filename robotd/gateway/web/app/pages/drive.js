@@ -18,7 +18,9 @@ let coordinates = null;
 
 /** @param {App} app */
 export function drivePage(app) {
+  if (app.canvas !== null) app.canvas.robotRadius = app.robotRadius;
   return html`
+    <h1 class="unseen">${t('page.drive')}</h1>
     <section class="map" aria-label=${t('page.drive')}>
       <canvas tabindex="0" role="application" aria-label=${t('map.label')} ${ref((element) => mount(app, element))}></canvas>
       ${app.grid.placement === null && app.state.status !== null && app.state.status.map_id === null
@@ -31,18 +33,12 @@ export function drivePage(app) {
           <button aria-pressed=${app.canvas?.follows ?? false} @click=${() => { app.canvas?.follow(); app.wake(true); }} title="F">${t('map.follow')}</button>
         </div>
         <fieldset class="layers"><legend>${t('map.layers')}</legend>
-          ${LAYERS.filter(({ name }) => isThere(app, name)).map(({ name, key }) => html`<label><input type="checkbox" .checked=${app.canvas?.shown.has(name) ?? false} @change=${() => { app.canvas?.toggle(name); app.wake(true); }}><span class=${`swatch ${name}`}></span>${t(`layer.${name}`)} <kbd>${key}</kbd></label>`)}
+          ${LAYERS.map(({ name, key }) => html`<label><input type="checkbox" .checked=${app.canvas?.shown.has(name) ?? false} @change=${() => { app.canvas?.toggle(name); app.wake(true); }}><span class=${`swatch ${name}`}></span>${t(`layer.${name}`)} <kbd>${key}</kbd></label>`)}
         </fieldset>
       </div>
       <p class="coordinates" ${ref((element) => { coordinates = /** @type {HTMLElement} */ (element ?? null); })}></p>
     </section>
     <aside class="panel">${motionCard(app)}${missionCard(app)}${actsCard(app)}${poseCard(app)}</aside>`;
-}
-
-/** @param {App} app @param {string} name */
-function isThere(app, name) {
-  if (name === 'rank') return app.state.rank !== null;
-  return name !== 'clearance';
 }
 
 /** @param {App} app @param {Element | undefined} element */
@@ -57,8 +53,10 @@ function mount(app, element) {
   if (before !== null) {
     app.canvas.view = before.view;
     app.canvas.shown = before.shown;
+    app.canvas.rank = before.rank;
   }
   kept = app.canvas;
+  app.canvas.onLayers = () => app.look();
   app.canvas.draft = (pen) => draftOf(app).paint(pen);
   app.canvas.onPoint = (at) => tell(app, at);
 }

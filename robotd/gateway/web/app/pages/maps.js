@@ -1,4 +1,98 @@
-import { html } from 'lit-html';
+// Maps: what is stored, and the one in use.
+import { html, nothing } from 'lit-html';
+import { metres, when } from '../parts/format.js';
 import { t } from '../texts/texts.js';
-/** @param {import('../app.js').App} app */
-export function mapsPage(app) { return html`<h1>${t('page.maps')}</h1>`; }
+
+/** @typedef {import('../app.js').App} App */
+/** @typedef {{ name: string, version: number, digest: string, created_unix_ns: number, rows: number, cols: number, resolution_m: number,
+ *   damage: string | null, unsaved: boolean, stops: number | null }} Entry */
+
+const NAME = /^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$/;
+/** @type {Entry[] | null} */
+let entries = null;
+/** The map in use, and whether it was saved, when the list was asked for. */
+let asked = '';
+let saveAs = '';
+/** @type {Set<string>} names of which older versions are shown */
+const unfolded = new Set();
+
+/** @param {App} app */
+export function mapsPage(app) {
+  const { status } = app.state;
+  const now = `${status?.map_id} ${status?.map_unsaved} ${status?.map_kept_version} ${app.state.session}`;
+  if (now !== asked && app.link.isOpen) {
+    asked = now;
+    list(app);
+  }
+  /** @type {Map<string, Entry[]>} */
+  const byName = new Map();
+  for (const entry of entries ?? []) byName.set(entry.name, [...(byName.get(entry.name) ?? []), entry]);
+  return html`<h1>${t('maps.title')}</h1>${current(app)}
+    ${entries !== null && entries.length === 0 ? html`<p class="quiet">${t('maps.none')}</p>` : nothing}
+    <div class="cards maps">${[...byName].map(([name, versions]) => card(app, name, versions.sort((a, b) => b.version - a.version)))}</div>`;
+}
+
+/** @param {App} app */
+async function list(app) {
+  try {
+    entries = (await app.link.ask('command', { cmd: 'map_list' })).maps;
+  } catch {
+    asked = ''; // asked again when the page is drawn next
+  }
+  app.wake(true);
+}
+
+/** @param {App} app */
+function current(app) {
+  const { status, hello } = app.state;
+  if (status === null) return nothing;
+  const may = hello !== null && hello.role !== 'viewer';
+  const isNamed = saveAs === '' || NAME.test(saveAs);
+  const save = async () => {
+    const saved = await app.command('map_save', saveAs === '' ? {} : { name: saveAs }, '');
+    if (saved !== undefined) app.notice('done', t('maps.saved', { version: saved.version }));
+    saveAs = '';
+  };
+  return html`<section class="card current"><p class="big">${status.map_name === null ? t('maps.current_none') : t('maps.current', { name: status.map_name })}</p>
+    ${status.map_unsaved ? html`<p class="why">${status.map_kept_version === null ? t('maps.not_kept') : t('maps.not_saved', { version: status.map_kept_version })}</p>` : nothing}
+    ${status.map_name !== null && may ? html`<div class="buttons">
+      <label class="inline">${t('map.name')} <input placeholder=${status.map_name} .value=${saveAs} maxlength="64" @input=${(/** @type {any} */ event) => { saveAs = event.target.value; app.wake(true); }}></label>
+      <button class="primary" aria-disabled=${!isNamed} @click=${() => isNamed && save()}>${saveAs === '' || saveAs === status.map_name ? t('maps.save') : t('maps.save_as')}</button>
+      ${status.map_unsaved ? html`<button @click=${() => app.command('map_discard')}>${t('maps.discard')}</button>` : nothing}
+    </div>${isNamed ? nothing : html`<p class="why">${t('map.name_bad')}</p>`}` : nothing}
+  </section>`;
+}
+
+/** @param {App} app @param {string} name @param {Entry[]} versions */
+function card(app, name, versions) {
+  const newest = versions.find((entry) => !entry.unsaved) ?? versions[0];
+  if (newest === undefined) return nothing;
+  const others = versions.filter((entry) => entry !== newest);
+  return html`<article class="card" aria-label=${name}>
+    ${newest.damage === null ? html`<img src=${`api/maps/${name}/${newest.version}.png?small`} alt="" loading="lazy" width="320" height="200">` : html`<div class="no-picture" aria-hidden="true">×</div>`}
+    <h2 class="name">${name}</h2>
+    ${version(app, newest)}
+    ${others.length === 0 ? nothing : html`<button class="link" aria-expanded=${unfolded.has(name)} @click=${() => { if (!unfolded.delete(name)) unfolded.add(name); app.wake(true); }}>${t('maps.older', { count: others.length })}</button>
+      ${unfolded.has(name) ? others.map((entry) => version(app, entry)) : nothing}`}
+  </article>`;
+}
+
+/** @param {App} app @param {Entry} entry */
+function version(app, entry) {
+  const { status, hello } = app.state;
+  const isInUse = status?.map_id === entry.digest && entry.digest !== '';
+  const may = hello !== null && hello.role !== 'viewer' && entry.damage === null;
+  const load = async (/** @type {Record<string, unknown>} */ more) => {
+    const loaded = await app.command('map_load', { name: entry.name, version: entry.version, ...more }, '');
+    if (loaded !== undefined) app.notice('done', t('maps.loaded', { name: entry.name }));
+  };
+  return html`<div class="version">
+    <p><strong>${t('maps.version', { version: entry.version })}</strong>${isInUse ? html` <span class="tag">${t('maps.in_use')}</span>` : nothing}${entry.unsaved ? html` <span class="tag doubt">${t('maps.unsaved')}</span>` : nothing}</p>
+    ${entry.damage === null
+      ? html`<p class="quiet">${t('maps.size', { cols: entry.cols, rows: entry.rows, cell: metres(entry.resolution_m) })}${entry.stops === null ? '' : `, ${t('maps.stops', { count: entry.stops })}`}<br>${t('maps.made', { when: when(entry.created_unix_ns / 1e9) })}<br><code>${entry.digest.slice(0, 12)}</code></p>`
+      : html`<p class="why">${t('maps.damaged', { damage: entry.damage })}</p>`}
+    <div class="buttons">
+      ${may && !isInUse ? html`<button @click=${() => load({})}>${t('maps.load')}</button>` : nothing}
+      ${entry.damage === null ? html`<a class="button" href=${`api/maps/${entry.name}/${entry.version}.png`} download=${`${entry.name}-${entry.version}.png`}>${t('maps.picture')}</a>` : nothing}
+    </div></div>`;
+}

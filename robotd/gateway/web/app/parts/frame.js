@@ -39,7 +39,7 @@ export function page(app) {
       </div>
     </header>
     ${banners(app)}
-    <main id="main" tabindex="-1" class=${`page-${app.page} ${silence === null ? '' : 'stale'}`}>${draw(app)}</main>
+    <main id="main" tabindex="0" class=${`page-${app.page} ${silence === null ? '' : 'stale'}`}>${draw(app)}</main>
     ${notices(app)}
     ${stopButton(app)}`;
 }

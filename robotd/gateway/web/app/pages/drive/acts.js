@@ -27,6 +27,7 @@ export function actsCard(app) {
         ${act(app, 'here', onMap, () => draft.begin('here'))}
         ${act(app, 'go', goes, () => draft.begin('go'))}
         ${act(app, 'map', drive, () => draft.begin('map'))}
+        ${hello.commands.includes('explore') ? act(app, 'explore', drive, () => draft.begin('explore')) : nothing}
       </div>
       ${said(drive, 'acts-why')}` : prepared(app, goes, onMap, drive)}
     ${attended(app)}
@@ -53,7 +54,7 @@ function act(app, name, why, begin) {
 /** @param {App} app @param {any} goes @param {any} onMap @param {any} drive */
 function prepared(app, goes, onMap, drive) {
   const draft = draftOf(app);
-  const parts = { go: () => going(app, goes), here: () => here(app, onMap), map: () => mapping(app, drive) };
+  const parts = { go: () => going(app, goes), here: () => here(app, onMap), map: () => mapping(app, drive), explore: () => exploring(app, drive) };
   return html`${draft.act === null ? nothing : parts[draft.act]()}<button @click=${() => draft.cancel()}>${t('act.cancel')}</button>`;
 }
 
@@ -83,6 +84,24 @@ function here(app, why) {
 }
 
 /** @param {App} app @param {any} why */
+function exploring(app, why) {
+  const draft = draftOf(app);
+  const { status, pose } = app.state;
+  const isNamed = NAME.test(draft.name);
+  const goesOn = status?.map_name != null && pose?.best != null && draft.name === status.map_name;
+  return html`${nameField(app)}
+    <p class="quiet">${goesOn ? t('explore.goes_on') : t('map.start_zero')}</p>
+    <button class="primary" aria-disabled=${why !== null || !isNamed} @click=${() => why === null && isNamed && start(app, 'explore', { name: draft.name, resume: goesOn })}>${goesOn ? t('act.resume') : t('act.start')}</button>${said(why, 'explore-why')}`;
+}
+
+/** @param {App} app */
+function nameField(app) {
+  const draft = draftOf(app);
+  return html`<label>${t('map.name')} <input .value=${draft.name} maxlength="64" aria-describedby="name-why" @input=${(/** @type {any} */ event) => { draft.name = event.target.value; app.wake(true); }}></label>
+    <p class="why" id="name-why">${draft.name === '' || NAME.test(draft.name) ? '' : t('map.name_bad')}</p>`;
+}
+
+/** @param {App} app @param {any} why */
 function mapping(app, why) {
   const draft = draftOf(app);
   const isNamed = NAME.test(draft.name);
@@ -99,8 +118,7 @@ function mapping(app, why) {
     app.wake(true);
   };
   return html`
-    <label>${t('map.name')} <input .value=${draft.name} maxlength="64" aria-describedby="name-why" @input=${(/** @type {any} */ event) => { draft.name = event.target.value; app.wake(true); }}></label>
-    <p class="why" id="name-why">${draft.name === '' || isNamed ? '' : t('map.name_bad')}</p>
+    ${nameField(app)}
     <p>${t('map.stops_hint')}</p>
     <ol class="stops">${draft.stops.map((stop, index) => html`
       <li draggable="true" @dragstart=${(/** @type {DragEvent} */ event) => event.dataTransfer?.setData('text/plain', String(index))}

@@ -5,7 +5,7 @@ import { drawStop } from '../../map/layers.js';
 /** @typedef {{ x: number, y: number }} Place */
 
 export class Draft {
-  /** @type {'go' | 'here' | 'map' | null} */
+  /** @type {'go' | 'here' | 'map' | 'explore' | null} */
   act = null;
   /** @type {Place | null} */
   goal = null;
@@ -23,7 +23,7 @@ export class Draft {
     this.app = app;
   }
 
-  /** Begin to prepare an act. @param {'go' | 'here' | 'map'} act */
+  /** Begin to prepare an act. @param {'go' | 'here' | 'map' | 'explore'} act */
   begin(act) {
     this.cancel();
     this.act = act;

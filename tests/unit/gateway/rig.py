@@ -1,0 +1,82 @@
+"""A gateway on loopback, before the front of a daemon whose robot is a fake."""
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import aiohttp
+import pytest
+from yarl import URL
+
+from robotd.gateway.access.roles import Role
+from robotd.gateway.access.tokens import TokenFile, Tokens, make_token
+from robotd.gateway.composed import gateway
+from robotd.gateway.house import House
+from robotd.gateway.settings import AccessSettings, GatewaySettings, ListenSettings, RobotSettings, WatchingSettings
+from tests.unit.gateway.pages import until
+from tests.unit.server.conftest import FakeControl, Serving
+
+
+@dataclass
+class GatewayRig:
+    """A gateway, its address, a secret of each role, and the robot behind it."""
+
+    house: House
+    address: URL
+    secrets: dict[str, str]
+    control: FakeControl
+
+    @property
+    def origin(self) -> dict[str, str]:
+        return {"Origin": str(self.address.origin())}
+
+    @contextlib.asynccontextmanager
+    async def browser(self, role: str = "operator") -> AsyncIterator[aiohttp.ClientSession]:
+        """A browser that signed in."""
+        jar = aiohttp.CookieJar(unsafe=True)
+        async with aiohttp.ClientSession(self.address, headers=self.origin, cookie_jar=jar) as session:
+            async with session.post("api/session", json={"token": self.secrets[role]}) as answer:
+                assert answer.status == 200
+            yield session
+
+
+async def _tell(control: FakeControl) -> None:
+    """Tell the status as a robot does: often, and whatever happens."""
+    while True:
+        control.events.publish(control.status)
+        await asyncio.sleep(0.2)
+
+
+Opening = Callable[..., contextlib.AbstractAsyncContextManager[GatewayRig]]
+
+
+@pytest.fixture
+def opening(tmp_path: Path, serving: Serving) -> Opening:
+    """``async with opening() as rig``: a robot, its front and a gateway."""
+
+    @contextlib.asynccontextmanager
+    async def open_(**driving: Any) -> AsyncIterator[GatewayRig]:
+        state = tmp_path / "state"
+        made = {role.value: make_token(f"some {role}", role, 0.0) for role in Role}
+        TokenFile(state / "tokens.json").write(Tokens(tuple(token for _, token in made.values())))
+        recordings = tmp_path / "recordings"
+        recordings.mkdir()
+        settings = GatewaySettings(
+            ListenSettings(port=0, allowed_hosts=("robot.lab",)),
+            RobotSettings("dusty", str(tmp_path), str(recordings)),
+            WatchingSettings(**driving),
+            AccessSettings(state_dir=str(state)),
+        )
+        async with serving() as control, gateway(settings) as (house, address):
+            telling = asyncio.create_task(_tell(control))
+            await until(lambda: house.services.fan.snapshot.status)
+            try:
+                yield GatewayRig(house, URL(address), {role: secret for role, (secret, _) in made.items()}, control)
+            finally:
+                telling.cancel()
+                await asyncio.wait((telling,))
+
+    return open_
