@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help console demo demo-real demo-busy test bench bench-peers paper conservative exact docs faults interop replay-many liars fuzz safety stops heads heart lag worlds truth firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help console ui-test demo demo-real demo-busy test bench bench-peers paper conservative exact docs faults interop replay-many liars fuzz safety stops heads heart lag worlds truth firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -25,6 +25,10 @@ demo-real: .venv/.demo  ## The same in a recorded building: make demo-real LOG=p
 
 console: .venv/.console  ## The robot in a browser: simulated robot, daemon, gateway; prints an address to open (Ctrl-C ends it)
 	@$(BIN)/robotctl demo console $(WORLD) --seed $(SEED) --out console
+
+ui-test: .venv/.dev  ## The console: its types and units by Node, its flows in Debian's Chromium (apt-get install chromium)
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[ui]'
+	@$(BIN)/python -m tests.ui.run
 
 demo-busy: .venv/.dev  ## Whether make demo finishes beside busy programs: N="2 4 8" RUNS=10 NICE=0 HARSH=1 LOG=... (an hour)
 	@$(BIN)/python -m tests.studies.busy.run --world $(WORLD) $(if $(N),--busy $(N)) $(if $(RUNS),--runs $(RUNS)) \

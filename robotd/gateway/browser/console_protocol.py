@@ -59,13 +59,13 @@ class HandOver(msgspec.Struct, tag="hand_over", tag_field="type", forbid_unknown
     give: bool
 
 
-class Look(msgspec.Struct, tag="look", tag_field="type", forbid_unknown_fields=True):
+class ShowLayers(msgspec.Struct, tag="look", tag_field="type", forbid_unknown_fields=True):
     """Show the heat map, or no more."""
 
     rank: bool
 
 
-Said = Answer | Look | StopNow | Command | StartMission | TakeOver | HandOver
+Said = Answer | ShowLayers | StopNow | Command | StartMission | TakeOver | HandOver
 
 
 def said(text: str) -> Said:

@@ -93,7 +93,7 @@ class PageConnection:
         match said:
             case protocol.Answer():
                 self.liveness.answer(said.n, _now_s())
-            case protocol.Look():
+            case protocol.ShowLayers():
                 self._services.fan.show_rank(self, show=said.rank)
             case protocol.Command():
                 self._begin(self._answered(said.id, self._command(said)))

@@ -88,8 +88,10 @@ class FanOut:
         async for item in frames:
             if not self._see_rank:
                 return
-            for listener in tuple(self._see_rank) if isinstance(item, Frame) else ():
-                listener.hear(HeardFrame.read(item))
+            if isinstance(item, Frame):
+                heard = HeardFrame.read(item)
+                for listener in tuple(self._see_rank):
+                    listener.hear(heard)
 
     def _take(self, item: Frame | Gap) -> None:
         if isinstance(item, Gap):

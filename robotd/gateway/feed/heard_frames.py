@@ -8,7 +8,7 @@ import msgpack
 from robotd.contract.topics import Frame
 from robotd.core.errors import RemoteProtocolError
 
-_READ = {"status", "mission_progress", "map_changed"}
+_READ = {"status", "mission_progress", "map_changed", "pose_estimate"}
 """What the gateway goes by itself; all else it hands on."""
 
 

@@ -24,6 +24,8 @@ class Snapshot:
         """Which life of the daemon; None before its first word."""
         self.status: Status | None = None
         self.mission: MissionProgress | None = None
+        self.pose_state: str | None = None
+        """The word of the last estimate; None before the first."""
         self.map = MapKept()
         self.map_gap = False
         """Whether a change of the map was missed: the whole has to be asked for."""
@@ -50,6 +52,8 @@ class Snapshot:
             self.status, self._status_ns = from_plain(Status, heard.fields), now_ns
         elif heard.event == "mission_progress":
             self.mission = from_plain(MissionProgress, heard.fields)
+        elif heard.event == "pose_estimate":
+            self.pose_state = str(heard.fields["state"])
         if heard.event not in _NOT_KEPT:
             self._last[heard.event] = heard.data
 
@@ -67,6 +71,7 @@ class Snapshot:
     def _begin(self, session: str) -> None:
         """Forget what another life of the daemon told: its map, its way and its plan are not this one's."""
         self.session, self.status, self.mission, self._status_ns = session, None, None, None
+        self.pose_state = None
         self._last.clear()
         self._log.clear()
         self.map.forget()

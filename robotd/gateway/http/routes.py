@@ -25,12 +25,12 @@ ROUTES: tuple[Route, ...] = (
 )
 
 
-def application(house: House) -> web.Application:
-    """Return the server's side of the table."""
+def application(house: House, more: tuple[Route, ...] = ()) -> web.Application:
+    """Return the server's side of the table, and of ``more`` routes that others made."""
     door = FrontDoor(house)
     # Its own bound on what is read into memory; what comes as a file has a bound of its own.
     app = web.Application(middlewares=[door.middleware], client_max_size=LONGEST_TEXT)
-    for route in ROUTES:
+    for route in (*ROUTES, *more):
         app.router.add_route(route.method, route.path, door.guard(route))
     return app
 

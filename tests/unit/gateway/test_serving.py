@@ -6,6 +6,8 @@ from pathlib import Path
 
 import aiohttp
 import pytest
+from prometheus_client.openmetrics.parser import text_string_to_metric_families as openmetrics_families
+from prometheus_client.parser import text_string_to_metric_families
 from yarl import URL
 
 from robotd.core.errors import ConfigError
@@ -269,3 +271,38 @@ def test_the_description_has_every_address() -> None:
     assert {(path, method) for path, methods in paths.items() for method in methods} == {
         (route.path, route.method.lower()) for route in ROUTES
     }
+
+
+async def test_metrics_parse_have_no_free_text_and_need_a_token(opening: Opening) -> None:
+    async with opening() as rig, aiohttp.ClientSession(rig.address) as session:
+        async with session.get("metrics") as answer:
+            assert answer.status == 401
+        bearer = {"Authorization": f"Bearer {rig.secrets['viewer']}"}
+        async with session.post("api/stop", headers=bearer) as answer:
+            assert answer.status == 200
+        async with session.get("metrics", headers=bearer) as answer:
+            told = text_string_to_metric_families(await answer.text())
+            found = {family.name: family for family in told}
+        accept = {"Accept": "application/openmetrics-text; version=1.0.0"}
+        async with session.get("metrics", headers={**bearer, **accept}) as answer:
+            assert answer.content_type == "application/openmetrics-text"
+            assert list(openmetrics_families(await answer.text()))  # type: ignore[no-untyped-call]  # of others
+    assert all(name.startswith("robotd_") and family.documentation.endswith(".") for name, family in found.items())
+    samples = [sample for family in found.values() for sample in family.samples]
+    assert 20 < len(samples) < 1000
+    assert {value for sample in samples for value in sample.labels.values() if " " in value} == set()
+    values = {sample.name: sample.value for sample in samples if not sample.labels}
+    assert values["robotd_up"] == 1.0
+    assert values["robotd_battery_volts"] == 24.5
+    frames = next(sample for sample in samples if sample.name == "robotd_line_frames_total")
+    assert (frames.labels, frames.value) == ({"line": "drive"}, 7.0)
+    assert [one.value for one in found["robotd_gateway_stops"].samples if one.labels == {"confirmed": "yes"}] == [1.0]
+
+
+async def test_the_end_of_a_mission_is_counted_once(opening: Opening) -> None:
+    async with opening() as rig, rig.browser() as session, page_of(session) as page:
+        await page.ask("command", cmd="arm")
+        await page.ask("mission", cmd="localize")
+        await page.until(lambda: any(b"done" in frame for frame in page.frames if frame.startswith(b"\x01mission\0")))
+        async with session.get("metrics", headers={"Authorization": f"Bearer {rig.secrets['viewer']}"}) as answer:
+            assert 'robotd_missions_total{end="done",kind="localize"} 1.0' in await answer.text()

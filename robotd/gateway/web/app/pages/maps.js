@@ -15,6 +15,8 @@ let asked = '';
 let saveAs = '';
 /** @type {Set<string>} names of which older versions are shown */
 const unfolded = new Set();
+/** What is typed below a map that is to be renamed or deleted. @type {{ name: string, act: 'rename' | 'delete', typed: string } | null} */
+let change = null;
 
 /** @param {App} app */
 export function mapsPage(app) {
@@ -74,7 +76,31 @@ function card(app, name, versions) {
     ${version(app, newest)}
     ${others.length === 0 ? nothing : html`<button class="link" aria-expanded=${unfolded.has(name)} @click=${() => { if (!unfolded.delete(name)) unfolded.add(name); app.wake(true); }}>${t('maps.older', { count: others.length })}</button>
       ${unfolded.has(name) ? others.map((entry) => version(app, entry)) : nothing}`}
+    ${changes(app, name)}
   </article>`;
+}
+
+/** Renaming, and deleting, for which the name has to be typed: it cannot be taken back. @param {App} app @param {string} name */
+function changes(app, name) {
+  const { hello } = app.state;
+  if (hello === null || hello.role === 'viewer') return nothing;
+  const begin = (/** @type {'rename' | 'delete'} */ act) => { change = { name, act, typed: '' }; app.wake(true); };
+  if (change === null || change.name !== name) {
+    return html`<div class="buttons changes"><button @click=${() => begin('rename')}>${t('maps.rename')}</button>
+      ${hello.role === 'admin' ? html`<button class="danger" @click=${() => begin('delete')}>${t('maps.delete')}</button>` : nothing}</div>`;
+  }
+  const { act, typed } = change;
+  const isRight = act === 'delete' ? typed === name : NAME.test(typed) && typed !== name;
+  const carryOut = async () => {
+    const done = await (act === 'delete' ? app.command('map_delete', { name }) : app.command('map_rename', { name, new_name: typed }));
+    if (done !== undefined) change = null;
+    asked = '';
+    app.wake(true);
+  };
+  return html`<form class="changes" @submit=${(/** @type {Event} */ event) => { event.preventDefault(); if (isRight) carryOut(); }}>
+    <label>${act === 'delete' ? t('maps.delete_sure', { name }) : t('maps.new_name')} <input .value=${typed} maxlength="64" @input=${(/** @type {any} */ event) => { if (change !== null) change.typed = event.target.value; app.wake(true); }}></label>
+    <div class="buttons"><button class=${act === 'delete' ? 'danger' : 'primary'} aria-disabled=${!isRight}>${t(`maps.${act}`)}</button>
+    <button type="button" @click=${() => { change = null; app.wake(true); }}>${t('cancel')}</button></div></form>`;
 }
 
 /** @param {App} app @param {Entry} entry */

@@ -1,0 +1,204 @@
+// The console's own parts without a browser: `make ui-test` runs them by `node --test`.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { crc32 } from 'node:zlib';
+
+import { Grid, unpacked } from '../../robotd/gateway/web/app/map/grid.js';
+import { distances } from '../../robotd/gateway/web/app/map/overlays.js';
+import { boundsOf, colours, paint } from '../../robotd/gateway/web/app/map/paint.js';
+import { fitted, toMap, toPixel, zoomed } from '../../robotd/gateway/web/app/map/view.js';
+import { accept, hear, nothing } from '../../robotd/gateway/web/app/state/store.js';
+import { hindrance, silent } from '../../robotd/gateway/web/app/state/silence.js';
+import { isDriving, whereabouts } from '../../robotd/gateway/web/app/state/words.js';
+import { en } from '../../robotd/gateway/web/app/texts/en.js';
+import { waitMs } from '../../robotd/gateway/web/app/wire/backoff.js';
+import { readFrame } from '../../robotd/gateway/web/app/wire/decode.js';
+
+const vectors = JSON.parse(readFileSync(process.env.ROBOTD_VECTORS, 'utf8'));
+const bytes = (name) => Uint8Array.from(Buffer.from(vectors[name], 'base64')).buffer;
+const frame = (name) => readFrame(bytes(name));
+
+test('a frame that Python packed is read', () => {
+  const pose = frame('pose');
+  assert.deepEqual([pose.topic, pose.event, pose.session, pose.seq], ['pose', 'pose_estimate', 'session', 412]);
+  assert.equal(pose.fields.best.x_m, 1.25);
+  assert.equal(pose.fields.time_ns, 2 ** 53 - 1);
+});
+
+test('what is cut, damaged, of another kind or version is no frame, and throws nothing', () => {
+  const whole = new Uint8Array(bytes('pose'));
+  for (let length = 0; length < whole.length; length++) assert.equal(readFrame(whole.slice(0, length).buffer), null);
+  assert.equal(readFrame(Uint8Array.from([2, ...whole.slice(1)]).buffer), null);
+  const other = Buffer.from(whole);
+  other[other.indexOf('v') + 1] = 2;
+  assert.equal(readFrame(Uint8Array.from(other).buffer), null);
+});
+
+test('a whole map and a change are laid in; gaps wait for the whole', async () => {
+  const grid = new Grid();
+  await grid.accept(frame('change').fields);
+  assert.equal(grid.placement, null, 'a change of an unknown map is none');
+  await grid.accept(frame('whole').fields);
+  assert.equal(grid.cells.reduce((sum, value) => sum + value, 0), vectors.sum_before);
+  assert.equal(grid.dirty.size, 4, '700 x 530 cells are 2 x 2 tiles');
+  grid.dirty.clear();
+  await grid.accept(frame('change').fields);
+  assert.equal(crc32(grid.cells), vectors.crc_after);
+  assert.deepEqual([...grid.dirty].sort(), [0, 3]);
+  await grid.accept({ ...frame('change').fields, generation: 9 });
+  assert.equal(grid.generation, 5);
+  await grid.accept({ map_id: null });
+  assert.equal(grid.placement, null);
+});
+
+test('a map that is larger than it says, or than any, is left out', async () => {
+  const fields = frame('whole').fields;
+  await assert.rejects(unpacked(fields.cells_zlib, 100), RangeError);
+  await assert.rejects(unpacked(fields.cells_zlib, 700 * 530 + 1), RangeError);
+  const grid = new Grid();
+  await grid.accept({ ...fields, rows: 100_000, cols: 100_000 });
+  assert.equal(grid.placement, null);
+});
+
+test('tiles are what a slow twin paints', () => {
+  const rows = 600, cols = 520;
+  const cells = Uint8Array.from({ length: rows * cols }, (_, n) => (n * 7919) % 256);
+  const table = colours({ free: [1, 2, 3], wall: [250, 251, 252], unknown: [100, 100, 100] });
+  for (const tile of [0, 1, 2, 3]) {
+    const bounds = boundsOf(tile, { rows, cols });
+    const pixels = new Uint32Array(bounds.width * bounds.height);
+    paint(pixels, cells, cols, bounds, table);
+    for (const [row, col] of [[0, 0], [bounds.height - 1, bounds.width - 1], [bounds.height >> 1, bounds.width >> 1]]) {
+      const cell = cells[(bounds.row + row) * cols + bounds.col + col];
+      assert.equal(pixels[(bounds.height - 1 - row) * bounds.width + col], table[cell]);
+    }
+  }
+});
+
+test('distances are those of a slow twin, within 2 %', () => {
+  const rows = 40, cols = 50;
+  const walls = [[3, 4], [30, 44], [20, 20]];
+  const cells = new Uint8Array(rows * cols);
+  for (const [row, col] of walls) cells[row * cols + col] = 255;
+  const far = distances(cells, rows, cols);
+  for (let row = 0; row < rows; row++) {
+    for (let col = 0; col < cols; col++) {
+      const exact = Math.min(...walls.map(([r, c]) => Math.hypot(row - r, col - c)));
+      assert.ok(Math.abs(far[row * cols + col] - exact) <= 0.02 * exact + 1e-6, `${row} ${col}`);
+    }
+  }
+});
+
+test('a place stays below the pointer while it is zoomed, and a pixel leads back', () => {
+  const size = { width: 800, height: 600 }, view = { x: 3, y: -2, scale: 55 };
+  const near = zoomed(view, size, 1.7, 123, 456);
+  const before = toMap(view, size, 123, 456), after = toMap(near, size, 123, 456);
+  assert.ok(Math.hypot(before.x - after.x, before.y - after.y) < 1e-9);
+  const { px, py } = toPixel(view, size, before.x, before.y);
+  assert.ok(Math.hypot(px - 123, py - 456) < 1e-9);
+  assert.ok(fitted({ x0: 0, y0: 0, x1: 10, y1: 2 }, size).scale * 10 <= 800);
+});
+
+const device = (name, more = {}) => ({ name, link: 'ready', armed: false, faults: [], detail: '', counters: [], ...more });
+const status = (more = {}) => ({
+  event: 'status', time_ns: 1e9, mode: 'disarmed', reason: '', devices: [device('drive')], battery_v: 24, bumpers_rad: [], mission_id: null,
+  map_id: 'm', map_name: 'm', recording: null, held: null, map_unsaved: false, map_kept_version: null, since_ns: 0, started_ns: 0, ...more,
+});
+const told = (event, fields, session = 's') => ({ topic: event, event, session, seq: 1, fields: { event, ...fields } });
+const greeted = (now) => {
+  const state = nothing();
+  hear(state, { type: 'hello', time_ns: 0, role: 'operator', browser: 'b', commands: [], console: 'c' }, now);
+  state.isOpen = true;
+  return state;
+};
+
+test('age decides what is fresh, and names who is silent', () => {
+  const state = greeted(0);
+  accept(state, told('status', status()), 0);
+  hear(state, { type: 'question', daemon_silent_s: 0.1 }, 1000);
+  assert.equal(silent(state, 1400), null);
+  assert.equal(silent(state, 2600).part, 'gateway');
+  hear(state, { type: 'question', daemon_silent_s: 2.6 }, 2600);
+  assert.deepEqual(silent(state, 2600), { part: 'daemon', seconds: 2.6 });
+  state.isOpen = false;
+  assert.equal(silent(state, 2700).part, 'page');
+});
+
+test('an armed base without odometry is silent', () => {
+  const state = greeted(0);
+  accept(state, told('status', status({ mode: 'idle', devices: [device('drive', { armed: true })] })), 0);
+  accept(state, told('odometry', { time_ns: 1e9, in_odom: {} }), 0);
+  assert.equal(silent(state, 900), null);
+  assert.equal(silent(state, 1200).part, 'base');
+});
+
+test('what came with the snapshot is as old as it is', () => {
+  const state = nothing();
+  hear(state, { type: 'hello', time_ns: 10e9, role: 'viewer' }, 0);
+  state.isOpen = true;
+  accept(state, told('status', status({ time_ns: 5e9 })), 100);
+  assert.equal(silent(state, 100).part, 'daemon');
+});
+
+test('what cannot be done says why and what helps', () => {
+  const state = greeted(0);
+  assert.equal(hindrance(state, 'arm', 0).why, 'silent');
+  accept(state, told('status', status()), 0);
+  assert.equal(hindrance(state, 'arm', 0), null);
+  assert.equal(hindrance(state, 'drive', 0).remedy, 'arm');
+  accept(state, told('status', status({ mode: 'fault' })), 0);
+  assert.equal(hindrance(state, 'arm', 0).remedy, 'clear');
+  assert.equal(hindrance(state, 'clear', 0), null);
+  state.hello.role = 'viewer';
+  assert.equal(hindrance(state, 'clear', 0).why, 'viewer');
+  for (const name of ['silent', 'viewer', 'no_fault', 'fault', 'armed', 'no_device', 'disarmed', 'busy', 'no_map', 'not_localized']) assert.ok(en[`why.${name}`]);
+});
+
+test('another life of the daemon takes map, way and plan with it', () => {
+  const state = greeted(0);
+  accept(state, told('status', status()), 0);
+  accept(state, told('pose_estimate', { time_ns: 0, state: 'localized', best: { x_m: 1, y_m: 2, heading_rad: 0 }, regions: [], final: true }), 0);
+  accept(state, told('plan', { mission_id: 1, stops: [] }), 0);
+  assert.deepEqual([state.way.length, state.isOtherLife], [1, false]);
+  accept(state, told('odometry', { time_ns: 0 }, 'another'), 0);
+  assert.deepEqual([state.way.length, state.plan, state.status, state.isOtherLife], [0, null, null, true]);
+  assert.equal(state.hello.browser, 'b');
+});
+
+test('readings of a sweep come in columns, and the whole in the end', () => {
+  const state = greeted(0);
+  accept(state, frame('readings'), 0);
+  assert.equal(state.sweep, null, 'its begin was not heard');
+  accept(state, told('sweep_begun', { number: 3, total: 300, in_map: { x_m: 0, y_m: 0, heading_rad: 0 } }, 'session'), 0);
+  accept(state, frame('readings'), 0);
+  assert.deepEqual(state.sweep.readings.map(({ range_m, status }) => [range_m, status]), [[2.5, 'ok'], [null, 'weak']]);
+});
+
+test('one word for where it is, with a shape of its own', () => {
+  const state = greeted(0);
+  const shapes = new Set();
+  accept(state, told('status', status()), 0);
+  for (const word of ['localized', 'predicted', 'ambiguous', 'lost']) {
+    accept(state, told('pose_estimate', { time_ns: 0, state: word, best: null, regions: [1, 2, 3], regions_left_out: 0 }), 0);
+    const found = whereabouts(state);
+    assert.deepEqual([found.word, found.places], [word, 3]);
+    shapes.add(found.mark);
+  }
+  assert.equal(shapes.size, 4);
+  accept(state, told('status', status({ map_id: null })), 0);
+  assert.equal(whereabouts(state).word, 'no_map');
+});
+
+test('who drives is the browser that the gateway names', () => {
+  const state = greeted(0);
+  hear(state, { type: 'commander', commander: { driver: { browser: 'b', who: 'anna' } }, wish: null, wish_left_s: null }, 0);
+  assert.ok(isDriving(state));
+  hear(state, { type: 'commander', commander: { driver: { browser: 'x', who: 'otto' } }, wish: null, wish_left_s: null }, 0);
+  assert.ok(!isDriving(state));
+});
+
+test('tries come later and later, up to a bound, and not all at once', () => {
+  assert.deepEqual([0, 1, 2, 9].map((failed) => waitMs(failed, 0.5)), [250, 500, 1000, 5000]);
+  assert.ok(waitMs(9, 1) <= 6250 && waitMs(0, 0) >= 187);
+});
