@@ -57,6 +57,11 @@ class ErrorRadii:
         return np.searchsorted(self.begins, range_cells, side="right")
 
     @property
+    def widest(self) -> float:
+        """By how much a head that counts on the last level may lie aside, if there can be no level more."""
+        return math.sqrt(max(0.0, self.cells[0] ** 2 * _STEP ** (2 * _LEVELS_MAX - 1) - self.cells[0] ** 2))
+
+    @property
     def greatest(self) -> float:
         """The radius of the last level."""
         return self.cells[-1]

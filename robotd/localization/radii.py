@@ -17,6 +17,10 @@ def radii_of(settings: LocalizationSettings, spec: GridSpec) -> ErrorRadii:
     radius_cells = settings.error_radius_cells(spec.resolution_m)
     if settings.error_radius is ErrorRadius.CONSTANT:
         return ErrorRadii((radius_cells,))
-    angle_rad = settings.heading_step_rad / 2 + settings.bearing_error_rad
     # No beam that ends on the map goes farther than from corner to corner.
-    return ErrorRadii.growing(max(radius_cells, _ROUNDED_CELLS), angle_rad, math.hypot(*spec.shape))
+    return ErrorRadii.growing(max(radius_cells, _ROUNDED_CELLS), angle_error_rad(settings), math.hypot(*spec.shape))
+
+
+def angle_error_rad(settings: LocalizationSettings) -> float:
+    """Return how far a reading may be off by its angle, at the nearest heading that is tried."""
+    return settings.heading_step_rad / 2 + settings.bearing_error_rad

@@ -74,7 +74,7 @@ class Supervisor:
             news.publish,
             self.publish_status,
             context.head.forget,
-            context.settings.localization,
+            context.settings.advice_on,
         )
         self.arming = Arming(self, self._current, lambda: faults_of(self.robot, battery_min_v))
         self.holding = Holding(self, context.hold, self.arming)

@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass, field
 
+from robotd.core.grid_spec import GridSpec
 from robotd.grid.settings import GridSettings
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
+from robotd.localization.advice import SweepFacts, advice_on
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
 from robotd.mission.missions.stop_and_sweep import SweepSettings
@@ -23,3 +25,8 @@ class MissionSettings:
     localization: LocalizationSettings = field(default_factory=LocalizationSettings)
     judgement: Judgement = field(default_factory=Judgement)
     planning: PlanningSettings = field(default_factory=PlanningSettings)
+
+    def advice_on(self, spec: GridSpec) -> str | None:
+        """Return which setting cannot work on a map's cells, and what to take; None if all go together."""
+        facts = SweepFacts(self.sweep.readings, self.rangefinder.range_max_m, self.grid.between_beams)
+        return advice_on(self.localization, spec, facts)

@@ -4,9 +4,8 @@ import logging
 from collections.abc import Callable
 
 from robotd.core.clock import now_ns
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry
-from robotd.localization.advice import advice_on
-from robotd.localization.settings import LocalizationSettings
 from robotd.mission.news import Publish
 from robotd.mission.whereabouts.map_in_use import MapInUse, in_place_of
 from robotd.mission.whereabouts.tie import Tie
@@ -25,17 +24,17 @@ class WhereaboutsTold:
         publish: Publish,
         publish_status: Callable[[], None],
         let_go: Callable[[int], None],
-        settings: LocalizationSettings,
+        advise: Callable[[GridSpec], str | None],
     ) -> None:
         """Change ``whereabouts``; another map is told of in the status, too, and ``let_go`` of the one before.
 
-        Where ``settings`` cannot work on it, the log says which.
+        Where settings cannot work on its cells, the log says what to take instead, by ``advise``.
         """
         self._whereabouts = whereabouts
         self._publish = publish
         self._publish_status = publish_status
         self._let_go = let_go
-        self._settings = settings
+        self._advise = advise
 
     def begin(self) -> None:
         """Say that nothing is known yet."""
@@ -45,7 +44,7 @@ class WhereaboutsTold:
         """Take another map into use."""
         before = self._whereabouts.map_in_use
         log.info("map %s (%s) is in use%s", place.name, place.map_id, in_place_of(before))
-        if (advice := advice_on(self._settings, place.spec)) is not None:
+        if (advice := self._advise(place.spec)) is not None:
             log.warning("map %s: %s", place.name, advice)
         self._whereabouts.adopt(place, tie)
         if before is not None and before.number != place.number:
