@@ -16,7 +16,7 @@ from robotd.contract.missions import DriveTo, Legs, Localize, MapStart, Mission
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.grid_bytes import grid_digest
-from tests.support.real_rig import Rig, armed, ms_since, rig, until
+from tests.support.real_rig import Rig, armed, child_of, ms_since, rig, until
 
 STATES = ("idle", "mapping", "localizing", "driving")
 WAYS = {"kill -9": signal.SIGKILL, "SIGSTOP": signal.SIGSTOP}
@@ -46,12 +46,7 @@ class Subject:
     @property
     def head(self) -> int | None:
         """The process that computes, if there is one now."""
-        for status in Path("/proc").glob("[0-9]*/stat"):
-            with contextlib.suppress(OSError, IndexError):
-                parent = status.read_text().rpartition(")")[2].split()[1]
-                if parent == str(self.pid) and b"robotd.head" in (status.parent / "cmdline").read_bytes():
-                    return int(status.parent.name)
-        return None
+        return child_of(self.pid, "robotd.head")
 
     async def trial(self, state: str, way: str, rng: random.Random) -> Outcome:
         """Let the head go while the robot is at something; ask for a stop in every second trial."""

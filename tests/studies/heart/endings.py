@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from robotd.client import AsyncClient
 from robotd.contract.missions import DriveStraight, MapStart
 from robotd.core.clock import NS_PER_S, now_ns
-from robotd.core.errors import RobotdError
-from tests.studies.heart.trials import front_of
-from tests.support.real_rig import Rig, armed, ms_since, until
+from robotd.core.errors import ChildError, RobotdError
+from tests.support.real_rig import Rig, armed, child_of, ms_since, until
 
 LEASE_S = 0.3
 _FAR_M = 0.8
@@ -85,8 +84,11 @@ async def end_front(rig: Rig, daemon_pid: int, mode: str, number: signal.Signals
                 mission_id = (await client.status()).mission_id
                 renewed_ns = now_ns()
                 await client.renew(mission_id or 0)
+        front = child_of(daemon_pid, "robotd.front")
+        if front is None:
+            raise ChildError("there is no front to end")
         ended_ns = now_ns()
-        os.kill(front_of(daemon_pid), number)
+        os.kill(front, number)
         late_ms = None
         if is_on_mission:
             late_ms = ms_since(renewed_ns + round(LEASE_S * NS_PER_S), await rig.stopped_ns())

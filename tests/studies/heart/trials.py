@@ -20,7 +20,7 @@ from robotd.core.errors import RobotdError
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.maps.store import MapStore
 from tests.studies.lag.workload import large_grid
-from tests.support.real_rig import Rig, armed, ms_since
+from tests.support.real_rig import Rig, armed, child_of, ms_since
 from tests.support.repeated import Repeated, repeated
 
 LEASE_S = 0.5
@@ -46,7 +46,7 @@ class Suffered:
 async def suffer(rig: Rig, daemon_pid: int, attacks: Sequence[str], trials: int, share: float = 1.0) -> Suffered:
     """Stop missions while attackers are at work."""
     came_of_it = Suffered()
-    before = front_of(daemon_pid)
+    before = child_of(daemon_pid, "robotd.front")
     async with AsyncClient(rig.runtime_dir, deadline_s=60.0) as client:
         await client.hello()
         async with contextlib.AsyncExitStack() as stack:
@@ -60,7 +60,7 @@ async def suffer(rig: Rig, daemon_pid: int, attacks: Sequence[str], trials: int,
                 return late_ms
 
             came_of_it.stops = await repeated(trials, trial)
-    came_of_it.deaths += front_of(daemon_pid) != before
+    came_of_it.deaths += child_of(daemon_pid, "robotd.front") != before
     return came_of_it
 
 
@@ -117,17 +117,7 @@ def with_a_large_map(rig: Rig, grid: OccupancyGrid | None = None) -> None:
     MapStore(rig.directory / "maps").save("large", grid or large_grid(), {}, 0)
 
 
-def front_of(daemon_pid: int) -> int:
-    """Return the process that serves clients; 0 while there is none."""
-    children = Path(f"/proc/{daemon_pid}/task/{daemon_pid}/children").read_text().split()
-    for child in children:
-        with contextlib.suppress(OSError):
-            if b"robotd.front" in Path(f"/proc/{child}/cmdline").read_bytes():
-                return int(child)
-    return 0
-
-
-def _mib(pid: int) -> float:
+def _mib(pid: int | None) -> float:
     try:
         return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * 4096 / 2**20
     except (OSError, ValueError):
