@@ -25,8 +25,7 @@ from robotd.gateway.feed.fan_out import FanOut
 from robotd.gateway.feed.snapshot import Snapshot
 from robotd.gateway.house import House
 from robotd.gateway.http.routes import application
-from robotd.gateway.metrics.exposition_http import route
-from robotd.gateway.metrics.gateway_families import MissionEnds
+from robotd.gateway.metrics.exposition_http import ROUTE as METRICS
 from robotd.gateway.settings import GatewaySettings
 
 _IDLE_LOOK_S = 1.0
@@ -78,7 +77,7 @@ async def gateway(settings: GatewaySettings) -> AsyncIterator[tuple[House, str]]
 async def _served(house: House) -> AsyncIterator[str]:
     """Serve the addresses; hang up on every page in the end, which lets it look for another gateway at once."""
     listen = house.settings.listen
-    app = application(house, (route(MissionEnds(house)),))
+    app = application(house, (METRICS,))
     runner = web.AppRunner(app, access_log=None, shutdown_timeout=1.0, keepalive_timeout=30.0)
     await runner.setup()
     try:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robotd.cli.connection import connect
 from robotd.cli.exit_codes import OK
-from robotd.cli.show.metrics import counted, exposition
+from robotd.cli.show.metrics_text import exposition
 from robotd.cli.show.terminal import err, out, print_json, print_pairs, print_table
 from robotd.cli.show.wording import as_json, estimate_in_words
 from robotd.cli.verb import Verb
@@ -15,6 +15,7 @@ from robotd.contract.answers import HelloResult
 from robotd.contract.device_status import DeviceStatus
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import Status
+from robotd.contract.metric_families import of_metrics, of_status
 from robotd.contract.modes import Mode
 from robotd.contract.topics import Topic
 from robotd.core.clock import NS_PER_S
@@ -28,7 +29,7 @@ _PATIENCE_S = 0.5
 def _status(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client:
         if arguments.metrics:
-            print(exposition(client.status()) + counted(client.metrics()), end="")
+            print(exposition((*of_status(client.status()), *of_metrics(client.metrics()))), end="")
             return OK
         status, hello = client.status(), client.hello()
         pose = _newest_pose(client)

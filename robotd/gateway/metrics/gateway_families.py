@@ -1,50 +1,21 @@
 """What a gateway tells of itself: its browsers, its stops, who came in."""
 
-from collections import Counter
 from collections.abc import Iterator
 
 from robotd import __version__
-from robotd.contract.events import MissionProgress
+from robotd.contract.metric_families import MetricFamily
 from robotd.core.clock import now_ns
-from robotd.gateway.feed.heard_frames import HeardFrame
 from robotd.gateway.house import House
-from robotd.gateway.metrics.robot_families import MetricFamily
 
 _HEARD_WITHIN_S = 2.5
 
 
-class MissionEnds:
-    """Counts how missions ended, whoever started them, from what the daemon publishes."""
-
-    def __init__(self, house: House) -> None:
-        """Count from now on."""
-        self.counted: Counter[tuple[str, str]] = Counter()
-        self._snapshot = house.services.fan.snapshot
-        self._last: tuple[str | None, int] | None = None
-        house.services.fan.join(self)
-
-    def hear(self, heard: HeardFrame) -> None:
-        """Count a mission's last word, once."""
-        mission = self._snapshot.mission
-        if heard.event != "mission_progress" or not isinstance(mission, MissionProgress) or not mission.is_last:
-            return
-        this = (self._snapshot.session, mission.mission_id)
-        if this != self._last:
-            self._last = this
-            self.counted[mission.kind, str(mission.phase)] += 1
-
-    def lost(self, topic: str, count: int) -> None:
-        """Miss what was missed."""
-
-
-def of_gateway(house: House, ends: MissionEnds) -> Iterator[MetricFamily]:
+def of_gateway(house: House) -> Iterator[MetricFamily]:
     """Yield what a gateway knows of itself, and of the daemon by listening."""
     silent_s = house.services.fan.snapshot.silent_s(now_ns())
     is_up = silent_s is not None and silent_s < _HEARD_WITHIN_S
     yield MetricFamily("up", "gauge", "Whether the daemon is heard.", (((), float(is_up)),))
     yield MetricFamily("build", "info", "Versions.", (((("gateway", __version__),), 1.0),))
-    missions = tuple(((("kind", kind), ("end", end)), float(n)) for (kind, end), n in sorted(ends.counted.items()))
-    yield MetricFamily("missions", "counter", "Missions that ended since the gateway was started.", missions)
     yield MetricFamily("gateway_browsers", "gauge", "Pages that are open.", (((), float(len(house.connections))),))
     dropped = house.dropped_messages + sum(one.outbox.dropped for one in house.connections)
     yield _total("gateway_dropped_messages", "Messages left out for browsers that read slowly.", dropped)

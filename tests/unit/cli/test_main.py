@@ -238,7 +238,7 @@ def test_metrics_are_lines_that_a_collector_reads(client: Any, capsys: pytest.Ca
         'robotd_mode{mode="idle"} 1',
         'robotd_mode{mode="fault"} 0',
         'robotd_device_ready{device="pantilt"} 0',
-        'robotd_line{device="drive",what="frames"} 1203',
+        'robotd_line_frames_total{line="drive"} 1203',
         "robotd_battery_volts 24.5",
         'robotd_missions_total{kind="map",end="done"} 2',
         "# TYPE robotd_loop_lag_seconds histogram",

@@ -297,12 +297,3 @@ async def test_metrics_parse_have_no_free_text_and_need_a_token(opening: Opening
     frames = next(sample for sample in samples if sample.name == "robotd_line_frames_total")
     assert (frames.labels, frames.value) == ({"line": "drive"}, 7.0)
     assert [one.value for one in found["robotd_gateway_stops"].samples if one.labels == {"confirmed": "yes"}] == [1.0]
-
-
-async def test_the_end_of_a_mission_is_counted_once(opening: Opening) -> None:
-    async with opening() as rig, rig.browser() as session, page_of(session) as page:
-        await page.ask("command", cmd="arm")
-        await page.ask("mission", cmd="localize")
-        await page.until(lambda: any(b"done" in frame for frame in page.frames if frame.startswith(b"\x01mission\0")))
-        async with session.get("metrics", headers={"Authorization": f"Bearer {rig.secrets['viewer']}"}) as answer:
-            assert 'robotd_missions_total{end="done",kind="localize"} 1.0' in await answer.text()

@@ -153,3 +153,24 @@ def test_the_directories_are_those_of_the_configuration() -> None:
     for directory in (config["maps"]["dir"], config["recording"]["dir"]):
         assert directory in made
         assert directory.startswith(f"/var/lib/{settings()['StateDirectory'][0]}/")
+
+
+GATEWAY = FOLDER / "robotd-gateway.service"
+
+
+def test_systemd_finds_the_gateway_safe_though_browsers_reach_it() -> None:
+    report = run(tool("systemd-analyze"), "security", "--offline=true", str(GATEWAY))
+    match = re.search(r"Overall exposure level for robotd-gateway.service: ([0-9.]+)", report)
+    assert match is not None
+    assert float(match[1]) <= 1.0
+
+
+def test_the_gateway_has_no_device_and_no_capability_and_never_goes_before_the_daemon() -> None:
+    keys = settings(GATEWAY)
+    assert (keys["PrivateDevices"], keys["CapabilityBoundingSet"]) == (["yes"], [""])
+    assert (keys["User"], keys["SupplementaryGroups"]) == (["robotd-gateway"], ["robotd"])
+    assert int(keys["Nice"][0]) > int(settings()["Nice"][0])
+    assert keys["RestartPreventExitStatus"] == ["2 78"], "without a token it is not tried again"
+    assert "RuntimeDirectory" not in keys
+    port = tomllib.loads((FOLDER / "robotd-gateway.toml").read_text())["listen"]["port"]
+    assert keys["SocketBindAllow"] == [f"tcp:{port}"]

@@ -1,15 +1,17 @@
-"""What is told of the robot, from its status and its estimates: families of metrics, without a library of anybody's.
+"""What collectors of metrics are told of the robot: its status and what was counted, as families. Pure.
 
 Names are of base units, counters end with ``_total``, and no free text is in a label: there are some hundred series.
 """
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Literal
 
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.contract.estimate import PoseState
 from robotd.contract.events import Status
+from robotd.contract.metrics import Buckets, Metrics, Sample
 from robotd.contract.modes import MODE_WORDS
 
 Labels = tuple[tuple[str, str], ...]
@@ -23,9 +25,12 @@ class MetricFamily:
     """Series of one name."""
 
     name: str
-    kind: Literal["gauge", "counter", "info"]
+    """Without a prefix, and without the ``_total`` of a counter."""
+    kind: Literal["gauge", "counter", "info", "histogram"]
     meaning: str
     samples: tuple[tuple[Labels, float], ...]
+    distributions: tuple[Buckets, ...] = ()
+    """Of a histogram; then there are no samples."""
 
 
 def of_status(status: Status) -> Iterator[MetricFamily]:
@@ -49,6 +54,28 @@ def of_status(status: Status) -> Iterator[MetricFamily]:
 def of_pose(state: str | None) -> MetricFamily:
     """Return what is known of where the robot is."""
     return _gauge("pose_state", "Whether it is this.", ((_(state=one), float(one == state)) for one in PoseState))
+
+
+def of_metrics(metrics: Metrics) -> Iterator[MetricFamily]:
+    """Yield what was counted since the daemon was started."""
+    for name, alike in groupby(metrics.counters, key=_name):
+        yield MetricFamily(name.removesuffix("_total"), "counter", _meaning(name), tuple(map(_sample, alike)))
+    for name, alike in groupby(metrics.gauges, key=_name):
+        yield MetricFamily(name, "gauge", _meaning(name), tuple(map(_sample, alike)))
+    for name, distributions in groupby(metrics.histograms, key=_name):
+        yield MetricFamily(name, "histogram", _meaning(name), (), tuple(distributions))
+
+
+def _name(one: Sample | Buckets) -> str:
+    return one.name
+
+
+def _sample(one: Sample) -> tuple[Labels, float]:
+    return tuple(one.labels.items()), one.value
+
+
+def _meaning(name: str) -> str:
+    return f"{name.removesuffix('_total').replace('_', ' ').capitalize()}, counted by the daemon."
 
 
 def _of_lines(devices: tuple[DeviceStatus, ...]) -> Iterator[MetricFamily]:
