@@ -52,6 +52,7 @@ WORDS = {
         "exports",
         "write a recording for other programs: a trajectory, a CARMEN log, a bag of ROS, a file for Foxglove",
     ),
+    "report": ("reports", "write what a recorded robot did as one page, to keep and to open offline"),
     "eval": ("evaluate", "tell how often localization is right, ambiguous, lost, or sure and wrong on real logs"),
     "config": ("configuration", "check and show configurations"),
     "schema": ("wire_schema", "print every request, reply and event as one JSON Schema, made from the types"),
