@@ -23,6 +23,7 @@ SINCE: dict[str, dict[str, Any]] = {
         "budget_s": 3600.0,
         "stops": StopPoses.ODOMETRY,
     },
+    "planning": {"keeps_bumps": False},
     "second_look": {"on_walls_min": 0.0},
 }
 """By section and key; a section that is missing was not recorded, and says nothing."""
@@ -41,6 +42,7 @@ def recorded_config(text: str) -> Config:
         error_model=replace(config.error_model, **_missing("error_model", written)),
         grid=replace(config.grid, **_missing("grid", written)),
         localization=replace(config.localization, **_missing("localization", written)),
+        planning=replace(config.planning, **_missing("planning", written)),
         second_look=replace(config.second_look, **_missing("second_look", written)),
     )
 

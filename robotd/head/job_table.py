@@ -45,7 +45,7 @@ from robotd.head.jobs import (
 from robotd.head.stop_placing import with_stop
 from robotd.maps.grid_files import content_of, map_of
 from robotd.maps.packed_content import PackedContent
-from robotd.maps.stops_file import decode_stops
+from robotd.maps.stops_file import decode_packed_stops
 from robotd.planning.path import Path, plan
 from robotd.recording.results import result_of
 from robotd.slam.glance import glanced
@@ -71,7 +71,7 @@ def _begin_map(desk: Desk, job: BeginMap) -> HeldMap:
 
 
 def _take_map(desk: Desk, job: TakeMap) -> HeldMap:
-    stops = None if job.stops is None else decode_stops(zlib.decompress(job.stops))
+    stops = None if job.stops is None else decode_packed_stops(job.stops)
     grid = OccupancyGrid(job.spec, unpacked_cells(job.packed, job.spec), job.settings)
     return desk.hold(MapRef(job.number), Held.of(grid, stops)).told
 
@@ -102,7 +102,8 @@ def _insert(desk: Desk, job: Insert) -> Inserted:
 
 def _place_stop(desk: Desk, job: PlaceStop) -> StopLaid:
     before = desk.map(job.map)
-    made = with_stop(before, job.sweep, job.travel, job.map_from_robot, desk.settings.localization)
+    localization = desk.settings.localization
+    made = with_stop(before, job.sweep, job.travel, job.map_from_robot, localization, anew=job.anew)
     desk.hold(MapRef(job.map.number, job.map.generation + 1), made.held)
     return stop_laid(made, job.time_ns, job.map_id)
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.core.errors import MissionError
 from robotd.core.map_stop import MapStop
 from robotd.core.motion_error import Travel
 from robotd.core.pose import Pose2
@@ -34,7 +35,7 @@ class MapWithStop:
 
 
 def with_stop(
-    held: Held, sweep: Sweep, travel: Travel, begins_at: Pose2, localization: LocalizationSettings
+    held: Held, sweep: Sweep, travel: Travel, at: Pose2, localization: LocalizationSettings, *, anew: bool
 ) -> MapWithStop:
     """Return a map with one more stop; ``held`` stays as it is.
 
@@ -42,16 +43,20 @@ def with_stop(
         held: the map; a survey of it begins with its first stop.
         sweep: what was seen there.
         travel: since the stop before.
-        begins_at: where the first stop is.
+        at: where the stop is, if it is the first or ``anew``.
         localization: how sweeps are sought.
+        anew: whether that was found by other means than wheels.
+
+    Raises:
+        MissionError: the map was stored without its stops.
     """
     readings = Readings.of(sweep.measured)
     decisions: tuple[Decision, ...] = ()
-    if held.survey is None:
-        settings = SurveySettings(maps=LocalMaps.of(held.grid.settings, localization))
-        survey = Survey.begun(readings, begins_at, settings)
+    before = held.survey or _resumed(held, localization)
+    if before is None:
+        survey = Survey.begun(readings, at, _settings(held, localization))
     else:
-        survey, decisions = held.survey.stepped(readings, travel)
+        survey, decisions = before.stepped(readings, before.found_at(at, travel) if anew else travel)
     pose = survey.graph.pose(len(survey.graph.stops) - 1)
     if any(isinstance(decision, Reconciled) for decision in decisions):
         made, cells = _made_again(held, sweep, survey)
@@ -60,6 +65,18 @@ def with_stop(
     else:
         made, cells = held, np.empty(0, np.intp)
     return MapWithStop(replace(made, survey=survey), cells, decisions, pose)
+
+
+def _settings(held: Held, localization: LocalizationSettings) -> SurveySettings:
+    return SurveySettings(maps=LocalMaps.of(held.grid.settings, localization))
+
+
+def _resumed(held: Held, localization: LocalizationSettings) -> Survey | None:
+    """Return the survey of a map that was stored; None of one that has just begun."""
+    if held.stops is None:
+        raise MissionError("this map was stored without its stops, and cannot be gone on with: explore a new one")
+    stops = [(Readings(stop.beams(misses=True)), stop.map_from_robot) for stop in held.stops.stops]
+    return Survey.resumed(stops, _settings(held, localization)) if stops else None
 
 
 def _made_again(held: Held, sweep: Sweep, survey: Survey) -> tuple[Held, NDArray[np.intp]]:

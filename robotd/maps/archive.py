@@ -51,6 +51,17 @@ class Archive(Generic[T]):
         """Where the maps are."""
         return self._root
 
+    def require_writable(self) -> None:
+        """Refuse a place for maps where none can be written, before somebody spends an hour on one.
+
+        Raises:
+            MapError: says where, and why.
+        """
+        with _disk_errors(f"no map could be kept in {self._root}"):
+            make_directory(self._root)
+            with sole_writer(self._root):
+                return
+
     def save(
         self,
         name: str,

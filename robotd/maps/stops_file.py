@@ -51,6 +51,15 @@ def encode_stops(stops: MapStops) -> bytes:
     return data
 
 
+def decode_packed_stops(packed: bytes) -> MapStops:
+    """Return what the file says, packed as it goes between processes and into recordings. MapError as the file's."""
+    try:
+        data = _unpacked(packed)
+    except (ValueError, zlib.error) as error:
+        raise MapError(f"packed stops are damaged: {error}") from error
+    return decode_stops(data)
+
+
 def decode_stops(data: bytes) -> MapStops:
     """Return what the file says.
 

@@ -114,8 +114,8 @@ class Control:
             RobotdError: as the request's row says.
         """
         # Here and not in its row: a replay keeps nothing, and asks by the rows (map_load makes way by itself).
-        if isinstance(request, MapStart) or (isinstance(request, Explore) and not request.resume):
-            await self._make_way()
+        if isinstance(request, MapStart | Explore):
+            await self._make_way(request)
         if isinstance(request, Mission):
             started: R = await self._start(request, client)  # type: ignore[assignment]  # what missions are answered
             return started
@@ -201,9 +201,12 @@ class Control:
             raise MissionError(f"{mission.cmd} needs a lease")
         return MissionStarted(self.start(mission, mission.lease_s, client), mission.lease_s)
 
-    async def _make_way(self) -> None:
+    async def _make_way(self, request: MapStart | Explore) -> None:
         halts = self._supervisor.halts
-        await self.keeping.make_way()
+        if isinstance(request, Explore):
+            await self._disk.run("try the store", self._archive.require_writable)
+        if not (isinstance(request, Explore) and request.resume):
+            await self.keeping.make_way()
         # The disk takes its time: a stop that came meanwhile counts, even if the robot was armed again since.
         if self._supervisor.halts != halts:
             raise MissionError("stopped while the map in use was being kept")

@@ -1,6 +1,10 @@
-"""What clients are told of a stored map."""
+"""What is told of a stored map: to clients, and to who takes it into use."""
+
+import msgspec
 
 from robotd.contract.answers import MapEntryInfo
+from robotd.contract.arguments import Stops
+from robotd.contract.ways import Point
 from robotd.core.text import printable
 from robotd.maps.entry import MapEntry
 
@@ -20,3 +24,15 @@ def entry_info(entry: MapEntry) -> MapEntryInfo:
         unsaved=entry.is_unsaved,
         stops=entry.stops,
     )
+
+
+BUMPS = "bumps_m"
+"""Key of the metadata that says where the robot bumped into something."""
+
+
+def bumps_of(entry: MapEntry) -> tuple[Point, ...]:
+    """Return where the robot bumped into something on a stored map; nothing where that was written by other hands."""
+    try:
+        return msgspec.convert(entry.metadata.get(BUMPS, ()), Stops)
+    except msgspec.ValidationError:
+        return ()

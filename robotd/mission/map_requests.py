@@ -26,8 +26,9 @@ from robotd.head.jobs import HeldMap, PreviewWay, ReadMap, ShowMap, TakeMap
 from robotd.maps.archive import Archive
 from robotd.maps.entry import MapEntry
 from robotd.maps.packed_content import PackedContent
-from robotd.mission.map_entries import entry_info
-from robotd.mission.noted import NotedMap, noted_grid, packed_of
+from robotd.maps.version_files import STOPS
+from robotd.mission.map_entries import bumps_of, entry_info
+from robotd.mission.noted import NotedMap, noted_grid, packed_of, stops_of
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.keeping import Keeping
 from robotd.mission.whereabouts.map_in_use import MapInUse, whole
@@ -84,7 +85,9 @@ class MapRequests:
         here, tie = self._supervisor.robot.drive.odometry.latest, self._supervisor.whereabouts.believed
         if here is None or tie is None:
             return Way((), 0.0, Hindrance.NOT_LOCALIZED, "the robot is not localized on this map")
-        return await self._head.ask(PreviewWay(place.ref, tie.in_map(here.in_odom), (request.x_m, request.y_m)))
+        return await self._head.ask(
+            PreviewWay(place.ref, tie.in_map(here.in_odom), (request.x_m, request.y_m), place.bumps_m)
+        )
 
     async def _list(self, _: ListMaps) -> MapList:
         entries = await self._disk.run("list maps", self._archive.list)
@@ -156,17 +159,17 @@ class MapRequests:
             MissionError: a mission is under way, or the map in use would be lost, see :meth:`Keeping.make_way`.
         """
         self._supervisor.require_replaceable_map()
-        async with self._read(request.name, request.version) as (entry, number, held):
+        async with self._read(request.name, request.version) as (entry, job, held):
             # Refused before the disk was read; _use asks again, for a mission may have begun by now.
             pose = None if request.robot_in_map is None else msgspec.to_builtins(request.robot_in_map)
-            arguments = {"map_id": entry.digest, "name": request.name, "robot_in_map": pose}
-            command = await self._disk.run("pack map", use_map, arguments, held)
+            arguments = {"map_id": entry.digest, "name": request.name, "robot_in_map": pose, "bumps_m": bumps_of(entry)}
+            command = await self._disk.run("pack map", use_map, arguments, held, job.content.files.get(STOPS))
             await self._keeping.make_way()  # last of all, so that nothing changes the map meanwhile
-            self._use(command, _place_of(entry, number, held))
+            self._use(command, _place_of(entry, job.number, held))
         return entry_info(entry)
 
     @contextlib.asynccontextmanager
-    async def _read(self, name: str, version: int | None) -> AsyncIterator[tuple[MapEntry, int, HeldMap]]:
+    async def _read(self, name: str, version: int | None) -> AsyncIterator[tuple[MapEntry, ReadMap, HeldMap]]:
         """Hold a stored map, everything checked, under a number; let go of it afterwards, unless it is in use then.
 
         Raises:
@@ -174,8 +177,9 @@ class MapRequests:
         """
         entry, content = await self._disk.run("read map", self._archive.load, name, version)
         number = self._head.number()
+        job = ReadMap(number, content)
         try:
-            yield entry, number, await self._held(entry, ReadMap(number, content))
+            yield entry, job, await self._held(entry, job)
         finally:
             in_use = self._supervisor.whereabouts.map_in_use
             if in_use is None or in_use.number != number:
@@ -191,8 +195,8 @@ class MapRequests:
     async def use(self, noted: NotedMap, command: CommandEntry) -> None:
         """Take a map into use as ``command`` noted it."""
         number, grid = self._head.number(), noted.grid
-        held = await self._head.ask(TakeMap(number, grid.spec, packed_of(noted), grid.settings))
-        self._use(command, MapInUse(noted.map_id, noted.name, number, held))
+        held = await self._head.ask(TakeMap(number, grid.spec, packed_of(noted), grid.settings, stops_of(noted)))
+        self._use(command, MapInUse(noted.map_id, noted.name, number, held, bumps_m=noted.bumps_m))
 
     def _use(self, command: CommandEntry, place: MapInUse) -> None:
         arguments = command.arguments
@@ -216,12 +220,12 @@ class MapRequests:
 
 def _place_of(entry: MapEntry, number: int, held: HeldMap) -> MapInUse:
     """Return a stored map as one to use; nothing ties odometry to it yet."""
-    place = MapInUse(entry.digest, entry.name, number, held)
+    place = MapInUse(entry.digest, entry.name, number, held, bumps_m=bumps_of(entry))
     if entry.is_unsaved:
         place.found_unsaved(entry.version)
     return place
 
 
-def use_map(arguments: dict[str, Any], held: HeldMap) -> CommandEntry:
+def use_map(arguments: dict[str, Any], held: HeldMap, stops: bytes | None) -> CommandEntry:
     """Return the journal's entry of taking a map into use, encoded: for a large one that takes a while."""
-    return encoded(CommandEntry(0, "use_map", arguments | {"grid": noted_grid(held)}))
+    return encoded(CommandEntry(0, "use_map", arguments | {"grid": noted_grid(held, stops)}))

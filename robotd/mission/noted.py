@@ -9,6 +9,7 @@ import msgspec
 from robotd.contract.missions import MISSIONS, Mission, MissionRequest, with_lease
 from robotd.contract.request import Request
 from robotd.contract.requests import REQUESTS
+from robotd.contract.ways import Point
 from robotd.core.errors import RecordingError
 from robotd.core.grid_bytes import unpacked_cells
 from robotd.core.grid_spec import GridSpec
@@ -31,6 +32,8 @@ class NotedMap(msgspec.Struct):
     name: str
     grid: "_PackedGrid"
     robot_in_map: Pose2 | None
+    bumps_m: tuple[Point, ...] = ()
+    """Where the robot bumped into something on it before."""
 
 
 class _PackedGrid(msgspec.Struct):
@@ -40,6 +43,8 @@ class _PackedGrid(msgspec.Struct):
     settings: GridSettings = GridSettings()
     """How further readings change it, which the planner goes by, too: recordings of before lack it, and were replayed
     by this."""
+    stops: str | None = None
+    """Base64 of its packed stops, if it came with any: what goes on with it places sweeps on them."""
 
 
 class _NotedStart(msgspec.Struct):
@@ -91,6 +96,7 @@ def check_noted(name: str, arguments: dict[str, Any]) -> None:
     request = request_of(name, arguments)
     if isinstance(request, NotedMap):
         packed_of(request)
+        stops_of(request)
 
 
 def _mission_of(start: _NotedStart) -> Mission:
@@ -117,10 +123,25 @@ def packed_of(noted: NotedMap) -> bytes:
     return packed
 
 
-def noted_grid(held: HeldMap) -> dict[str, Any]:
-    """Return the grid of a map as it is noted."""
+def stops_of(noted: NotedMap) -> bytes | None:
+    """Return the packed stops of a map that was taken into use, None if it came without.
+
+    Raises:
+        RecordingError: they are no text of bytes.
+    """
+    if noted.grid.stops is None:
+        return None
+    try:
+        return base64.b64decode(noted.grid.stops, validate=True)
+    except ValueError as error:
+        raise RecordingError(f"request 'use_map': {error}") from error
+
+
+def noted_grid(held: HeldMap, stops: bytes | None) -> dict[str, Any]:
+    """Return the grid of a map, and its packed stops, as they are noted."""
     cells, settings = base64.b64encode(held.packed).decode(), msgspec.to_builtins(held.settings)
-    return {"spec": msgspec.to_builtins(held.spec), "cells": cells, "settings": settings}
+    grid = {"spec": msgspec.to_builtins(held.spec), "cells": cells, "settings": settings}
+    return grid if stops is None else grid | {"stops": base64.b64encode(stops).decode()}
 
 
 def _converted(kind: type[T], name: str, value: object) -> T:

@@ -60,6 +60,7 @@ class Supervisor:
         self.robot = context.robot
         self.news = news
         self.whereabouts = context.whereabouts
+        self._planning = context.settings.planning
         self.ranks = context.ranks
         self._recording = recording
         self._is_untold = False
@@ -139,6 +140,7 @@ class Supervisor:
                     group.create_task(self._watch.watch(device))
                 group.create_task(self._watch.watch_battery())
                 group.create_task(self._follow_odometry())
+                group.create_task(self._follow_bumpers())
                 group.create_task(self._repeat_status())
                 group.create_task(self.ranks.run())
         finally:
@@ -176,6 +178,16 @@ class Supervisor:
         with self.robot.drive.odometry.subscribe() as stream:
             async for odometry in stream:
                 self._told.moved(odometry, predicts=not self.mission.pauses_prediction)
+
+    async def _follow_bumpers(self) -> None:
+        pressed: set[float] = set()
+        with self.robot.drive.readouts.subscribe() as stream:
+            async for readout in stream:
+                bumps_rad = [bumper_rad for bumper_rad in readout.bumpers_rad if bumper_rad not in pressed]
+                pressed = set(readout.bumpers_rad)
+                here = self.robot.drive.odometry.latest
+                if bumps_rad and here is not None and self._planning.keeps_bumps:
+                    self.whereabouts.bumped(here.in_odom, bumps_rad, self._planning.robot_radius_m)
 
     async def _repeat_status(self) -> None:
         while True:

@@ -17,6 +17,9 @@ class PlanningSettings:
     gap_cells: Annotated[int, Within(0, 20, "cells")] = 2
     """Unknown gaps up to so wide, between cells seen free, are taken for free."""
 
+    keeps_bumps: bool = True
+    """Whether a place where the robot bumped into something is an obstacle from then on, whatever the laser sees."""
+
     def __post_init__(self) -> None:
         """Refuse impossible values."""
         refuse_outside(self)

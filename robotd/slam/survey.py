@@ -94,12 +94,33 @@ class Survey:
     """Large corrections that nothing has confirmed yet."""
     unsolved: int = 0
     """Loops that were closed since the map was made again."""
+    stored: int = 0
+    """Stops of before, of a survey that was gone on with: it need not go on where they end."""
 
     @classmethod
     def begun(cls, readings: Readings, at: Pose2 = IDENTITY, settings: SurveySettings | None = None) -> "Survey":
         """Return the survey of a first stop, whose place is where the map begins."""
         graph = StopGraph().with_stop(PlacedStop(readings, Travel(), Outcome.PLACED), at)
         return cls(settings or SurveySettings(), graph)
+
+    @classmethod
+    def resumed(cls, stops: Sequence[tuple[Readings, Pose2]], settings: SurveySettings) -> "Survey":
+        """Return the survey of stops that were stored, each tied to the one before as surely as a step can be."""
+        (first, at), *later = stops
+        survey = cls.begun(first, at, settings)
+        graph, floor = survey.graph, np.zeros((3, 3))
+        for readings, pose in later:
+            step = graph.pose(-1).inverse() @ pose
+            travel = Travel(step, math.hypot(step.x_m, step.y_m), abs(step.heading_rad))
+            found = Believed(pose, floor).no_surer(settings.floor_m, settings.floor_rad)
+            edge = edge_to(graph, len(graph.stops) - 1, len(graph.stops), found, EdgeKind.STEP)
+            graph = graph.with_stop(PlacedStop(readings, travel, Outcome.PLACED), pose, edge)
+        return replace(survey, graph=graph, stored=len(stops))
+
+    def found_at(self, pose: Pose2, travel: Travel) -> Travel:
+        """Return the travel since the last stop of a robot that was found at a pose by other means than its wheels."""
+        expected = self.graph.pose(int(self.graph.laid[-1])) @ self.since_laid.step
+        return replace(travel, step=expected.inverse() @ pose)
 
     def stepped(self, readings: Readings, travel: Travel) -> tuple["Survey", tuple[Decision, ...]]:
         """Return what is known after one more stop, and what was decided."""
@@ -129,7 +150,7 @@ def _placed(survey: Survey, readings: Readings, travel: Travel) -> tuple[Survey,
     settings, graph, since = survey.settings, survey.graph, survey.since_laid.then(travel)
     last = int(graph.laid[-1])
     prior = Believed(graph.pose(last) @ survey.bias.corrected(since), settings.motion.covariance(since))
-    ground = settings.maps.ground(graph, _recent(survey), prior.pose)
+    ground = settings.maps.ground(graph, _recent(survey, prior.pose), prior.pose)
     placed = place(ground, readings, prior, settings.placing)
     is_against = placed.outcome is Outcome.CONTRADICTS
     held = survey.held + 1 if is_against else 0
@@ -151,11 +172,18 @@ def _placed(survey: Survey, readings: Readings, travel: Travel) -> tuple[Survey,
     return after, placed
 
 
-def _recent(survey: Survey) -> list[int]:
-    """Return the stops that the next sweep is placed on."""
-    laid = survey.graph.laid.tolist()
-    segment = survey.graph.stops[laid[-1]].segment
-    return [stop for stop in laid if survey.graph.stops[stop].segment == segment][-survey.settings.recent :]
+def _recent(survey: Survey, near: Pose2) -> list[int]:
+    """Return the stops that the next sweep is placed on: the last ones, or of those that were stored the nearest."""
+    graph, recent = survey.graph, survey.settings.recent
+    laid = graph.laid.tolist()
+    segment = graph.stops[laid[-1]].segment
+    latest = [stop for stop in laid if graph.stops[stop].segment == segment][-recent:]
+    here = [stop for stop in latest if stop >= survey.stored]
+    if len(here) == len(latest):
+        return latest
+    stored = np.arange(survey.stored)
+    nearest = stored[np.argsort(graph.off_m(near, stored), kind="stable")[: recent - len(here)]]
+    return sorted(nearest.tolist()) + here
 
 
 def _asks_for_loops(survey: Survey, outcome: Outcome, settings: LoopSettings) -> bool:

@@ -1,16 +1,21 @@
 """A whole daemon explores rooms that nobody described to it: it ends by itself, and says why."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from robotd.contract.area import Bounds
+from robotd.contract.arguments import PoseArgument
 from robotd.contract.events import Event, MissionPhase, MissionProgress, StopPlaced, SweepDone
 from robotd.contract.explored import ExploringEnded, StopChosen
-from robotd.contract.missions import Explore
-from robotd.contract.requests import RecordStart, RecordStop
-from robotd.sim.buildings.world import Wall, load_world
+from robotd.contract.missions import Explore, with_lease
+from robotd.contract.requests import MapLoad, PlanTo, RecordStart, RecordStop
+from robotd.core.errors import MapError
+from robotd.core.pose import Pose2
+from robotd.mission.motion.legs import next_odometry
+from robotd.sim.buildings.world import Start, Wall, load_world
 from robotd.sim.physics.noise import NoiseSettings
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from tests.integration.conftest import Live
@@ -118,6 +123,14 @@ def put(robot: SimulatedRobot, wall: Wall) -> None:
     robot._laser._walls = walls
 
 
+async def test_it_does_not_begin_where_no_map_could_be_kept(live: Live, tmp_path: Path) -> None:
+    (tmp_path / "maps").write_text("a file")
+    async with live(robot_in("office")) as it:
+        with pytest.raises(MapError, match=r"no map could be kept in .*maps"):
+            await it.daemon.control.perform(with_lease(Explore.of("office"), 1.0))
+        assert it.daemon.control.status.mission_id is None
+
+
 async def test_going_on_needs_a_map(live: Live) -> None:
     async with live(robot_in("office")) as it:
         _, end = await it.do(Explore.of("office", resume=True))
@@ -140,3 +153,56 @@ async def test_going_on_takes_the_map_in_use_and_its_name(live: Live) -> None:
         tie = it.daemon.supervisor.whereabouts.believed
         assert tie is not None
         assert tie.in_map(sweeps[-1].in_odom).distance_m(robot.truth) < 0.1
+
+
+async def test_after_a_crash_it_goes_on_from_the_stops_that_were_kept(live: Live) -> None:
+    robot = robot_in("laboratory")
+    async with live(robot) as it:
+        await it.done(Explore.of("lab", robot.start, stops_max=4))
+        await it.daemon.control.keeping.keep()
+    stood = robot.truth
+    again = SimulatedRobot(replace(load_world("laboratory"), start=_start(stood)), 2, LYING)
+    async with live(again) as it:
+        control = it.daemon.control
+        recording = await control.perform(RecordStart())
+        await next_odometry(it.daemon.robot.drive, 1.0)
+        entry = await control.perform(MapLoad("lab", robot_in_map=PoseArgument.of(stood)))
+        assert (entry.unsaved, entry.stops) == (True, 4)
+        said = await it.done(Explore.of("lab", resume=True, stops_max=3))
+        placed = [event for event in said if isinstance(event, StopPlaced)]
+        assert [event.stop for event in placed] == [4, 5, 6]
+        assert all(event.outcome in {"placed", "weak"} for event in placed)
+        assert placed[-1].pose.distance_m(again.truth) < 0.1
+        assert (control.status.map_name, control.status.map_unsaved) == ("lab", True)
+        await control.perform(RecordStop())
+    assert recording.path is not None
+    check(replayed(Path(recording.path)))
+
+
+async def test_a_bump_is_a_place_on_the_map_from_then_on(live: Live, tmp_path: Path) -> None:
+    """A box too low for the laser: it is bumped into once, kept with the map, and gone round afterwards."""
+    low = Wall(((2.4, 1.0), (2.7, 1.0), (2.7, 1.4), (2.4, 1.4)), height_m=0.1)
+    robot = robot_in("laboratory", low)
+    async with live(robot) as it:
+        control = it.daemon.control
+        _, end = await it.do(Explore.of("lab", robot.start, stops_m=((4.2, 1.2),), stops_max=2))
+        assert end.phase is MissionPhase.STOPPED
+        assert "bumper" in end.message
+        place = it.daemon.supervisor.whereabouts.map_in_use
+        assert place is not None
+        ((x_m, y_m),) = place.bumps_m[:1]
+        assert abs(x_m - 2.4) < 0.1
+        assert 0.9 < y_m < 1.5
+        await control.keeping.keep()
+        entry = await control.perform(MapLoad("lab"))
+        loaded = it.daemon.supervisor.whereabouts.map_in_use
+        assert loaded is not None
+        assert loaded is not place
+        assert loaded.bumps_m == place.bumps_m
+        assert entry.unsaved
+        way = await control.perform(PlanTo(4.2, 1.2))
+        assert way.reason is not None  # nothing says where it is on the map that was loaded
+
+
+def _start(pose: Pose2) -> Start:
+    return Start(pose.x_m, pose.y_m, math.degrees(pose.heading_rad))

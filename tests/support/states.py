@@ -131,5 +131,5 @@ async def _use_blank_map(bench: Bench) -> None:
     start = bench.robot.start
     await next_odometry(bench.daemon.robot.drive, 1.0)
     blank = held(GridSettings().spec_covering(((start.x_m, start.y_m),), 3.0))
-    command = use_map({"map_id": "blank", "name": "blank", "robot_in_map": msgspec.to_builtins(start)}, blank)
+    command = use_map({"map_id": "blank", "name": "blank", "robot_in_map": msgspec.to_builtins(start)}, blank, None)
     await bench.daemon.control.repeat("use_map", command.arguments)  # through the journal, so that a replay has it, too

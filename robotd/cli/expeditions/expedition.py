@@ -57,6 +57,13 @@ class Expedition:
     """Of somebody who knows the map, see :func:`offline_tour`."""
     tour_way_m: float
 
+    @property
+    def words(self) -> str:
+        """Say it in a line."""
+        seen = f"{self.ending}, {self.seen_share:.1%} seen, worst pose {1000 * self.worst_m:.0f} mm"
+        tour = f"{self.stops} stops ({self.tour_stops}), {self.way_m:.1f} m ({self.tour_way_m:.1f})"
+        return f"{self.world} {self.seed}: {seen}, {tour}"
+
 
 def expedition(world: World, seed: int) -> Expedition:
     """Return what came of a robot of that seed: the same seed, the same answer."""

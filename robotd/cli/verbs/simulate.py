@@ -11,12 +11,14 @@ from pathlib import Path
 from robotd.cli.emulated import config_text, recorded_config_text, recorded_dialects, write_config
 from robotd.cli.exit_codes import FAILED, OK
 from robotd.cli.outputs import LINKS, MADE_CONFIG, TRUTH_LINES, output_argument
+from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import command_line, err, out, print_json, print_pairs
 from robotd.cli.verb import Verb
 from robotd.cli.wheels import odometry_argument
+from robotd.core.errors import ConfigError
 from robotd.core.log import configure
 from robotd.recording.reader import read
-from robotd.sim.buildings.world import world_names
+from robotd.sim.buildings.world import load_world, world_names
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects, Firmware
 from robotd.sim.fakes.fake_robot import FakeRobot
 from robotd.sim.faults.fault_words import FAULTS, meaning_of
@@ -30,6 +32,10 @@ from robotd.sim.runtime import run_on_ptys
 
 
 def _sim(arguments: argparse.Namespace) -> int:
+    if arguments.explore:
+        return _explored(arguments)
+    if arguments.world is None:
+        raise ConfigError(f"sim needs a world: {', '.join(world_names())}, a file of one, or a map's yaml")
     boards = Firmware(arguments.boards)
     dialects = Dialects(arguments.drive, arguments.pantilt, arguments.rangefinder, boards)
     odometry = OdometrySource(arguments.odometry)
@@ -44,6 +50,25 @@ def _sim(arguments: argparse.Namespace) -> int:
 
     _serve(arguments, robot, write, truth_path=arguments.truth, plan=plan)
     return OK
+
+
+def _explored(arguments: argparse.Namespace) -> int:
+    """Let whole daemons explore in virtual time; a failure is one that did not end by itself."""
+    from robotd.cli.expeditions.expedition import expedition  # noqa: PLC0415  # a whole daemon, needed here alone
+    from robotd.cli.expeditions.expedition_table import print_expeditions  # noqa: PLC0415  # as above
+
+    worlds = world_names() if arguments.world is None else (arguments.world,)
+    done = []
+    for world in map(load_world, worlds):
+        for seed in range(arguments.seed, arguments.seed + arguments.seeds):
+            done.append(expedition(world, seed))
+            if not arguments.json:
+                err().print(done[-1].words)
+    if arguments.json:
+        print_json([asdict(one) for one in done])
+    else:
+        print_expeditions(done)
+    return OK if all(one.ended_by_itself for one in done) else FAILED
 
 
 def _fake(arguments: argparse.Namespace) -> int:
@@ -99,7 +124,15 @@ def _announce(ports: dict[str, str], file: Path | None, *, as_json: bool) -> Non
 
 
 def _sim_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("world", metavar="WORLD", help=f"{', '.join(world_names())}, a file of one, or a map's yaml")
+    parser.add_argument(
+        "world", nargs="?", metavar="WORLD", help=f"{', '.join(world_names())}, a file of one, or a map's yaml"
+    )
+    parser.add_argument(
+        "--explore",
+        action="store_true",
+        help="no boards: let whole daemons explore it in virtual time, and say how well (default: all built-in worlds)",
+    )
+    parser.add_argument("--seeds", type=whole(1), default=3, metavar="N", help="robots that explore each (default: 3)")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="same seed, same noise (default: 1)")
     odometry_argument(parser)
     for device, table in (("drive", DRIVES), ("pantilt", PANTILTS), ("rangefinder", RANGEFINDERS)):

@@ -32,10 +32,11 @@ _PATIENCE_S = 3.0
 def _localize(arguments: argparse.Namespace) -> int:
     heading_rad = None if arguments.heading_deg is None else heading_of_deg(arguments.heading_deg)
     heading = PriorHeading.UNKNOWN if arguments.heading_unknown else PriorHeading.ODOMETRY
-    return carry_out(arguments, Localize(heading_rad, heading=heading, within=arguments.within), _found)
+    return carry_out(arguments, Localize(heading_rad, heading=heading, within=arguments.within), found_in_words)
 
 
-def _found(events: list[MissionEvent]) -> MissionOutcome:
+def found_in_words(events: list[MissionEvent]) -> MissionOutcome:
+    """Conclude with where the robot was found."""
     estimate = final_estimate(events)
     # Lost and ambiguous are answers, not failures: scripts tell them apart by the exit code.
     code = {PoseState.LOST: LOST, PoseState.AMBIGUOUS: AMBIGUOUS}.get(estimate.state, OK)

@@ -51,7 +51,7 @@ async def _drive_to(context: MissionContext, place: MapInUse, plan: PlanTold, go
 
 
 async def _planned(context: MissionContext, place: MapInUse, start: Pose2, goal_m: Point) -> tuple[Point, ...]:
-    way = await context.head.ask(Plan(place.ref, start, goal_m))
+    way = await context.head.ask(Plan(place.ref, start, goal_m, place.bumps_m))
     if way.reason is not None:
         message = f"({goal_m[0]:.2f}, {goal_m[1]:.2f}) m cannot be reached: {way.message}"
         raise NoWay(message, way.reason, way.nearest_m)

@@ -19,6 +19,7 @@ from robotd.head.wire import JobFailed
 from robotd.maps.archive import Archive
 from robotd.maps.entry import UNSAVED, MapEntry
 from robotd.maps.packed_content import PackedContent
+from robotd.mission.map_entries import BUMPS
 from robotd.mission.news import News
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.whereabouts import Whereabouts
@@ -130,6 +131,8 @@ class Keeping:
             ChildError: there is no head to make files of it.
         """
         told = {"generation": place.generation, "map_id": place.map_id, **metadata}
+        if place.bumps_m:
+            told[BUMPS] = place.bumps_m
         created_ns = now_ns() + wall_offset_ns()
         made = await self._head.ask(MakeFiles(place.ref))
         if made.remark is not None:

@@ -42,7 +42,7 @@ class MapInUse:
     kept_version: int | None = None
     """Which version of its name that is."""
     bumps_m: tuple[Point, ...] = ()
-    """What the robot bumped into: obstacles, whatever the laser sees there."""
+    """Where the robot bumped into something: an obstacle, whatever the laser sees there."""
 
     def __post_init__(self) -> None:
         """Begin as it came."""
@@ -95,6 +95,11 @@ class MapInUse:
     def found_unsaved(self, version: int) -> None:
         """Take note that it came from a version of the store that nobody had saved."""
         self.settled_generation, self.kept_version = -1, version
+
+    def bumped(self, place_m: Point) -> None:
+        """Take note of a place where the robot bumped into something; what is kept does not know of it."""
+        self.bumps_m = (*self.bumps_m, place_m)
+        self.kept_generation = min(self.kept_generation, self.generation - 1)
 
     def take(self, inserted: Inserted) -> None:
         """Go on with the map that a sweep was laid in."""

@@ -11,6 +11,8 @@ same comes to the same. What is believed beyond one tie, as the places that a ro
 belongs here too.
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from robotd.contract.estimate import PoseEstimate, PoseState
@@ -119,6 +121,15 @@ class Whereabouts:
         self._tie = tie.doubted() if is_doubted else tie
         self._said = None  # the tie is another, which is news however little it moves the robot
         self._jumps.forget()
+
+    def bumped(self, in_odom: Pose2, bumpers_rad: Sequence[float], robot_radius_m: float) -> None:
+        """Put what the robot bumped into on the map, if it is known where the robot was then."""
+        pose = self.in_map(in_odom)
+        if self._map is None or pose is None:
+            return
+        for bumper_rad in bumpers_rad:
+            place_m = (robot_radius_m * math.cos(bumper_rad), robot_radius_m * math.sin(bumper_rad))
+            self._map.bumped(pose.transform(*place_m))
 
     def doubt(self) -> bool:
         """Believe odometry no longer: nobody saw what the wheels did, or they told nonsense; return whether it was."""

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from robotd.core.errors import MissionError
 from robotd.core.motion_error import Travel
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
@@ -37,7 +38,7 @@ def surveyed(stops: int) -> list[MapWithStop]:
     held, made = Held.of(OccupancyGrid(SPEC, settings=GRID), MapStops(GRID)), []
     for stop in range(stops):
         sweep = as_sweep(stop, sweep_at(WALLS, POSES[stop], random))
-        made.append(with_stop(held, sweep, travels[stop], POSES[0], LocalizationSettings()))
+        made.append(with_stop(held, sweep, travels[stop], POSES[0], LocalizationSettings(), anew=False))
         held = made[-1].held
     return made
 
@@ -116,3 +117,26 @@ def test_local_maps_have_the_cells_of_the_map_and_no_more_than_they_can_bear(res
         ).grid,
         OccupancyGrid,
     )
+
+
+def test_a_stored_map_is_gone_on_with_from_where_the_robot_was_found() -> None:
+    stored = replace(surveyed(4)[-1].held, survey=None)
+    there = POSES[1] @ Pose2(0.3, 0.1, 0.2)
+    sweep = as_sweep(9, sweep_at(WALLS, there, np.random.default_rng(7)))
+    believed = there @ Pose2(0.03, -0.02, 0.01)
+    made = with_stop(stored, sweep, Travel(), believed, LocalizationSettings(), anew=True)
+    assert made.map_from_robot.distance_m(there) < 0.5 * believed.distance_m(there)
+    assert made.held.survey is not None
+    assert (made.held.survey.stored, len(made.held.survey.graph.stops)) == (4, 5)
+    assert made.held.stops is not None
+    assert stored.stops is not None
+    assert made.held.stops.stops[:4] == stored.stops.stops
+    again, _ = made.held.survey.reconciled()
+    assert np.abs(again.graph.poses[:4] - made.held.survey.graph.poses[:4]).max() < 0.02
+
+
+def test_a_map_without_its_stops_is_not_gone_on_with() -> None:
+    bare = replace(surveyed(1)[-1].held, survey=None, stops=None)
+    sweep = as_sweep(9, sweep_at(WALLS, POSES[0], np.random.default_rng(7)))
+    with pytest.raises(MissionError, match="without its stops"):
+        with_stop(bare, sweep, Travel(), POSES[0], LocalizationSettings(), anew=True)
