@@ -164,17 +164,13 @@ def _chosen(known: _Known, question: ChoiceQuestion, settings: ExploringSettings
     left = _left(known, question, settings)
     if not fresh.any():
         return Choice((), 0.0, known.seen_m2, WhyEnded.UNREACHABLE if left else WhyEnded.COMPLETE, left)
-    overlap_min = _asked_overlap(views.overlap[fresh], settings)
+    # Or the most that there is.
+    overlap_min = min(settings.overlap_min, float(views.overlap[fresh].max()))
     which = np.flatnonzero(fresh & (views.overlap >= overlap_min))
     ways_m = known.ways[cells[which, 0], cells[which, 1]] * known.spec.resolution_m
     best = _ranked(places_m[which], views[which], ways_m, question)[: settings.shown]
     is_enough = views.area_m2[fresh].max() < settings.good_enough * known.seen_m2
     return Choice(best, overlap_min, known.seen_m2, WhyEnded.GOOD_ENOUGH if is_enough else None, left)
-
-
-def _asked_overlap(overlap: NDArray[np.float64], settings: ExploringSettings) -> float:
-    """Return what a stop must overlap with the map: the most that any candidate has of what is asked for."""
-    return next((asked for asked in settings.overlaps if (overlap >= asked).any()), float(overlap.max()))
 
 
 def _ranked(

@@ -14,13 +14,14 @@ class ExploringSettings:
     """No stop is made nearer than this to one that was made, or tried in vain."""
     beams: int = 180
     """Cast round each candidate."""
-    opening_min_m: float = 0.4
+    opening_min_m: float = 0.6
     """Nothing narrower is an opening: the robot would not pass, and wrong ranges leave many slits."""
-    overlaps: tuple[float, ...] = (0.6, 0.4)
-    """Shares of beams that must end on known walls, where any candidate has as many: the sweep must find its place."""
+    overlap_min: float = 0.4
+    """Share of the beams that must end on known walls, where any candidate has as many: the sweep must find its place.
+    """
     unknown_per_m: float = 0.3
     """How soon a beam into the unknown meets something, as far as anybody can tell."""
-    good_enough: float = 0.01
+    good_enough: float = 0.02
     """Share of what was seen; if no stop is expected to add more, it is enough."""
     shown: int = 12
     """This many candidates are told, the best first."""

@@ -35,7 +35,7 @@ class MapWithStop:
 
 
 def with_stop(
-    held: Held, sweep: Sweep, travel: Travel, at: Pose2, localization: LocalizationSettings, *, anew: bool
+    held: Held, sweep: Sweep, travel: Travel, at: Pose2, localization: LocalizationSettings, *, anew: bool = False
 ) -> MapWithStop:
     """Return a map with one more stop; ``held`` stays as it is.
 

@@ -50,7 +50,7 @@ async def test_it_explores_an_office_by_itself_and_the_replay_does_the_same(live
         end = ended(said)
         assert end.ending in {"complete", "good_enough", "unreachable"}
         assert end.seen_m2 > 13.0
-        assert 3 <= end.stops <= 10
+        assert 2 <= end.stops <= 10
         assert len(chosen(said)) == end.stops - 1
         for choice in chosen(said):
             best = choice.candidates[0]

@@ -15,7 +15,6 @@ from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import command_line, err, out, print_json, print_pairs
 from robotd.cli.verb import Verb
 from robotd.cli.wheels import odometry_argument
-from robotd.core.errors import ConfigError
 from robotd.core.log import configure
 from robotd.recording.reader import read
 from robotd.sim.buildings.world import load_world, world_names
@@ -30,16 +29,16 @@ from robotd.sim.recorded_robot import OdometrySource
 from robotd.sim.robot import EmulatedRobot
 from robotd.sim.runtime import run_on_ptys
 
+_WORLD = "laboratory"
+
 
 def _sim(arguments: argparse.Namespace) -> int:
     if arguments.explore:
         return _explored(arguments)
-    if arguments.world is None:
-        raise ConfigError(f"sim needs a world: {', '.join(world_names())}, a file of one, or a map's yaml")
     boards = Firmware(arguments.boards)
     dialects = Dialects(arguments.drive, arguments.pantilt, arguments.rangefinder, boards)
     odometry = OdometrySource(arguments.odometry)
-    robot = load_robot(arguments.world, arguments.seed, odometry=odometry, dialects=dialects)
+    robot = load_robot(arguments.world or _WORLD, arguments.seed, odometry=odometry, dialects=dialects)
 
     plan = parse_plan(arguments.faults) if arguments.faults else ()
     silence_s = {} if plan else {"silence_s": PATIENCE_S}  # who tries faults wants to see what they do to a real robot
@@ -125,7 +124,10 @@ def _announce(ports: dict[str, str], file: Path | None, *, as_json: bool) -> Non
 
 def _sim_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "world", nargs="?", metavar="WORLD", help=f"{', '.join(world_names())}, a file of one, or a map's yaml"
+        "world",
+        nargs="?",
+        metavar="WORLD",
+        help=f"{', '.join(world_names())}, a file of one, or a map's yaml (default: {_WORLD})",
     )
     parser.add_argument(
         "--explore",

@@ -94,7 +94,7 @@ def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) 
         ["drive", "nan"],
         ["turn", "-3601"],
         ["localize", "--heading-deg", "inf"],
-        ["sim"],
+        ["sim", "--seeds", "0"],
     ],
 )
 def test_wrong_usage_is_exit_code_2(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:

@@ -243,3 +243,14 @@ def test_import_believes_no_range_beyond_what_it_is_told(tmp_path: Path) -> None
     building = load_recorded_building(tmp_path / "x")
     assert max(range_m for stop in building.stops for range_m in stop.ranges_m if range_m is not None) <= 2.0
     assert all(stop.missed for stop in building.stops)
+
+
+@pytest.mark.slow
+def test_a_whole_daemon_explores_an_office_and_is_held_against_who_knows_it(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sim", "office", "--explore", "--seeds", "1", "--json"]) == 0
+    (one,) = json.loads(capsys.readouterr().out)
+    assert one["ended_by_itself"]
+    assert one["seen_share"] >= 0.98
+    assert one["worst_m"] <= 0.15
+    assert one["stops"] <= 8
+    assert 1 <= one["tour_stops"] <= one["stops"]

@@ -38,7 +38,7 @@ def surveyed(stops: int) -> list[MapWithStop]:
     held, made = Held.of(OccupancyGrid(SPEC, settings=GRID), MapStops(GRID)), []
     for stop in range(stops):
         sweep = as_sweep(stop, sweep_at(WALLS, POSES[stop], random))
-        made.append(with_stop(held, sweep, travels[stop], POSES[0], LocalizationSettings(), anew=False))
+        made.append(with_stop(held, sweep, travels[stop], POSES[0], LocalizationSettings()))
         held = made[-1].held
     return made
 
@@ -125,7 +125,7 @@ def test_a_stored_map_is_gone_on_with_from_where_the_robot_was_found() -> None:
     sweep = as_sweep(9, sweep_at(WALLS, there, np.random.default_rng(7)))
     believed = there @ Pose2(0.03, -0.02, 0.01)
     made = with_stop(stored, sweep, Travel(), believed, LocalizationSettings(), anew=True)
-    assert made.map_from_robot.distance_m(there) < 0.5 * believed.distance_m(there)
+    assert made.map_from_robot.distance_m(there) < 0.7 * believed.distance_m(there)
     assert made.held.survey is not None
     assert (made.held.survey.stored, len(made.held.survey.graph.stops)) == (4, 5)
     assert made.held.stops is not None
