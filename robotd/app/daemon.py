@@ -163,7 +163,7 @@ def _halt(daemon: Daemon, reason: str) -> None:
 async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoReturn]", ending: Ending) -> None:
     notifier = Notifier.of()
     side = HeartSide(daemon.control, config.server)
-    front = front_of(side, partial(_without_clients, daemon, notifier))
+    front = front_of(side, partial(_without_clients, daemon, notifier), daemon.supervisor.counted)
     async with asyncio.TaskGroup() as group:
         serving = group.create_task(front.run(), name="front")
         if config.recording.from_start:

@@ -6,7 +6,6 @@ import secrets
 from collections.abc import Iterator
 from pathlib import Path
 
-from robotd.children.resident import resident_bytes
 from robotd.core.counted import Counted
 from robotd.core.endpoints import Endpoints
 from robotd.server.client_connection import Manners
@@ -48,7 +47,6 @@ class Server:
         self.session = secrets.token_hex(8)
         """Changes with every start, so that clients notice one."""
         self._counted = Counted()
-        self._counted.show("resident_bytes", resident_bytes, process="front")
         self.serving = asyncio.Event()
         """Set while clients can connect."""
 

@@ -13,10 +13,20 @@ from robotd.cli.show.half_blocks import Ink, draw, shrink
 from robotd.cli.show.wording import counts_in_words, estimate_in_words, mission_in_words
 from robotd.client.feed import Gap
 from robotd.contract.estimate import PoseEstimate
-from robotd.contract.events import MapChanged, MissionProgress, Status, SweepDone, SweepProgress
+from robotd.contract.events import (
+    MapChanged,
+    MissionProgress,
+    Status,
+    SweepBegun,
+    SweepDone,
+    SweepProgress,
+    SweepReadings,
+)
+from robotd.contract.sweep_columns import from_columns
 from robotd.contract.topics import LogEntry, Published
 from robotd.core.grid_spec import GridSpec
-from robotd.core.reading import ReadingStatus, Sweep
+from robotd.core.pose import Pose2
+from robotd.core.reading import RangeReading, ReadingStatus
 
 _LOG_LINES = 5
 KEYS = "keys: space or s stops, a arms, q ends"
@@ -33,8 +43,10 @@ class Dashboard:
     pose: PoseEstimate | None = None
     mission: MissionProgress | None = None
     sweep: SweepProgress | None = None
-    seen: Sweep | None = None
-    """The last whole sweep."""
+    readings: list[RangeReading] = field(default_factory=list)
+    """Of the sweep under way, or the last one."""
+    taken_at: Pose2 | None = None
+    """Where it was taken, map frame; None if that is not known."""
     log: deque[LogEntry] = field(default_factory=lambda: deque(maxlen=_LOG_LINES))
     told: str = ""
     """What came of the last key."""
@@ -48,14 +60,25 @@ class Dashboard:
                 self.status = event
             case PoseEstimate():
                 self.pose = event
+                if event.final and event.best is not None and event.bearings_rad:  # the sweep itself has said where
+                    self.taken_at = event.best
             case MissionProgress():
                 self.mission = event
+            case SweepBegun() | SweepReadings() | SweepProgress() | SweepDone():
+                self._sweep(event)
+            case LogEntry():
+                self.log.append(event)
+
+    def _sweep(self, event: SweepBegun | SweepReadings | SweepProgress | SweepDone) -> None:
+        match event:
+            case SweepBegun():
+                self.readings, self.taken_at = [], event.in_map
+            case SweepReadings():
+                self.readings += from_columns(event)
             case SweepProgress():
                 self.sweep = event
             case SweepDone():
-                self.seen = event.sweep
-            case LogEntry():
-                self.log.append(event)
+                self.readings, self.taken_at = list(event.sweep.readings), event.in_map
 
     def show(self, width: int, height: int, ink: Ink, *, with_map: bool) -> RenderableType:
         """Return all of it, as wide and as high as there is room."""
@@ -67,6 +90,8 @@ class Dashboard:
         return Group(self._drawn(width, room, ink), lines)
 
     def _map(self, event: MapChanged) -> None:
+        if event.whole:
+            self.taken_at = None  # places of another map are none of this one
         if event.map_id is None:
             self.spec, self.values = None, None
         elif event.whole:
@@ -87,14 +112,12 @@ class Dashboard:
         return draw(shrunk, ink, robot=robot, places_m=places_m, hits_m=self._hits_m())
 
     def _hits_m(self) -> list[tuple[float, float]]:
-        """Return where the last sweep met something, on the map, if it is known where it was taken."""
-        if self.pose is None or self.pose.best is None or self.seen is None or not self.pose.final:
+        """Return where the readings of the sweep met something, on the map, if it is known where it is taken."""
+        if self.taken_at is None:
             return []
-        if not self.pose.bearings_rad:  # moved on since by odometry
-            return []
-        hits = [reading for reading in self.seen.readings if reading.status is ReadingStatus.OK]
+        hits = [reading for reading in self.readings if reading.status is ReadingStatus.OK]
         return [
-            self.pose.best.transform(
+            self.taken_at.transform(
                 reading.origin_x_m + (reading.range_m or 0.0) * math.cos(reading.bearing_rad),
                 reading.origin_y_m + (reading.range_m or 0.0) * math.sin(reading.bearing_rad),
             )

@@ -20,6 +20,7 @@ from robotd.client import AsyncClient
 from robotd.config import Config
 from robotd.contract.device_status import LinkState
 from robotd.contract.requests import Arm
+from robotd.core.counted import Counted
 from robotd.core.errors import ChildError, TransportError
 from robotd.core.grid_spec import GridSpec
 from robotd.front import supervised as front
@@ -204,12 +205,12 @@ async def test_without_a_front_it_is_disarmed_says_so_tries_again_and_keeps_its_
 ) -> None:
     starts, start_it = 0, front._start
 
-    def start(runtime_dir: str) -> Process:
+    def start(runtime_dir: str, counted: Counted) -> Process:
         nonlocal starts
         starts += 1
         if starts in {2, 3, 4}:
             raise ChildError("it cannot be started: Cannot allocate memory")
-        return start_it(runtime_dir)
+        return start_it(runtime_dir, counted)
 
     robot = SimulatedRobot(load_world("office"), seed=1)
     monkeypatch.setattr(front, "_start", start)

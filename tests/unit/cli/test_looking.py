@@ -1,6 +1,7 @@
 """Verbs that only look: pose, watch, maps, recordings."""
 
 import json
+import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -16,9 +17,12 @@ from robotd.cli.show.half_blocks import Ink, draw, shrink
 from robotd.cli.show.wording import in_words
 from robotd.client.feed import Gap
 from robotd.contract.estimate import PoseState
+from robotd.contract.events import SweepBegun, SweepDone
+from robotd.contract.sweep_columns import in_columns
 from robotd.contract.topics import LogEntry, from_wire
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from tests.unit.cli.conftest import ESTIMATE
 from tests.unit.contract.messages import message, names
 
@@ -222,6 +226,26 @@ def test_a_map_that_changes_is_drawn_as_it_is_then(client: Any) -> None:
     assert board.values is not None
     assert board.values.reshape(-1)[7] == 3
     assert whole.values.reshape(-1)[7] == 255
+
+
+def test_a_sweep_is_drawn_as_it_comes_where_it_is_taken(client: Any) -> None:
+    board = Dashboard()
+    board.hear(client.map_show(None, None))
+    ahead = RangeReading(5, 0.0, ReadingStatus.OK, 0.25)
+    left, missed = replace(ahead, bearing_rad=math.pi / 2), RangeReading(5, 1.0, ReadingStatus.MISS, 6.0)
+    told = in_columns(3, 0, [ahead, missed, left])
+    board.hear(SweepBegun(4, 3, 300, IDENTITY, None))
+    board.hear(told)
+    assert board._hits_m() == []  # nothing ties odometry to the map yet
+    board.hear(SweepBegun(4, 4, 300, IDENTITY, Pose2(1.0, 2.0, 0.0)))
+    board.hear(told)
+    assert np.allclose(board._hits_m(), [(1.25, 2.0), (1.0, 2.25)], atol=1e-6)
+    board.hear(SweepDone(6, Sweep(4, IDENTITY, (ahead,)), Pose2(1.0, 2.0, math.pi / 2)))
+    assert np.allclose(board._hits_m(), [(1.0, 2.25)])
+    board.hear(replace(ESTIMATE, bearings_rad=(0.0,), best=Pose2(0.5, 0.5, 0.0)))
+    assert np.allclose(board._hits_m(), [(0.75, 0.5)])  # what it localizes at says better where it was taken
+    board.hear(client.map_show(None, None))
+    assert board._hits_m() == []
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from robotd.client import AsyncClient
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import Localize
 from robotd.contract.requests import Renew
+from robotd.core.counted import Counted
 from robotd.core.errors import RobotdError
 from robotd.front import supervised
 from robotd.front.heart_side import HeartSide
@@ -49,7 +50,7 @@ async def fronted(runtime_dir: Path) -> AsyncIterator[Fronted]:
     control = FakeControl()
     side = HeartSide(control, ServerSettings(runtime_dir=str(runtime_dir)))
     halts: list[str] = []
-    it = Fronted(control, front_of(side, halts.append), halts)
+    it = Fronted(control, front_of(side, halts.append, Counted()), halts)
     tasks = [asyncio.create_task(it.child.run()), asyncio.create_task(side.follow())]
     try:
         async with asyncio.timeout(PATIENCE_S):
