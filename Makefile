@@ -26,8 +26,7 @@ demo-real: .venv/.demo  ## The same in a recorded building: make demo-real LOG=p
 console: .venv/.console  ## The robot in a browser: simulated robot, daemon, gateway; prints an address to open (Ctrl-C ends it)
 	@$(BIN)/robotctl demo console $(WORLD) --seed $(SEED) --out console
 
-ui-test: .venv/.dev  ## The console: its types and units by Node, its flows in Debian's Chromium (apt-get install chromium)
-	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[ui]'
+ui-test: .venv/.ui  ## The console: its types and units by Node, its flows in Debian's Chromium (apt-get install chromium)
 	@$(BIN)/python -m tests.ui.run
 
 demo-busy: .venv/.dev  ## Whether make demo finishes beside busy programs: N="2 4 8" RUNS=10 NICE=0 HARSH=1 LOG=... (an hour)
@@ -137,6 +136,11 @@ clean:  ## Remove the environment and all that was made
 .venv/.console: pyproject.toml $(COMPILED) | .venv/bin/python
 	@echo "robotd: installing robotd, its gateway and what the console is built with (once, a minute)"
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[plots,gateway,console]'
+	@touch $@
+
+.venv/.ui: .venv/.dev
+	@echo "robotd: installing what the console is built and tried with (once)"
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[ui]'
 	@touch $@
 
 .venv/.dev: pyproject.toml $(COMPILED) | .venv/bin/python

@@ -6,7 +6,9 @@ import signal
 import ssl
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from dataclasses import dataclass
 from pathlib import Path
+from typing import NoReturn
 
 import zmq.asyncio
 from aiohttp import web
@@ -36,9 +38,20 @@ _ON_DEMAND = (Topic.RANK,)
 log = logging.getLogger(__name__)
 
 
+@dataclass(frozen=True, slots=True)
+class Running:
+    """A gateway at work."""
+
+    house: House
+    address: str
+    """Where it serves."""
+    duties: "asyncio.Task[NoReturn]"
+    """What it does all the time; should it end, so must the gateway: nobody would watch over missions."""
+
+
 @asynccontextmanager
-async def gateway(settings: GatewaySettings) -> AsyncIterator[tuple[House, str]]:
-    """Run a gateway for the length of the block; yield it, with the address it serves at.
+async def gateway(settings: GatewaySettings) -> AsyncIterator[Running]:
+    """Run a gateway for the length of the block, and yield it.
 
     Raises:
         TransportError: the address cannot be had.
@@ -54,18 +67,18 @@ async def gateway(settings: GatewaySettings) -> AsyncIterator[tuple[House, str]]
             fan = FanOut(Snapshot(), lambda: asker.ask(MapShow()))
             services = Services(fan, asker, StopLine(stopper), settings.watching)
             house = House(settings, services)
-            duties = together(
-                fan.follow(lambda: client.frames(*(topic for topic in Topic if topic not in _ON_DEMAND))),
-                fan.follow_rank(lambda: client.frames(*_ON_DEMAND)),
-                fan.keep_map(),
-                services.missions.watch(),
-                house.watch_access(),
-                _disarm_idle(services),
-            )
             async with _served(house) as address:
+                duties = together(
+                    fan.follow(lambda: client.frames(*(topic for topic in Topic if topic not in _ON_DEMAND))),
+                    fan.follow_rank(lambda: client.frames(*_ON_DEMAND)),
+                    fan.keep_map(),
+                    services.missions.watch(),
+                    house.watch_access(),
+                    _disarm_idle(services),
+                )
                 running = asyncio.create_task(duties, name="gateway")
                 try:
-                    yield house, address
+                    yield Running(house, address, running)
                 finally:
                     running.cancel()
                     await asyncio.gather(running, return_exceptions=True)
@@ -130,6 +143,10 @@ async def run(settings: GatewaySettings, ready: Callable[[str], None]) -> None:
     ended = asyncio.Event()
     for one in (signal.SIGTERM, signal.SIGINT):
         asyncio.get_running_loop().add_signal_handler(one, ended.set)
-    async with gateway(settings) as (_, address):
-        ready(address)
-        await ended.wait()
+    async with gateway(settings) as running:
+        ready(running.address)
+        waiting = asyncio.create_task(ended.wait())
+        await asyncio.wait((waiting, running.duties), return_when=asyncio.FIRST_COMPLETED)
+        waiting.cancel()
+        if running.duties.done():
+            running.duties.result()

@@ -93,10 +93,14 @@ class House:
             elif connection.person.session not in tokens:
                 connection.finish("the session has ended")
 
-    def save_sessions(self) -> None:
-        """Keep the sessions over a restart; a disk that refuses means that everybody signs in again."""
+    async def save_sessions(self) -> None:
+        """Keep the sessions over a restart, without letting a stop wait for a disk."""
+        await asyncio.to_thread(self._write_sessions, self.sessions.to_bytes(unix_s()))
+
+    def _write_sessions(self, data: bytes) -> None:
+        """Write them; a disk that refuses means that everybody signs in again."""
         try:
-            write_private(self.settings.access.sessions, self.sessions.to_bytes(unix_s()))
+            write_private(self.settings.access.sessions, data)
         except OSError as error:
             log.warning("sessions could not be kept: %s", error)
 
@@ -110,6 +114,6 @@ class House:
                 self._drop_idle()
                 looks += 1
                 if looks % _SAVE_EVERY == 0:
-                    self.save_sessions()
+                    await self.save_sessions()
         finally:
-            self.save_sessions()
+            self._write_sessions(self.sessions.to_bytes(unix_s()))

@@ -45,7 +45,8 @@ async def console(directory: Path) -> AsyncIterator[str]:
                 assert line, "it has ended"
         yield address[0].decode()
     finally:
-        process.send_signal(signal.SIGINT)
+        with contextlib.suppress(ProcessLookupError):
+            process.send_signal(signal.SIGINT)
         await process.wait()
 
 

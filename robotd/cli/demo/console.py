@@ -50,6 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     with rig(directory, wired(Config(driving=brisk()), directory), emulator), _gateway(directory, settings) as address:
         out().print("Open this address in a browser; it signs in once. Ctrl-C ends robot and console.\n")
         out().print(f"  {address}#{secret}\n", markup=False, soft_wrap=True)
+        sys.stdout.flush()  # who reads through a pipe waits for the address
         with suppress(KeyboardInterrupt):  # which is how it ends
             signal.pause()
     return OK
@@ -112,6 +113,7 @@ def _address(process: "subprocess.Popen[bytes]", log: Path) -> str:
         if _SERVES in said:
             return said.partition(_SERVES)[2].split()[0]
         if process.poll() is not None:
-            raise RobotdError(f"the gateway ended with {process.returncode}: {said.strip().splitlines()[-1:] or log}")
+            why = next((line for line in said.splitlines() if line.startswith("robotd-gateway: ")), f"see {log}")
+            raise RobotdError(why)
         time.sleep(0.05)
     raise RobotdError(f"the gateway did not come up in {_START_S:g} s; see {log}")

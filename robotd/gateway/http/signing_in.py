@@ -46,14 +46,14 @@ async def sign_in(request: web.Request, house: House, _: Person | None) -> web.S
         raise ServerError("wrong_token", "the token was revoked just now")
     cookie, _session = house.sessions.begin(token, unix_s())
     house.sign_ins += 1
-    house.save_sessions()
+    await house.save_sessions()
     house.services.audit.note(now_ns() + wall_offset_ns(), person.name, whence, "sign in", "done")
     response = web.json_response({"name": person.name, "role": person.role})
     response.set_cookie(
         cookie_name(house, request),
         cookie,
         max_age=_YEAR_S,  # the session ends sooner; who was signed in within a day may still stop
-        path=_path_of(request),
+        path=_path_of(request, house.settings.listen.trusted_proxies),
         secure=scheme_of(request, house.settings.listen.trusted_proxies) == "https",
         httponly=True,
         samesite="Strict",
@@ -67,7 +67,7 @@ async def sign_out(request: web.Request, house: House, person: Person | None) ->
     if session is not None and person is not None:
         house.sessions.end(session, unix_s())
         house.drop(session)
-        house.save_sessions()
+        await house.save_sessions()
         house.services.audit.note(now_ns() + wall_offset_ns(), person.name, person.whence, "sign out", "done")
     return web.Response(status=204)
 
@@ -79,10 +79,10 @@ async def who(_: web.Request, house: House, person: Person | None) -> web.Stream
     return web.json_response({"name": person.name, "role": person.role, "robot": house.settings.robot.name})
 
 
-def _path_of(request: web.Request) -> str:
+def _path_of(request: web.Request, trusted: tuple[str, ...]) -> str:
     """Return the path of the console as the browser sees it: a proxy may have put it below another one."""
     prefix = request.headers.get("X-Forwarded-Prefix", "").rstrip("/")
-    return f"{prefix}/" if prefix.startswith("/") else "/"
+    return f"{prefix}/" if request.remote in trusted and prefix.startswith("/") else "/"
 
 
 ROUTES = (

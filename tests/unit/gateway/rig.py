@@ -70,7 +70,8 @@ def opening(tmp_path: Path, serving: Serving) -> Opening:
             WatchingSettings(**driving),
             AccessSettings(state_dir=str(state)),
         )
-        async with serving() as control, gateway(settings) as (house, address):
+        async with serving() as control, gateway(settings) as running:
+            house, address = running.house, running.address
             telling = asyncio.create_task(_tell(control))
             await until(lambda: house.services.fan.snapshot.status)
             try:

@@ -14,6 +14,8 @@ import pytest
 from robotd.cli.main import main as robotctl
 from robotd.gateway.access.roles import Role
 from robotd.gateway.access.tokens import TokenFile, Tokens, make_token
+from robotd.gateway.command.kept_missions import Missions
+from robotd.gateway.composed import run as run_gateway
 from robotd.gateway.house import NO_TOKEN
 from robotd.gateway.program import read_settings
 from tests.unit.gateway.pages import PATIENCE_S, page_of, until
@@ -127,3 +129,17 @@ async def test_whatever_ends_the_gateway_ends_the_missions_of_its_pages(
                     process.send_signal(signal.SIGCONT)
                 assert control._stop_reason == why
                 assert took_s < PATIENCE_S
+
+
+@pytest.mark.real_clock
+async def test_a_gateway_of_which_a_duty_fails_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else pages would be served, and nobody would watch over their missions."""
+
+    async def broken(self: Missions) -> None:
+        raise RuntimeError("a bug in the gateway")
+
+    monkeypatch.setattr(Missions, "watch", broken)
+    _, token = make_token("anna", Role.OPERATOR, 0.0)
+    TokenFile(tmp_path / "state" / "tokens.json").write(Tokens((token,)))
+    with pytest.raises(RuntimeError, match="a bug in the gateway"):
+        await run_gateway(read_settings(written(tmp_path)), lambda _: None)
