@@ -39,7 +39,7 @@ log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
-class Running:
+class RunningGateway:
     """A gateway at work."""
 
     house: House
@@ -50,7 +50,7 @@ class Running:
 
 
 @asynccontextmanager
-async def gateway(settings: GatewaySettings) -> AsyncIterator[Running]:
+async def gateway(settings: GatewaySettings) -> AsyncIterator[RunningGateway]:
     """Run a gateway for the length of the block, and yield it.
 
     Raises:
@@ -78,7 +78,7 @@ async def gateway(settings: GatewaySettings) -> AsyncIterator[Running]:
                 )
                 running = asyncio.create_task(duties, name="gateway")
                 try:
-                    yield Running(house, address, running)
+                    yield RunningGateway(house, address, running)
                 finally:
                     running.cancel()
                     await asyncio.gather(running, return_exceptions=True)
