@@ -22,6 +22,7 @@ SINCE: dict[str, dict[str, Any]] = {
         "error_radius": ErrorRadius.CONSTANT,
         "budget_s": 3600.0,
         "stops": StopPoses.ODOMETRY,
+        "history": False,
     },
     "planning": {"keeps_bumps": False},
     "second_look": {"on_walls_min": 0.0},

@@ -9,6 +9,7 @@ from typing import Any
 from robotd.config import Config, effective_text
 from robotd.core.clock import now_ns
 from robotd.core.counted import Counted
+from robotd.core.motion_error import MotionError
 from robotd.hardware.devices.catalogue import drive, line_format, pantilt, rangefinder
 from robotd.hardware.devices.gaze import Gaze
 from robotd.hardware.devices.wiring import Wiring
@@ -27,6 +28,8 @@ from robotd.mission.safety.causes import Causes
 from robotd.mission.safety.lease import EndlessLease, Lease
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.three_devices import Robot
+from robotd.mission.whereabouts.carried import Carried, Sure
+from robotd.mission.whereabouts.whereabouts import Whereabouts
 from robotd.recording.preroll import PrerollJournal
 
 
@@ -85,7 +88,7 @@ def compose(
     settings = mission_settings(config)
     news = News(journal.note)
     supervisor = Supervisor(
-        MissionContext(robot, settings, noted, news.publish),
+        MissionContext(robot, settings, noted, news.publish, whereabouts(settings)),
         news,
         # A recording that ended by itself is none: its file is not written any more.
         lambda: None if journal.path is None or journal.error is not None else str(journal.path),
@@ -107,6 +110,14 @@ def compose(
     )
     causes = Causes(supervisor, supervisor.holding, supervisor.mission.lease_expired, journal)
     return Daemon(robot, supervisor, control, causes)
+
+
+def whereabouts(settings: MissionSettings) -> Whereabouts:
+    """Return the whereabouts of a robot of which nothing is known yet."""
+    if not settings.localization.history:
+        return Whereabouts()
+    sure = Sure(settings.judgement.second_look.doubt_max, settings.localization.conservative)
+    return Whereabouts(Carried(MotionError(), sure))
 
 
 def mission_settings(config: Config) -> MissionSettings:

@@ -21,6 +21,15 @@ class PoseState(enum.StrEnum):
     """Carried forward by odometry since it was last localized."""
 
 
+class Contradiction(enum.StrEnum):
+    """Why none of the places that a look leaves can be reached from where the robot was."""
+
+    CARRIED = "carried"
+    """They are farther off than wheels err: somebody carried it, or it was never there."""
+    SLIPPED = "slipped"
+    """They are near to where it should be: the wheels erred by more than they may."""
+
+
 @dataclass(frozen=True, slots=True)
 class Extent:
     """How far a region reaches, outer edges, map frame."""
@@ -155,6 +164,12 @@ class PoseEstimate:
     """Of the mission that looked round; None if odometry predicted it."""
     sweep: int | None = None
     """Number of the sweep that it is built from; None if odometry predicted it."""
+    by_history: bool = False
+    """Whether it is ``localized`` because the robot can have come to no other of the places that the readings leave."""
+    unreachable: int = 0
+    """Places that the readings leave, too, but to which the robot cannot have come; they are not among the regions."""
+    contradiction: Contradiction | None = None
+    """Why the robot can have come to none of them, if so: then the state is ``ambiguous`` until another look agrees."""
 
     def __str__(self) -> str:
         """Say in one line what people ask first."""

@@ -49,6 +49,9 @@ class LocalizationSettings:
     as on maps that were drawn with a broad pen."""
     stops: StopPoses = StopPoses.PLACED
     """Where the stops of a map in the making are: ``placed`` on the map so far, or where ``odometry`` has them."""
+    history: bool = True
+    """Whether the places that a look leaves are carried to the next stop, where only those count that the robot can
+    have come to; else each look is held against the last sure one alone."""
     budget_s: Annotated[float, Within(0.01, 3600.0, "s")] = 1.0
     """About how long a search may take on the reference machine. It is counted in what is looked at, never in time: a
     slower or busier machine takes longer and finds the same. If it runs out, the answer is ``ambiguous`` and not

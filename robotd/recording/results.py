@@ -54,9 +54,14 @@ def _estimate(estimate: PoseEstimate) -> dict[str, Any]:
     del content["ends"]  # follows from the readings and the map, and older recordings do not have it
     for name in ("in_odom", "map_from_odom", "mission_id", "sweep"):
         del content[name]  # the same, and the sweep and the missions have them already
-    if estimate.jumped_m is None:
-        del content["jumped_m"]  # as in recordings made before it could be said: their digests are of what there was
+    # As in recordings made before these could be said: their digests are of what there was.
+    for name, unsaid in _UNSAID.items():
+        if content[name] == unsaid:
+            del content[name]
     return content
+
+
+_UNSAID: dict[str, object] = {"jumped_m": None, "by_history": False, "unreachable": 0, "contradiction": None}
 
 
 def _sweep(sweep: Sweep) -> dict[str, Any]:

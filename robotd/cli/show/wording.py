@@ -90,10 +90,12 @@ def estimate_in_words(estimate: PoseEstimate) -> str:
     support = f"{estimate.best_rank or 'too few'} of {estimate.readings} readings explained"
     so_far = "" if estimate.final else ", so far"
     if estimate.best is not None:
-        extra = "" if estimate.state is PoseState.PREDICTED else f" ({support}{so_far})"
+        by_history = f"; by history, {estimate.unreachable} more cannot be reached" if estimate.by_history else ""
+        extra = "" if estimate.state is PoseState.PREDICTED else f" ({support}{so_far}{by_history})"
         return f"{estimate.state}: {pose_in_words(estimate.best)}{extra}"
     if estimate.regions:
-        return f"{estimate.state}: {_regions(estimate)} ({support}{so_far})"
+        why = f"; not where it should be: {estimate.contradiction}" if estimate.contradiction else ""
+        return f"{estimate.state}: {_regions(estimate)} ({support}{so_far}{why})"
     return f"{estimate.state} ({support}{so_far})"
 
 

@@ -37,6 +37,7 @@ async def run_localizing(
     settings = context.settings
     here = await context.hold.through(lambda: standing(context.robot, settings.sweep.settle_s, settings.driving))
     headings_rad = _headings(context, mission, here)
+    context.whereabouts.looks(here.in_odom)
     report.at(MissionPhase.SWEEPING)
     stop = context.head.number()
     try:

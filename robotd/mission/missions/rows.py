@@ -4,7 +4,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from robotd.contract.estimate import PoseEstimate
+from robotd.contract.estimate import Contradiction, PoseEstimate
 from robotd.contract.missions import (
     DriveStraight,
     DriveTo,
@@ -174,14 +174,23 @@ def describe(estimate: PoseEstimate) -> str:
     """Return an estimate in one line for people."""
     share = f"{estimate.best_rank or 'too few'} of {estimate.readings} readings"
     if estimate.best is not None:
-        return f"{estimate.state} at {pose_text(estimate.best)}: {share}"
+        by_history = f"; by history: it cannot have come to {estimate.unreachable} more" if estimate.by_history else ""
+        return f"{estimate.state} at {pose_text(estimate.best)}: {share}{by_history}"
     if estimate.jumped_m is not None and estimate.regions:
         found = pose_text(estimate.regions[0].pose)
+        why = _WHY[estimate.contradiction] if estimate.contradiction else ""
         return (
-            f"{estimate.state}: found at {found}, {estimate.jumped_m:.1f} m from where odometry puts it ({share});"
+            f"{estimate.state}: found at {found}, {estimate.jumped_m:.1f} m from where odometry puts it ({share}){why};"
             " localize once more, best from another place: it counts when two looks agree"
         )
     if not estimate.regions:
         return f"{estimate.state}: no pose is believed; the best explain {share}"
     regions = len(estimate.regions) + estimate.regions_left_out
-    return f"{estimate.state}: {regions} regions explain up to {share}"
+    excluded = f"; it cannot have come to {estimate.unreachable} more" if estimate.unreachable else ""
+    return f"{estimate.state}: {regions} regions explain up to {share}{excluded}"
+
+
+_WHY = {
+    Contradiction.CARRIED: ", as if it had been carried",
+    Contradiction.SLIPPED: ", as if its wheels had slipped",
+}

@@ -30,6 +30,16 @@ class Jumps:
         """Begin again: odometry is tied, or another map is in use."""
         self._found, self._way_m = None, 0.0
 
+    def tied(self) -> None:
+        """Take note that odometry was tied where a look found the robot."""
+        self.forget()
+
+    def doubted(self) -> None:
+        """Take note that odometry is believed no longer; what was found, if anything was, is as true as before."""
+
+    def looks(self, in_odom: Pose2) -> None:
+        """Take note that a look round begins; the way is counted to where it ends."""
+
     def moved(self, in_odom: Pose2) -> None:
         """Measure the way since odometry was tied."""
         if self._last is not None:

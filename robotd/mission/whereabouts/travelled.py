@@ -2,7 +2,7 @@
 
 from robotd.core.angles import wrap_rad
 from robotd.core.motion_error import Travel
-from robotd.core.pose import Pose2
+from robotd.core.pose import IDENTITY, Pose2
 
 
 class Travelled:
@@ -22,7 +22,7 @@ class Travelled:
         self._last = in_odom
 
     def stopped(self, in_odom: Pose2) -> Travel:
-        """Return the travel since the last stop to this one, which is then the last."""
-        step = Travel() if self._stop is None else Travel(self._stop.inverse() @ in_odom, self._way_m, self._turn_rad)
+        """Return the travel since the last stop to this one, which is then the last; to the first it leads nowhere."""
+        step = Travel(IDENTITY if self._stop is None else self._stop.inverse() @ in_odom, self._way_m, self._turn_rad)
         self._stop, self._way_m, self._turn_rad = in_odom, 0.0, 0.0
         return step

@@ -7,13 +7,15 @@ round finds it nowhere near (:meth:`Whereabouts.looked`), and where nobody saw w
 nothing: what was believed on the last one says nothing of this one.
 
 All of it happens on the loop, and nothing here reads a clock, waits, moves or stops anything: a replay that is told the
-same comes to the same. What is believed beyond one tie, as the places that a robot carries along while it is ambiguous,
-belongs here too.
+same comes to the same. What is known beyond one tie, as the places that a robot carries along while it is ambiguous,
+is :class:`~robotd.mission.whereabouts.carried.Carried`; recordings of before held each look against the last sure one
+alone (:class:`~robotd.mission.whereabouts.jumps.Jumps`).
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Protocol
 
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.angles import wrap_rad
@@ -29,15 +31,38 @@ _TURNED_RAD = 0.02
 """Nearer than both to what was said last, a prediction is no news."""
 
 
+class Weighing(Protocol):
+    """What is known of where the robot can be, by which looks round are weighed before they are told."""
+
+    def forget(self) -> None:
+        """Begin again: something else than a look has placed the robot, or it is on another map."""
+
+    def tied(self) -> None:
+        """Take note that odometry was tied where a look found the robot."""
+
+    def doubted(self) -> None:
+        """Take note that nobody saw what the wheels did."""
+
+    def moved(self, in_odom: Pose2) -> None:
+        """Take what odometry tells next."""
+
+    def looks(self, in_odom: Pose2) -> None:
+        """Take note that a look round begins."""
+
+    def weighed(self, estimate: PoseEstimate, believed: Tie | None, in_odom: Pose2, near_m: float) -> PoseEstimate:
+        """Return an estimate as it may be told; see :meth:`.Carried.weighed`."""
+
+
 class Whereabouts:
     """The map in use, and where the robot is on it."""
 
-    def __init__(self) -> None:
+    def __init__(self, weighing: Weighing | None = None) -> None:
+        """Know nothing yet; without ``weighing`` each look is held against the last sure one alone."""
         self._map: MapInUse | None = None
         self._tie: Tie | None = None
         self._said: Pose2 | None = None
         """The pose that was said last; a prediction is news only if it lies far enough from there."""
-        self._jumps = Jumps()
+        self._weighing = weighing or Jumps()
         self._travelled = Travelled()
 
     @property
@@ -58,7 +83,7 @@ class Whereabouts:
     def adopt(self, another: MapInUse, tie: Tie | None = None) -> None:
         """Take another map into use, with what ties odometry to it, if anything does."""
         self._map, self._tie, self._said = another, tie, None
-        self._jumps.forget()
+        self._weighing.forget()
 
     def pose_of(self, odometry: Odometry) -> Pose2 | None:
         """Return where odometry places the robot on the map, if anything ties them that is believed."""
@@ -84,9 +109,13 @@ class Whereabouts:
     def weighed(self, estimate: PoseEstimate, in_odom: Pose2, *, near_m: float) -> PoseEstimate:
         """Return the estimate of a look round as it may be told: not sure of a place where the robot should not be.
 
-        See :class:`Jumps`; a second look that agrees is sure.
+        Where it cannot have come to any place that a look leaves, a second look that agrees is sure.
         """
-        return self._jumps.weighed(estimate, self.believed, in_odom, near_m)
+        return self._weighing.weighed(estimate, self.believed, in_odom, near_m)
+
+    def looks(self, in_odom: Pose2) -> None:
+        """Take note that a look round begins, before the base turns for it."""
+        self._weighing.looks(in_odom)
 
     def said(self, estimate: PoseEstimate) -> None:
         """Take note of an estimate that is told: what is predicted next is measured against it."""
@@ -101,7 +130,7 @@ class Whereabouts:
         """
         if estimate.state is PoseState.LOCALIZED and estimate.best is not None:
             self._tie = Tie.between(estimate.best, in_odom)
-            self._jumps.forget()
+            self._weighing.tied()
             return
         says_something = estimate.regions or estimate.state is PoseState.LOST
         if self._tie is None or not says_something:
@@ -120,7 +149,7 @@ class Whereabouts:
         tie = Tie.between(map_from_robot, in_odom)
         self._tie = tie.doubted() if is_doubted else tie
         self._said = None  # the tie is another, which is news however little it moves the robot
-        self._jumps.forget()
+        self._weighing.forget()
 
     def bumped(self, in_odom: Pose2, bumpers_rad: Sequence[float], robot_radius_m: float) -> None:
         """Put what the robot bumped into on the map, if it is known where the robot was then."""
@@ -133,6 +162,7 @@ class Whereabouts:
 
     def doubt(self) -> bool:
         """Believe odometry no longer: nobody saw what the wheels did, or they told nonsense; return whether it was."""
+        self._weighing.doubted()
         believed = self.believed
         if believed is None:
             return False
@@ -141,7 +171,7 @@ class Whereabouts:
 
     def moved(self, odometry: Odometry) -> PoseEstimate | None:
         """Return the estimate that odometry leads to, if the robot has moved since the last one said, else None."""
-        self._jumps.moved(odometry.in_odom)
+        self._weighing.moved(odometry.in_odom)
         self._travelled.moved(odometry.in_odom)
         return self.predicted(odometry)
 

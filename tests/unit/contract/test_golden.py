@@ -24,7 +24,7 @@ from robotd.contract.envelope import (
     encode_request,
     encode_result,
 )
-from robotd.contract.estimate import PoseState
+from robotd.contract.estimate import Contradiction, PoseState
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import Legs, PriorHeading
 from robotd.contract.modes import MODE_WORDS
@@ -38,6 +38,7 @@ from tests.unit.contract.messages import GOLDEN, LIMIT, golden_request, message,
 
 WORDS: list[type[StrEnum]] = [
     PoseState,
+    Contradiction,
     MissionPhase,
     Legs,
     PriorHeading,
