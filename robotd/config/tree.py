@@ -1,5 +1,6 @@
 """The whole configuration: every room's settings under one roof."""
 
+import math
 import os
 from dataclasses import dataclass, field
 from pathlib import PurePath
@@ -21,6 +22,7 @@ from robotd.hardware.devices.settings import (
     RangefinderSettings,
     ReportOptions,
 )
+from robotd.hardware.devices.slant import floor_m
 from robotd.hardware.transport.address import connector
 from robotd.localization.fit.refinement_settings import RefinementSettings
 from robotd.localization.judge.error_model import ErrorModel
@@ -66,6 +68,7 @@ class Config:
             _check_device(device, settings)
         _check_ports_differ(self.devices)
         _check_head(self.pantilt, self.rangefinder)
+        _check_floor(self.pantilt, self.sweep, self.rangefinder)
         _check_motion(self.drive, self.driving)
         _check_places(self.maps, self.recording)
         _check_cells(self.grid, self.planning)
@@ -107,6 +110,16 @@ def _check_head(pantilt: PanTiltSettings, rangefinder: RangefinderSettings) -> N
         raise ValueError(
             f'pantilt.dialect must be "{MOTORLESS}" if rangefinder.dialect is a scanner ({", ".join(SCANNERS)}),'
             f' and only then; got "{pantilt.dialect}" and "{rangefinder.dialect}"'
+        )
+
+
+def _check_floor(pantilt: PanTiltSettings, sweep: SweepSettings, rangefinder: RangefinderSettings) -> None:
+    """Refuse a slant whose beams meet the floor where they are believed: it would be taken for walls all round."""
+    floor = floor_m(pantilt.height_m, sweep.tilt_rad) if pantilt.height_m else math.inf
+    if floor <= rangefinder.range_max_m:
+        raise ValueError(
+            f"sweep.tilt_rad must be such that the beam meets the floor beyond rangefinder.range_max_m, got"
+            f" {sweep.tilt_rad} rad, at which it does at {floor:.2f} m, and {rangefinder.range_max_m} m"
         )
 
 

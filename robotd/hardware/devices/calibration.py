@@ -10,12 +10,14 @@ from robotd.core.pose import IDENTITY, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Shot
+from robotd.hardware.devices.slant import horizontal_m
 
 # Wide enough for any robot, narrow enough that most values in a wrong unit fall outside (decision 23).
 CountsPerM = Annotated[float, Within(100.0, 1e8, "counts/m", either_sign=True)]
 CountsPerRad = Annotated[float, Within(10.0, 1e8, "counts/rad", either_sign=True)]
 Offset = Annotated[float, Within(-3.0, 3.0, "m")]
 Zero = Annotated[float, Within(-math.pi, math.pi, "rad")]
+Height = Annotated[float, Within(0.0, 3.0, "m")]
 Play = Annotated[float, Within(0.0, 0.5, "rad")]
 Bias = Annotated[float, Within(-1.0, 1.0, "m")]
 Nearest = Annotated[float, Within(0.001, 20.0, "m")]
@@ -111,14 +113,14 @@ def reading_in_robot(
 def _horizontal(calibration: RangefinderCalibration, shot: Shot, tilt_rad: float) -> tuple[ReadingStatus, float | None]:
     if shot.status is ReadingStatus.MISS:
         # A device that does not say how far it sees is believed up to the cut-off.
-        seen_m = math.inf if shot.range_m is None else shot.range_m * math.cos(tilt_rad)
+        seen_m = math.inf if shot.range_m is None else horizontal_m(shot.range_m, tilt_rad)
         return ReadingStatus.MISS, min(seen_m, calibration.range_max_m)
     if shot.status is not ReadingStatus.OK or shot.range_m is None:
         return shot.status, None
     # Too near is a matter of optics, so it is judged along the beam; too far is one of the map, so after the tilt.
     if shot.range_m < calibration.range_min_m:
         return ReadingStatus.TOO_NEAR, None
-    range_m = shot.range_m * math.cos(tilt_rad)
+    range_m = horizontal_m(shot.range_m, tilt_rad)
     if range_m > calibration.range_max_m:
         return ReadingStatus.MISS, calibration.range_max_m
     return ReadingStatus.OK, range_m

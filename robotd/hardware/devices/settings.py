@@ -14,6 +14,7 @@ from robotd.hardware.devices.calibration import (
     DriveCalibration,
     Farthest,
     HeadMount,
+    Height,
     Nearest,
     Offset,
     Play,
@@ -119,6 +120,9 @@ class PanTiltSettings(PortSettings):
     """Added to the tilt that the head reads back, to get the angle up from level."""
     backlash_rad: Play = 0.0
     """Play of the pan gears, which no readback shows: in a sweep the beam lags behind its motor by half of it."""
+    height_m: Height = 0.0
+    """Of the beam above the floor; a tilt at which it would meet the floor before the cut-off is then refused. 0 if
+    nobody measured it."""
 
     def __post_init__(self) -> None:
         """Refuse what the port or the mount refuses."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.core.pose import Pose2
+from robotd.hardware.devices.slant import floor_m
 from robotd.sim.physics.body import Body
 from robotd.sim.physics.noise import NoiseSettings
 from robotd.sim.physics.plant import ShotAnswer
@@ -113,8 +114,7 @@ class Laser:
             eye_height_m=settings.height_m,
             climb=math.tan(tilt_rad),
         )
-        floor_m = settings.height_m / math.tan(-tilt_rad) if tilt_rad < 0.0 else math.inf
-        return min(wall_m, floor_m) / math.cos(tilt_rad)  # from level to along the beam
+        return min(wall_m, floor_m(settings.height_m, tilt_rad)) / math.cos(tilt_rad)  # from level to along the beam
 
     def _measured_m(self, true_m: float) -> float:
         """Return what the instrument makes of it; every shot draws the same amount of randomness."""

@@ -199,6 +199,15 @@ def test_recordings_and_maps_lie_apart(maps: str, recordings: str, tmp_path: Pat
     assert loads('[maps]\ndir = "/srv/x"\n[recording]\ndir = "/srv/x-2"\n').recording.dir == "/srv/x-2"
 
 
+def test_a_slant_that_meets_the_floor_before_the_cut_off_is_refused() -> None:
+    slanted = "[pantilt]\nheight_m = {}\n[sweep]\ntilt_rad = {}\n[rangefinder]\nrange_max_m = 2.1\n"
+    (found,) = complaints(slanted.format(0.5, -0.24))
+    assert found.startswith("r.toml:4: sweep.tilt_rad: must be such that the beam meets the floor beyond")
+    assert "2.04 m" in found
+    for height_m, tilt_rad in ((0.55, -0.24), (0.5, 0.24), (0.5, 0.0), (0.0, -0.24)):
+        assert loads(slanted.format(height_m, tilt_rad)).sweep.tilt_rad == tilt_rad
+
+
 def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"none.toml: cannot be read: No such file or directory$"):
         load(tmp_path / "none.toml")
