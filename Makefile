@@ -11,7 +11,7 @@ PYTEST_ARGS ?=
 ONLY ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help console ui-test demo demo-real demo-busy test bench bench-peers paper conservative exact docs faults interop replay-many liars fuzz safety stops heads heart lag worlds truth firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help console ui-test demo demo-real demo-busy test bench bench-peers paper conservative exact docs faults interop replay-many liars fuzz safety stops heads heart lag worlds senses truth firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -85,6 +85,9 @@ worlds: .venv/.dev  ## Whether whole daemons map hard worlds and find themselves
 
 truth: .venv/.dev  ## All ways to ask of all logs in ROBOTD_DATA, by robotctl eval: writes docs/truth/<date>.md (hours; make truth SHARE=0.1)
 	@$(BIN)/python -m tests.studies.truth.run $(if $(SHARE),--share $(SHARE)) $(if $(ONLY),--only $(ONLY))
+
+senses: .venv/.dev  ## How few readings tell where it is, which of two equal rooms it is, and whether being carried off shows (minutes; PLACES=20)
+	@$(BIN)/python -m tests.studies.senses.run $(if $(PLACES),--places $(PLACES) --twins $(PLACES) --carried $(PLACES)) $(if $(CUTOFF),--cutoff $(CUTOFF))
 
 heart: .venv/.dev  ## Whether a stop is on the wires in time, whatever clients do and whatever becomes of the front: writes docs/benchmarks/heart.md (two hours; TRIALS=20)
 	@$(BIN)/python -m tests.studies.heart.run $(if $(TRIALS),--trials $(TRIALS) --endings $(TRIALS)) $(if $(ONLY),--only "$(ONLY)")

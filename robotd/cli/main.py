@@ -29,6 +29,7 @@ WORDS = {
     "map": ("maps", "make, save, load and look at maps"),
     "explore": ("explore", "map a place without being told where to stop"),
     "localize": ("where", "sweep where it stands and say where that is on the map in use"),
+    "resolve": ("where", "find out which of several places it is: look round, drive to where they differ, look again"),
     "pose": ("where", "print the newest pose estimate"),
     "watch": ("where", "print what happens, as it happens, until Ctrl-C"),
     "top": ("top", "show mode, links, pose, mission, sweep and log as they change; keys stop and arm"),

@@ -17,6 +17,7 @@ from robotd.contract.missions import (
     MapStart,
     Measure,
     Mission,
+    Resolve,
     Scan,
     Turn,
     with_lease,
@@ -135,6 +136,7 @@ class Methods:
     make_map = carries_out(MapStart.of, _all)
     explore = carries_out(Explore.of, _all)
     localize = carries_out(Localize, final_estimate)
+    resolve = carries_out(Resolve, final_estimate)
     drive_to = carries_out(DriveTo, _all)
     drive = carries_out(DriveStraight, _all)
     turn = carries_out(Turn, _all)

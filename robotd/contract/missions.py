@@ -117,11 +117,22 @@ class Localize(MissionRequest, frozen=True):
     heading: PriorHeading = PriorHeading.ODOMETRY
     within: Area | None = None
     """Where on the map it is, if the client knows; no other place is then an answer."""
+    adaptive: bool = False
+    """Whether to read to all sides until two answers in a row agree, instead of a whole sweep."""
 
     def __post_init__(self) -> None:
         """Refuse a heading that is known and unknown."""
         if self.heading is PriorHeading.UNKNOWN and self.heading_rad is not None:
             raise ValueError("heading_rad cannot be given where the heading is unknown")
+
+
+class Resolve(MissionRequest, frozen=True):
+    """Look round, and while several places are left, drive to where they differ and look again."""
+
+    cmd, kind, doing, noted = "resolve", "resolve", "resolving", "Resolve"
+    within: Area | None = None
+    """Where on the map it is, if the client knows; no other place is then an answer."""
+    lease_s: LeaseTime | None = None
 
 
 class DriveTo(MissionRequest, frozen=True):
@@ -180,7 +191,7 @@ class Measure(MissionRequest, frozen=True):
     lease_s: LeaseTime | None = None
 
 
-Mission = MapStart | Explore | Localize | DriveTo | DriveStraight | Turn | Look | Scan | Measure
+Mission = MapStart | Explore | Localize | Resolve | DriveTo | DriveStraight | Turn | Look | Scan | Measure
 
 
 def with_lease(mission: Mission, lease_s: float | None = None) -> Mission:

@@ -53,11 +53,15 @@ class Desk:
             del generations[older]
         return generations[ref.generation]
 
+    def ready(self, ref: MapRef) -> ReadyMap:
+        """Return a map made ready for localization; NotHeld if there is none."""
+        held, ready = self.map(ref).made_ready(self.settings.localization, self.settings.error_model)
+        self.hold(ref, held)
+        return ready
+
     def begin(self, job: Prepare) -> None:
         """Hold a stop, on its map made ready."""
-        held, ready = self.map(job.map).made_ready(self.settings.localization, self.settings.error_model)
-        self.hold(job.map, held)
-        self._stops[job.number] = self._begin(ready, job)
+        self._stops[job.number] = self._begin(self.ready(job.map), job)
 
     def stop(self, number: int) -> Estimator:
         """Return a stop; NotHeld if there is none."""
@@ -75,7 +79,7 @@ class Desk:
         self._stops.pop(number, None)
 
     def _localizer(self, ready: ReadyMap, job: Prepare) -> Estimator:
-        judgement = self.settings.judgement
+        judgement = self.settings.judgement.no_surer(job.contrast_min)
         return Localizer.at_stop(
             ready, job.map_id, job.headings_rad, job.within, judgement=judgement, threads=self._threads
         )

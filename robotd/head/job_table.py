@@ -4,6 +4,8 @@ import zlib
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from robotd.contract.ways import Way
 from robotd.core.grid_bytes import unpacked_cells
 from robotd.exploring.choice import ChoiceQuestion, choose
@@ -17,6 +19,8 @@ from robotd.head.job import A, Done, Job
 from robotd.head.jobs import (
     BeginMap,
     Choose,
+    ChooseBearings,
+    ChooseLeg,
     Chosen,
     FilesMade,
     Forget,
@@ -25,6 +29,7 @@ from robotd.head.jobs import (
     HeldMap,
     Insert,
     Inserted,
+    LegChosen,
     MakeFiles,
     MapRef,
     Narrow,
@@ -47,7 +52,10 @@ from robotd.maps.grid_files import content_of, map_of
 from robotd.maps.packed_content import PackedContent
 from robotd.maps.stops_file import decode_packed_stops
 from robotd.planning.path import Path, plan
+from robotd.planning.traversable import free_cells, inflated
 from robotd.recording.results import result_of
+from robotd.sensing.safe_legs import Room, best_leg
+from robotd.sensing.telling_apart import Expected, telling_bearings
 from robotd.slam.glance import glanced
 
 _QUICK = 1
@@ -159,6 +167,25 @@ def _choose(desk: Desk, job: Choose) -> Chosen:
     return chosen(choose(held.grid, held.obstacles(job.tried.met_m), question, desk.settings.planning))
 
 
+def _choose_bearings(desk: Desk, job: ChooseBearings) -> tuple[int, ...]:
+    walls = desk.ready(job.map).meanings[0].walls
+    poses, beliefs = [pose for pose, _ in job.rivals], [belief for _, belief in job.rivals]
+    bearings_rad = np.array(job.bearings_rad)
+    expected = Expected.at(walls, poses, bearings_rad, job.cutoff_m)
+    return telling_bearings(expected, beliefs, bearings_rad, job.taken_rad, job.count)
+
+
+def _choose_leg(desk: Desk, job: ChooseLeg) -> LegChosen:
+    ready, held, planning = desk.ready(job.map), desk.map(job.map), desk.settings.planning
+    # As the planner sees it: what was hit last is an obstacle whatever the cell's value.
+    obstacles = ~free_cells(held.grid, planning.gap_cells) | held.obstacles()
+    cell_m = held.grid.spec.resolution_m
+    robot_cells, clearance_cells = planning.robot_radius_m / cell_m, planning.clearance_m / cell_m
+    tight = ~inflated(obstacles, robot_cells, 0.0)
+    room = Room(held.grid.spec, tight, ~inflated(obstacles, robot_cells, clearance_cells))
+    return LegChosen(best_leg(room, ready.meanings[0].walls, job.rivals, job.cutoff_m, job.speed_mps))
+
+
 def _forget(desk: Desk, job: Forget) -> Done:
     desk.forget(job.number)
     return Done()
@@ -177,6 +204,8 @@ _TABLE: dict[type[Job[Any]], Callable[[Desk, Any], Any]] = {
     TakeReadings: _take_readings,
     Narrow: _narrow,
     ShowRanks: _show_ranks,
+    ChooseBearings: _choose_bearings,
+    ChooseLeg: _choose_leg,
     Plan: _plan,
     PreviewWay: _plan,
     Choose: _choose,

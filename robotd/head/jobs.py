@@ -26,6 +26,7 @@ from robotd.head.job import Done, Job, Made
 from robotd.maps.packed_content import PackedContent
 from robotd.maps.version_files import STOPS
 from robotd.recording.entries import ResultEntry
+from robotd.sensing.rivals import Leg, Rival
 
 
 class MapRef(msgspec.Struct, frozen=True):
@@ -219,6 +220,8 @@ class Prepare(Job[Done], frozen=True):
     """To try, map frame, ascending."""
     within: Area | None
     """Where the robot is; None is anywhere."""
+    contrast_min: float = 0.0
+    """What the best place must have over any other, if that is more than the settings say."""
 
     @property
     def makes(self) -> Made:
@@ -345,6 +348,38 @@ class Choose(Job[Chosen], frozen=True):
     pace: Pace
 
 
+class ChooseBearings(Job[tuple[int, ...]], frozen=True):
+    """Choose the bearings that tell rivals apart, by their numbers, best first."""
+
+    name, answer, is_noted = "choose bearings", tuple[int, ...], True
+    map: MapRef
+    rivals: tuple[tuple[Pose2, float], ...]
+    """Where the robot may be, and how much each is believed."""
+    bearings_rad: tuple[float, ...]
+    """To choose from, robot frame."""
+    taken_rad: tuple[float, ...]
+    """Chosen so before: none is chosen near to them."""
+    count: int
+    cutoff_m: float
+
+
+class LegChosen(msgspec.Struct, frozen=True):
+    """A leg, or none."""
+
+    leg: Leg | None
+    """None if none is free wherever the robot may be."""
+
+
+class ChooseLeg(Job[LegChosen], frozen=True):
+    """Choose the leg at whose end rivals are told apart, and that is free under each of them."""
+
+    name, answer, is_noted = "choose leg", LegChosen, True
+    map: MapRef
+    rivals: tuple[Rival, ...]
+    cutoff_m: float
+    speed_mps: float
+
+
 class Forget(Job[Done], frozen=True):
     """Hold a map, or a stop, no longer."""
 
@@ -357,7 +392,7 @@ JOBS: dict[str, type[Job[Any]]] = {
     for kind in (
         *(BeginMap, TakeMap, ReadMap, ShowMap, MakeFiles, Insert, PlaceStop, Glance),
         *(Prepare, Narrow, TakeReadings, ShowRanks),
-        *(Plan, PreviewWay, Choose, Forget),
+        *(Plan, PreviewWay, Choose, ChooseBearings, ChooseLeg, Forget),
     )
 }
 """Every job there is, by its name."""

@@ -95,8 +95,9 @@ async def test_estimates_are_published_while_the_sweep_is_under_way(live: Live) 
 async def test_in_one_of_two_equal_rooms_it_is_not_sure_of_the_wrong_one(live: Live) -> None:
     """One of the two is on the map a little better than the other, by luck: that is no reason to believe in it."""
     robot = SimulatedRobot(load_world("symmetric"), seed=0)
+    by_looks_alone = Config(localization=replace(Config().localization, history=False))
     states = []
-    async with live(robot) as it:
+    async with live(robot, by_looks_alone) as it:
         await it.done(MapStart.of("twins", robot.stops_m, robot.start))
         for probe_m in robot.probes_m:
             await it.done(DriveTo(*probe_m))
@@ -109,6 +110,19 @@ async def test_in_one_of_two_equal_rooms_it_is_not_sure_of_the_wrong_one(live: L
                 twins = [(here[0] + shift_m, here[1]) for shift_m in (-5.0, 5.0)]
                 assert any(math.dist(twin, (r.centre.x_m, r.centre.y_m)) < 0.3 for twin in twins for r in found.regions)
     assert PoseState.AMBIGUOUS in states
+
+
+async def test_which_of_two_equal_rooms_it_is_history_knows(live: Live) -> None:
+    robot = SimulatedRobot(load_world("symmetric"), seed=0)
+    found = []
+    async with live(robot) as it:
+        await it.done(MapStart.of("twins", robot.stops_m, robot.start))
+        for probe_m in robot.probes_m:
+            await it.done(DriveTo(*probe_m))
+            found.append(final_estimates(await it.done(Localize(heading=PriorHeading.UNKNOWN)))[-1])
+            assert found[-1].best is not None
+            assert found[-1].best.distance_m(robot.truth) < 0.2
+    assert any(one.by_history and one.unreachable for one in found)
 
 
 async def test_a_robot_taken_off_its_map_is_lost(live: Live) -> None:

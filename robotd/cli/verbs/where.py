@@ -1,4 +1,4 @@
-"""``localize``, ``pose``, ``watch``, ``plan`` and ``drive-to``."""
+"""``localize``, ``resolve``, ``pose``, ``watch``, ``plan`` and ``drive-to``."""
 
 import argparse
 from dataclasses import asdict
@@ -18,7 +18,7 @@ from robotd.client.feed import Gap
 from robotd.client.mission_run import MissionEvent, final_estimate
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate, PoseState
-from robotd.contract.missions import DriveTo, Legs, Localize, PriorHeading
+from robotd.contract.missions import DriveTo, Legs, Localize, PriorHeading, Resolve
 from robotd.contract.topics import Published, Topic
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import RequestTimeout
@@ -32,7 +32,12 @@ _PATIENCE_S = 3.0
 def _localize(arguments: argparse.Namespace) -> int:
     heading_rad = None if arguments.heading_deg is None else heading_of_deg(arguments.heading_deg)
     heading = PriorHeading.UNKNOWN if arguments.heading_unknown else PriorHeading.ODOMETRY
-    return carry_out(arguments, Localize(heading_rad, heading=heading, within=arguments.within), found_in_words)
+    localize = Localize(heading_rad, heading=heading, within=arguments.within, adaptive=arguments.adaptive)
+    return carry_out(arguments, localize, found_in_words)
+
+
+def _resolve(arguments: argparse.Namespace) -> int:
+    return carry_out(arguments, Resolve(within=arguments.within), found_in_words)
 
 
 def found_in_words(events: list[MissionEvent]) -> MissionOutcome:
@@ -52,6 +57,15 @@ def _known(parser: argparse.ArgumentParser) -> None:
         help="the robot's heading on the map, if you know it better than its odometry",
     )
     headings.add_argument("--heading-unknown", action="store_true", help="try all headings: it is not known")
+    parser.add_argument(
+        "--adaptive",
+        action="store_true",
+        help="read to all sides until two answers agree, instead of a whole sweep: some twenty readings of 300",
+    )
+    _within(parser)
+
+
+def _within(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--within",
         action=_AreaAction,
@@ -171,6 +185,14 @@ VERBS = (
         "robotctl localize --heading-unknown --within 2 3 1.5",
         _localize,
         _known,
+        exit_codes=((LOST, "lost"), (AMBIGUOUS, "ambiguous")),
+    ),
+    mission_verb(
+        "resolve",
+        "find out which of several places it is: look round, drive to where they differ, look again",
+        "robotctl resolve --within 2 3 1.5",
+        _resolve,
+        _within,
         exit_codes=((LOST, "lost"), (AMBIGUOUS, "ambiguous")),
     ),
     Verb("pose", "print the newest pose estimate", "robotctl pose --json", _pose, asks_daemon=True),

@@ -11,7 +11,7 @@ from robotd.core.text import printable
 from robotd.head.head import Head
 from robotd.mission.missions.ranks_told import RanksTold
 from robotd.mission.missions.settings import MissionSettings
-from robotd.mission.missions.stop_and_sweep import Sweeper, SweepListener
+from robotd.mission.missions.stop_and_sweep import Sweeper, SweepListener, Wants
 from robotd.mission.missions.sweep_told import SweepTold
 from robotd.mission.news import Publish
 from robotd.mission.safety.hold import Hold
@@ -73,7 +73,15 @@ class MissionContext:
 
     async def sweep(self, number: int, *listeners: SweepListener, base_turns: bool = True) -> Sweep:
         """Take a sweep and publish how it goes; arguments as of :meth:`Sweeper.sweep`."""
-        told = SweepTold(number, self.settings.sweep.readings, self.publish, self.whereabouts.in_map)
-        sweep = await self.sweeper.sweep(number, told, *listeners, base_turns=base_turns)
+        return self._done(await self.sweeper.sweep(number, self._told(number), *listeners, base_turns=base_turns))
+
+    async def look(self, number: int, wants: Wants, *listeners: SweepListener) -> Sweep:
+        """Take as much of a sweep as is wanted, published as a sweep is; arguments as of :meth:`Sweeper.look`."""
+        return self._done(await self.sweeper.look(number, wants, self._told(number), *listeners))
+
+    def _told(self, number: int) -> SweepTold:
+        return SweepTold(number, self.settings.sweep.readings, self.publish, self.whereabouts.in_map)
+
+    def _done(self, sweep: Sweep) -> Sweep:
         self.publish(SweepDone(now_ns(), sweep, self.whereabouts.in_map(sweep.in_odom)))
         return sweep

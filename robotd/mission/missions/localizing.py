@@ -6,9 +6,10 @@ on how fast this machine happens to be.
 
 import asyncio
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import NamedTuple
 
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import MissionPhase
@@ -20,9 +21,11 @@ from robotd.core.pose import IDENTITY, Odometry, Pose2
 from robotd.core.reading import RangeReading
 from robotd.head.jobs import Narrow, Narrowed, Prepare
 from robotd.mission.missions.context import MissionContext, Reporter
+from robotd.mission.missions.looking_until_sure import LookingUntilSure
 from robotd.mission.missions.stop_and_sweep import faults_text, standing
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.results import result_of
+from robotd.sensing.until_sure import CONTRAST_MIN
 
 _BATCH = 20
 """Readings between two estimates while the heading is known and readings are counted as they come."""
@@ -30,9 +33,17 @@ _ESTIMATES = 4
 """How often a sweep is searched while the heading is not: at each quarter, whatever its number of readings."""
 
 
+class LookedRound(NamedTuple):
+    """What a look round came to."""
+
+    estimate: PoseEstimate
+    in_odom: Pose2
+    """Where odometry put the robot when it began."""
+
+
 async def run_localizing(
     context: MissionContext, place: MapInUse, mission: Localize, report: Reporter, number: int
-) -> PoseEstimate:
+) -> LookedRound:
     """Carry out a :class:`Localize`: sweep, estimate, and tie odometry to the map if the answer is unique."""
     settings = context.settings
     here = await context.hold.through(lambda: standing(context.robot, settings.sweep.settle_s, settings.driving))
@@ -41,27 +52,40 @@ async def run_localizing(
     report.at(MissionPhase.SWEEPING)
     stop = context.head.number()
     try:
-        await context.head.ask(Prepare(stop, place.ref, place.map_id, headings_rad, mission.within))
+        contrast_min = CONTRAST_MIN if mission.adaptive else 0.0
+        await context.head.ask(Prepare(stop, place.ref, place.map_id, headings_rad, mission.within, contrast_min))
         of = LookRound(report.mission_id, number)
         show = partial(context.ranks.show, stop, place, place.generation, number)
         narrowing = Narrowing(context, stop, _between(context, mission), of, show, ties=mission.tie)
+        if mission.adaptive:
+            looking = LookingUntilSure(context, place.ref, narrowing)
+            return await _looked_until_sure(context, report, narrowing, looking, number)
         return await _looked_round(context, report, narrowing, number)
     finally:
         context.head.forget(stop)
 
 
-async def _looked_round(context: MissionContext, report: Reporter, narrowing: "Narrowing", number: int) -> PoseEstimate:
-    """Sweep, narrow down meanwhile, and return the last word."""
+async def _looked_round(context: MissionContext, report: Reporter, narrowing: "Narrowing", number: int) -> LookedRound:
+    """Sweep, and narrow down meanwhile."""
     narrowed = asyncio.create_task(narrowing.run(), name="narrowing")
     try:
         sweep = await context.sweep(number, narrowing)
         report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
         narrowing.end()
-        return await narrowed
+        return LookedRound(await narrowed, sweep.in_odom)
     finally:
         # Whatever ended the sweep: a task is not left behind by its owner.
         narrowed.cancel()
         await asyncio.wait((narrowed,))
+
+
+async def _looked_until_sure(
+    context: MissionContext, report: Reporter, narrowing: "Narrowing", looking: LookingUntilSure, number: int
+) -> LookedRound:
+    """Read to all sides until two answers agree."""
+    sweep = await context.look(number, looking.wanted, looking)
+    report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
+    return LookedRound(await narrowing.answer((), final=True), sweep.in_odom)
 
 
 def _headings(context: MissionContext, mission: Localize, here: Odometry) -> tuple[float, ...]:
@@ -157,15 +181,18 @@ class Narrowing:
 
     async def run(self) -> PoseEstimate:
         """Narrow down until the sweep is whole; return the last word."""
-        while True:
-            batch = await self._batches.get()
-            readings = tuple(reading for reading in batch or () if reading.is_measured)
-            narrowed = await self._context.head.ask(Narrow(self._stop, readings, now_ns(), batch is None))
-            estimate = self._told(narrowed)
-            self._taken += len(batch or ())
-            self._show_quarters(estimate)
-            if estimate.final:
-                return estimate
+        while (batch := await self._batches.get()) is not None:
+            await self.answer(batch)
+        return await self.answer((), final=True)
+
+    async def answer(self, batch: Sequence[RangeReading], *, final: bool = False) -> PoseEstimate:
+        """Take more readings; return and publish what all of them say, so far or, of a whole sweep, in the end."""
+        # By count, failed ones among them: after which reading is estimated must not depend on what was measured.
+        readings = tuple(reading for reading in batch if reading.is_measured)
+        estimate = self._told(await self._context.head.ask(Narrow(self._stop, readings, now_ns(), final)))
+        self._taken += len(batch)
+        self._show_quarters(estimate)
+        return estimate
 
     def _show_quarters(self, estimate: PoseEstimate) -> None:
         """Show each quarter of the sweep, and the last when all is said."""
@@ -177,7 +204,7 @@ class Narrowing:
     def _told(self, narrowed: Narrowed) -> PoseEstimate:
         """Learn from an estimate, then tell it, and return it as it was told."""
         estimate, made = narrowed.estimate, narrowed.entry
-        if estimate.final and self._has_base:
+        if self._has_base:
             # Here: who does array work sees nothing of the whereabouts (decision 30).
             estimate = self._weighed(estimate)
             # The journal has what was told, so the entry that came along will not do.
@@ -194,7 +221,7 @@ class Narrowing:
         return estimate
 
     def _weighed(self, estimate: PoseEstimate) -> PoseEstimate:
-        """Return a final estimate as it may be told: who counts wheels knows how far the robot cannot have come."""
+        """Return an estimate as it may be told: who counts wheels knows how far the robot cannot have come."""
         near_m = self._context.settings.judgement.second_look.same_within_m
         return self._context.whereabouts.weighed(estimate, self._in_odom, near_m=near_m)
 

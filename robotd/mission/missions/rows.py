@@ -14,6 +14,7 @@ from robotd.contract.missions import (
     MapStart,
     Measure,
     Mission,
+    Resolve,
     Scan,
     Turn,
 )
@@ -27,6 +28,7 @@ from robotd.mission.missions.exploring import run_exploring
 from robotd.mission.missions.localizing import pose_text, run_localizing
 from robotd.mission.missions.looking_again import looking_again
 from robotd.mission.missions.mapping import run_mapping
+from robotd.mission.missions.resolving import run_resolving
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
@@ -78,10 +80,15 @@ async def _explore(host: Host, context: MissionContext, mission: Explore, report
 
 async def _localize(_: Host, context: MissionContext, mission: Localize, report: Reporter) -> str:
     place = _place(context)
-    estimate = await looking_again(
+    look = await looking_again(
         context, report, lambda: run_localizing(context, place, mission, report, next(context.sweep_numbers))
     )
-    return describe(estimate)
+    return describe(look.estimate)
+
+
+async def _resolve(_: Host, context: MissionContext, mission: Resolve, report: Reporter) -> str:
+    resolved = await run_resolving(context, _place(context), mission, report)
+    return f"{describe(resolved.estimate)}; {resolved}"
 
 
 async def _drive(_: Host, context: MissionContext, mission: DriveTo, report: Reporter) -> str:
@@ -112,6 +119,7 @@ _ROWS = (
     MissionRow(MapStart, _make_map, stops=lambda mission: 1 + len(mission.stops_m)),
     MissionRow(Explore, _explore, stops=lambda mission: mission.stops_max),
     MissionRow(Localize, _localize, needs_base=False, pauses_prediction=True),
+    MissionRow(Resolve, _resolve, pauses_prediction=True),
     MissionRow(DriveTo, _drive),
     MissionRow(DriveStraight, _straight),
     MissionRow(Turn, _turn),

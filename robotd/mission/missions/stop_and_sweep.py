@@ -5,9 +5,10 @@ and the base turns between them; all readings end up in the frame of where the r
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Annotated, Protocol
+from collections.abc import AsyncGenerator, Callable, Sequence
+from contextlib import aclosing
+from dataclasses import dataclass, field, replace
+from typing import Annotated, NamedTuple, Protocol
 
 from robotd.core.angles import wrap_rad
 from robotd.core.bounds import Within, refuse_outside
@@ -33,8 +34,6 @@ FAILED = frozenset(
     }
 )
 """Readings that the rangefinder owes; a miss, and what it cannot see, are answers."""
-_ASCENDING = 0
-"""Number of a sweep that goes counter-clockwise."""
 _LIMIT_MARGIN_RAD = 0.03  # the base turns only roughly as far as it should, and the head makes up for it
 
 
@@ -74,6 +73,38 @@ class SweepListener(Protocol):
         """Take a reading, as it is made."""
 
 
+class Wanted(NamedTuple):
+    """Bearings that are wanted next."""
+
+    part: int
+    """Of which part of the sweep they are."""
+    bearings_rad: tuple[float, ...]
+
+
+Wants = Callable[[tuple[SweepPart, ...]], AsyncGenerator[Wanted, None]]
+"""Is given the parts of a sweep, and wants some bearings after the other; it goes on when those are read."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Taken:
+    """The readings of a sweep so far."""
+
+    start: Odometry
+    listeners: Sequence[SweepListener]
+    readings: list[RangeReading] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        """Tell that it begins."""
+        for listener in self.listeners:
+            listener.begun(self.start.in_odom)
+
+    def add(self, reading: RangeReading) -> None:
+        """Take a reading, and tell of it."""
+        self.readings.append(reading)
+        for listener in self.listeners:
+            listener.read(reading)
+
+
 @dataclass(frozen=True, slots=True)
 class Sweeper:
     """Takes sweeps with one robot."""
@@ -99,23 +130,43 @@ class Sweeper:
         if not (base_turns and self.robot.has_base):
             parts = parts[:1]
         start = await self.hold.through(lambda: standing(self.robot, self.settings.settle_s, self.driving))
-        for listener in listeners:
-            listener.begun(start.in_odom)
-        readings: list[RangeReading] = []
+        taken = _Taken(start, listeners)
         for part in parts:
             here = await self._turn_base(start, part)
-            await self.robot.rangefinder.switch_laser(on=True)
-            # By odometry, not by plan: the base turns only roughly as far as it should.
-            turned_rad = wrap_rad(here.in_odom.heading_rad - start.in_odom.heading_rad)
-            await self._take_up_play(part.bearings_rad[0] - turned_rad, number)
-            for bearing_rad in part.bearings_rad:
-                reading = await self._read_through_holds(bearing_rad - turned_rad, self._lag_rad(number), start, here)
-                readings.append(reading)
-                for listener in listeners:
-                    listener.read(reading)
-                await self._check_enough(readings)
-            await self.robot.rangefinder.switch_laser(on=False)
-        return Sweep(number, start.in_odom, tuple(readings))
+            await self._take(part.bearings_rad, here, taken, clockwise=goes_clockwise(number))
+        return Sweep(number, start.in_odom, tuple(taken.readings))
+
+    async def look(self, number: int, wants: Wants, *listeners: SweepListener) -> Sweep:
+        """Take of sweep ``number`` what is wanted, some bearings at a time, until it wants no more.
+
+        Raises: as :meth:`sweep`.
+        """
+        parts = self._parts(await self.robot.pantilt.limits(), number)
+        parts = parts if self.robot.has_base else parts[:1]
+        start = await self.hold.through(lambda: standing(self.robot, self.settings.settle_s, self.driving))
+        taken, here, current = _Taken(start, listeners), start, 0
+        clockwise = goes_clockwise(number)
+        async with aclosing(wants(parts)) as wanted:
+            async for bearings in wanted:
+                if bearings.part != current:
+                    here, current = await self._turn_base(start, parts[bearings.part]), bearings.part
+                # There and back: a head that does not turn without end would go back all the way for nothing.
+                in_order = sorted(bearings.bearings_rad, reverse=clockwise)
+                await self._take(in_order, here, taken, clockwise=clockwise)
+                clockwise = not clockwise
+        return Sweep(number, start.in_odom, tuple(taken.readings))
+
+    async def _take(self, bearings_rad: Sequence[float], here: Odometry, taken: "_Taken", *, clockwise: bool) -> None:
+        """Read at bearings that follow each other in one sense, from where the base stands now."""
+        await self.robot.rangefinder.switch_laser(on=True)
+        # By odometry, not by plan: the base turns only roughly as far as it should.
+        turned_rad = wrap_rad(here.in_odom.heading_rad - taken.start.in_odom.heading_rad)
+        lag_rad = self._lag_rad(clockwise=clockwise)
+        await self._take_up_play(bearings_rad[0] - turned_rad, lag_rad)
+        for bearing_rad in bearings_rad:
+            taken.add(await self._read_through_holds(bearing_rad - turned_rad, lag_rad, taken.start, here))
+            await self._check_enough(taken.readings)
+        await self.robot.rangefinder.switch_laser(on=False)
 
     async def glance(self, bearings_rad: Sequence[float]) -> tuple[RangeReading, ...]:
         """Take a few readings where the robot stands, bearings ascending; what is beyond the head's reach is left out.
@@ -124,11 +175,11 @@ class Sweeper:
             DeviceError, LinkTimeout, TransportError: as :meth:`sweep`.
         """
         limits = await self.robot.pantilt.limits()
-        lag_rad = self._lag_rad(_ASCENDING)
+        lag_rad = self._lag_rad(clockwise=False)
         seen_rad = [rad for rad in bearings_rad if limits.pan_min_rad <= rad - lag_rad <= limits.pan_max_rad]
         start = await self.hold.through(lambda: standing(self.robot, self.settings.settle_s, self.driving))
         await self.robot.rangefinder.switch_laser(on=True)
-        await self._take_up_play(seen_rad[0], _ASCENDING)
+        await self._take_up_play(seen_rad[0], lag_rad)
         readings = [await self._read_through_holds(rad, lag_rad, start, start) for rad in seen_rad]
         await self.robot.rangefinder.switch_laser(on=False)
         return tuple(readings)
@@ -145,15 +196,15 @@ class Sweeper:
         except ValueError as error:
             raise MissionError(f"the head cannot look round: {error}") from error
 
-    def _lag_rad(self, number: int) -> float:
-        """Return how far the beam points behind what the head reads back, in the sense of this sweep."""
+    def _lag_rad(self, *, clockwise: bool) -> float:
+        """Return how far the beam points behind what the head reads back while it pans in a sense."""
         half_rad = self.mount.backlash_rad / 2.0
-        return half_rad if goes_clockwise(number) else -half_rad
+        return half_rad if clockwise else -half_rad
 
-    async def _take_up_play(self, pan_rad: float, number: int) -> None:
+    async def _take_up_play(self, pan_rad: float, lag_rad: float) -> None:
         """Let the head begin from so far before the first bearing that its gears bear when it gets there."""
         if self.mount.backlash_rad:
-            before_rad = pan_rad + 2.0 * self._lag_rad(number)
+            before_rad = pan_rad + 2.0 * lag_rad
             timeout_s = self.settings.aim_timeout_s
             await self.hold.through(
                 lambda: self.robot.pantilt.aim(before_rad, self.settings.tilt_rad, timeout_s=timeout_s)

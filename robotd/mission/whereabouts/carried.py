@@ -20,6 +20,8 @@ _TIED_RAD = 0.35
 """20 degrees: how far off a heading may be that somebody told."""
 _UNIQUE_M = 1.0
 """A region that reaches farther is no one place, even if it is the only one."""
+_HELD_M = 0.1
+"""Standard deviation of a place that walls hold; along a corridor it is metres."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +66,7 @@ class Carried:
         self._to_here = self._to_here.then(self._travelled.stopped(in_odom))
 
     def weighed(self, estimate: PoseEstimate, believed: Tie | None, in_odom: Pose2, near_m: float) -> PoseEstimate:
-        """Return a final estimate as it may be told.
+        """Return an estimate as it may be told; only from a final one anything is learned.
 
         Args:
             estimate: of the look round that began at ``in_odom``.
@@ -72,8 +74,6 @@ class Carried:
             in_odom: where odometry put the robot.
             near_m: how far apart two poses are that are still one place.
         """
-        if not estimate.final:
-            return estimate
         history, travel = self._history, self._to_here
         if history.is_anywhere and believed is not None:
             # Where odometry has come to already; what it may be off by since the tie is in the sums.
@@ -82,6 +82,8 @@ class Carried:
         is_complete = estimate.complete and estimate.regions_left_out == 0
         looked = history.looked(estimate.regions, travel, self._motion, is_complete=is_complete)
         told = self._told(estimate, history.moved(travel, self._motion), looked)
+        if not estimate.final:
+            return told
         self._history, self._to_here = looked.history, Travel()
         if told.state is PoseState.LOCALIZED:
             # Sure: what was kept beside it is no rival any more.
@@ -111,6 +113,9 @@ class Carried:
         region = left.regions[0]
         reach_m = math.hypot(extent.x_max_m - extent.x_min_m, extent.y_max_m - extent.y_min_m)
         if reach_m > _UNIQUE_M or not extent.holds(region.pose):
+            return False
+        # What lies aside is told of the best place alone, and this may be another: do the walls hold it there?
+        if max(region.covariance[0][0], region.covariance[1][1]) > _HELD_M**2:
             return False
         doubt = left.belief_aside + left.belief_nowhere
         return self._sure.is_proof or doubt <= self._sure.doubt_max * (region.belief + doubt)

@@ -22,6 +22,7 @@ from robotd.contract.missions import (
     MapStart,
     Measure,
     PriorHeading,
+    Resolve,
     Scan,
     Turn,
 )
@@ -36,6 +37,8 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
     main(["localize", "--heading-deg", "90"])
     main(["localize", "--heading-deg", "-270"])
     main(["localize", "--heading-unknown", "--within", "1", "-2", "0.5"])
+    main(["localize", "--adaptive"])
+    main(["resolve", "--within", "1", "-2", "0.5"])
     main(["drive-to", "1.5", "-2", "--legs", "straight"])
     main(["drive", "-0.5"])
     main(["turn", "-90"])
@@ -50,6 +53,8 @@ def test_a_mission_is_asked_for_as_it_was_typed(client: Any) -> None:
         Localize(math.radians(90)),
         Localize(math.radians(90)),
         Localize(heading=PriorHeading.UNKNOWN, within=Area(1.0, -2.0, 0.5)),
+        Localize(adaptive=True),
+        Resolve(within=Area(1.0, -2.0, 0.5)),
         DriveTo(1.5, -2.0, Legs.STRAIGHT),
         DriveStraight(-0.5),
         Turn(math.radians(-90)),

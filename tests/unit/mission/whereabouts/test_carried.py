@@ -83,8 +83,9 @@ def test_several_that_are_left_stay_and_the_rest_is_counted() -> None:
         replace(unsure(region(2.0), region(12.0)), belief_nowhere=0.3),
         replace(unsure(region(2.0), region(12.0)), belief_aside=0.3),
         unsure(region(2.0, half_m=3.0), region(12.0)),
+        unsure(replace(region(2.0), covariance=((4.0, 0.0, 0.0), ROW, ROW)), region(12.0)),
     ],
-    ids=["nowhere", "aside", "no one place"],
+    ids=["nowhere", "aside", "no one place", "along a corridor"],
 )
 def test_one_that_is_left_is_not_sure_where_more_speaks_against_it(left: PoseEstimate) -> None:
     whereabouts = somewhere()
@@ -171,8 +172,11 @@ def test_who_saw_nothing_of_the_way_takes_the_next_fix() -> None:
     assert look(whereabouts, sure(8.0)).state is PoseState.LOCALIZED
 
 
-def test_only_final_words_are_weighed() -> None:
+def test_what_is_said_so_far_is_weighed_and_nothing_is_learned_of_it() -> None:
     whereabouts = somewhere()
     look(whereabouts, sure(0.0))
-    so_far = replace(sure(8.0), final=False)
-    assert whereabouts.weighed(so_far, IDENTITY, near_m=NEAR_M) is so_far
+    so_far = whereabouts.weighed(replace(sure(8.0), final=False), IDENTITY, near_m=NEAR_M)
+    assert (so_far.state, so_far.contradiction) == (PoseState.AMBIGUOUS, Contradiction.CARRIED)
+    between = whereabouts.weighed(replace(unsure(region(0.0), region(8.0)), final=False), IDENTITY, near_m=NEAR_M)
+    assert (between.state, between.by_history) == (PoseState.LOCALIZED, True)
+    assert look(whereabouts, sure(8.0)).contradiction is Contradiction.CARRIED
