@@ -9,9 +9,10 @@ WORLD ?= laboratory
 SEED ?= 1
 PYTEST_ARGS ?=
 ONLY ?=
+ROOT ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help console ui-test demo demo-real demo-busy test bench bench-peers paper conservative exact docs faults interop replay-many liars fuzz safety stops heads heart lag worlds senses truth firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help console ui-test demo demo-real demo-busy test bench bench-peers paper conservative exact docs deb faults interop replay-many liars fuzz safety stops heads heart lag worlds senses truth firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -98,6 +99,13 @@ first-hour: .venv/.dev  ## A new user's first hour, by commands alone: wheel, co
 docs: .venv/.docs  ## The pages as a site, in build/docs: every warning an error, every link followed, nothing foreign
 	@$(BIN)/sphinx-build -q -W --keep-going -b html -c docs/site . build/docs
 	@$(BIN)/python docs/site/check.py build/docs
+
+deb: .venv/.dev  ## A Debian package in build/deb, with lintian's word on it; make deb ROOT=directory (of debootstrap; as root) installs, runs, upgrades, purges it there
+	@$(BIN)/python -m pip wheel -q --disable-pip-version-check --no-deps -w build/deb .
+	@$(BIN)/python systemd/debian/build.py build/deb/robotd-*.whl build/deb
+	@if command -v lintian >/dev/null; then lintian --tag-display-limit 0 build/deb/robotd_*-1.deb; else echo "lintian is not installed: not asked"; fi
+	@if test -n "$(ROOT)"; then $(BIN)/python systemd/debian/build.py --revision 2 build/deb/robotd-*.whl build/deb && \
+		$(BIN)/python systemd/debian/try.py $(ROOT) build/deb/robotd_*-1.deb build/deb/robotd_*-2.deb; fi
 
 interop: .venv/.dev  ## Each form of other programs, written and read, a line each: sizes, counts, how far what comes back is (a minute)
 	@$(BIN)/python -m tests.studies.interop.run

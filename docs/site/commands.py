@@ -7,25 +7,23 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robotd.cli.main import WORDS, verbs_of
+from robotd.cli.main import whole_parser
 
 _WIDTH = 100
 
 
 class Commands(SphinxDirective):
-    """A section for each first word of the command line, a block for each verb."""
+    """A section for each verb."""
 
     def run(self) -> list[nodes.Node]:
-        """Return the sections."""
-        return [self._section(word) for word in WORDS]
+        """Return the sections, the program's own first."""
+        return [self._section(name, parser) for name, parser in whole_parser()]
 
-    def _section(self, word: str) -> nodes.Node:
-        section = nodes.section(ids=[f"robotctl-{word}"])
-        section += nodes.title(text=word)
-        for verb in verbs_of(word):
-            parser = argparse.ArgumentParser(prog=f"robotctl {verb.name}", formatter_class=_formatter)
-            verb.add_to(parser)
-            section += nodes.literal_block(text=parser.format_help(), language="text")
+    def _section(self, name: str, parser: argparse.ArgumentParser) -> nodes.Node:
+        parser.formatter_class = _formatter
+        section = nodes.section(ids=[f"command-{name.replace(' ', '-')}"])
+        section += nodes.title(text=name)
+        section += nodes.literal_block(text=parser.format_help(), language="text")
         return section
 
 

@@ -100,6 +100,18 @@ def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
     return parser
 
 
+def whole_parser() -> Iterator[tuple[str, argparse.ArgumentParser]]:
+    """Yield every verb with its own parser, the program itself first: for manuals and completions, which know all."""
+    yield "robotctl", build_parser(())
+    for word in WORDS:
+        for verb in verbs_of(word):
+            parser = argparse.ArgumentParser(
+                prog=f"robotctl {verb.name}", formatter_class=argparse.RawDescriptionHelpFormatter
+            )
+            verb.add_to(parser)
+            yield verb.name, parser
+
+
 def _add_verbs(
     parser: argparse.ArgumentParser, verbs: "tuple[Verb, ...]", typed: Iterator[str], depth: int = 1
 ) -> None:

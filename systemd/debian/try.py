@@ -1,0 +1,54 @@
+"""Install, run, upgrade and purge a package in a root directory: ``try.py ROOT PACKAGE NEWER``, as root.
+
+ROOT is a minimal Debian of the package's release, as debootstrap makes one; nothing outside of it is touched.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+CONFIG = "etc/robotd/robotd.toml"
+MINE = "# mine\n"
+
+
+def inside(root: Path, *words: str, code: int = 0) -> str:
+    """Run a command in the root directory, which must end with a code, and return what it printed."""
+    done = subprocess.run(
+        ["chroot", str(root), *words], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False
+    )
+    print(f"  {' '.join(words)}: {done.returncode}")
+    if done.returncode != code:
+        sys.exit(done.stdout)
+    return done.stdout
+
+
+def installed(root: Path, package: Path) -> None:
+    """Install a package over what is there."""
+    (root / "tmp" / package.name).write_bytes(package.read_bytes())
+    inside(root, "dpkg", "--force-confold", "-i", f"/tmp/{package.name}")
+
+
+def main() -> None:
+    """Try it; end with what failed."""
+    root, package, newer = map(Path, sys.argv[1:])
+    installed(root, package)
+    print(inside(root, "robotctl", "-V").strip())
+    assert "C kernels" in inside(root, "robotctl", "doctor", code=1)  # there are no boards
+    assert "good" in inside(root, "robotctl", "config", "check")
+    assert "robotd" in inside(root, "getent", "passwd", "robotd")
+    config = root / CONFIG
+    config.write_text(MINE + config.read_text())
+    installed(root, newer)
+    assert config.read_text().startswith(MINE), "an upgrade must keep the owner's configuration"
+    kept = root / "var/lib/robotd/maps/office"
+    kept.mkdir(parents=True, exist_ok=True)
+    inside(root, "dpkg", "--purge", "robotd")
+    assert kept.is_dir(), "maps are not the package's"
+    kept.rmdir()
+    left = [path for name in ("usr/lib/robotd", CONFIG, "usr/bin/robotctl") if (path := root / name).exists()]
+    assert not left, f"left behind: {left}"
+    print("installed, run, upgraded and purged; the configuration and the maps were kept")
+
+
+if __name__ == "__main__":
+    main()
