@@ -1,6 +1,7 @@
 """The check of the site finds what it is there for."""
 
 import importlib.util
+import re
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -25,3 +26,10 @@ def test_lost_links_and_foreign_requests_are_found(tmp_path: Path) -> None:
         "b.html: gone.png leads nowhere",
         "s.css: asks others for //example.org/font.css",
     ]
+
+
+def test_every_page_is_in_the_index_of_the_site() -> None:
+    docs = ROOT / "docs"
+    entries = [line for line in (docs / "index.md").read_text().splitlines() if re.fullmatch(r"[\w./*-]+", line)]
+    listed = {page for entry in entries for page in docs.glob(f"{entry}.md") if ".." not in entry}
+    assert {page for page in docs.rglob("*.md") if page.name != "index.md"} - listed == set()
