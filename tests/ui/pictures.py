@@ -97,10 +97,10 @@ async def _map_the_room(page: Any) -> None:
 async def _show_a_way(page: Any) -> None:
     await page.get_by_role("button", name="Go here").click()
     canvas = page.locator("canvas")
-    box = await canvas.bounding_box()
     await page.keyboard.press("1")
     await page.keyboard.press("6")
-    await canvas.click(position={"x": box["width"] * 0.42, "y": box["height"] * 0.75})
+    place = await page.evaluate("robotd.canvas.pixel({x: 3.5, y: 0.5})")
+    await canvas.click(position={"x": place["px"], "y": place["py"]})
     await page.get_by_role("button", name="Go", exact=True).wait_for(timeout=30_000)
     await page.wait_for_timeout(1000)
     await shot(page, ALL / "way-desk-dark.png")

@@ -53,6 +53,11 @@ class FanOut:
         self._listeners.discard(listener)
         self.show_rank(listener, show=False)
 
+    @property
+    def wants_rank(self) -> bool:
+        """Whether anybody looks at the heat map."""
+        return bool(self._see_rank)
+
     def show_rank(self, listener: Listener, *, show: bool) -> None:
         """Tell somebody of the heat map, or no more: the daemon makes it only while somebody looks."""
         (self._see_rank.add if show else self._see_rank.discard)(listener)

@@ -10,6 +10,7 @@ from prometheus_client.openmetrics.parser import text_string_to_metric_families 
 from prometheus_client.parser import text_string_to_metric_families
 from yarl import URL
 
+from robotd.contract.events import RankMap
 from robotd.core.errors import ConfigError
 from robotd.gateway.access.visitor_limits import WRONG_TOKENS
 from robotd.gateway.composed import gateway
@@ -297,3 +298,20 @@ async def test_metrics_parse_have_no_free_text_and_need_a_token(opening: Opening
     frames = next(sample for sample in samples if sample.name == "robotd_line_frames_total")
     assert (frames.labels, frames.value) == ({"line": "drive"}, 7.0)
     assert [one.value for one in found["robotd_gateway_stops"].samples if one.labels == {"confirmed": "yes"}] == [1.0]
+
+
+async def test_the_heat_map_is_told_to_who_looks_at_it_and_asked_for_only_then(opening: Opening) -> None:
+    heat = RankMap(1, "m", 0, 3, 300, 300, 1, 0.05, 0.0, 0.0, 2, 2, b"zlib")
+    async with opening() as rig, rig.browser() as session, page_of(session) as page, page_of(session) as other:
+        assert not rig.house.services.fan.wants_rank
+        await page.socket.send_json({"type": "look", "rank": True})
+        await until(lambda: rig.house.services.fan.wants_rank)
+
+        def is_told() -> bool:
+            rig.control.events.publish(heat)
+            return any(frame.startswith(b"\x01rank\0") for frame in page.frames)
+
+        await until(is_told)
+        assert not any(frame.startswith(b"\x01rank\0") for frame in other.frames)
+        await page.socket.send_json({"type": "look", "rank": False})
+        await until(lambda: not rig.house.services.fan.wants_rank)
