@@ -22,7 +22,7 @@ class LocalizationSettings:
 
     range_error_m: Annotated[float, Within(0.0, 1.0, "m")] = 0.075
     """The paper's eps: how far an obstacle on the map may lie from the head of a reading."""
-    error_radius: ErrorRadius = ErrorRadius.CONSTANT
+    error_radius: ErrorRadius = ErrorRadius.BY_RANGE
     """Whether eps is the same for all readings, as in the paper (``constant``), or grows with what an angle makes of a
     range, half a heading step and ``bearing_error_rad``, and is no less than cells round away (``by_range``)."""
     bearing_error_rad: Annotated[float, Within(0.0, 0.5, "rad")] = 0.004

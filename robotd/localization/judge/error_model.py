@@ -25,9 +25,9 @@ class ErrorModel:
     map_sharpness_sigma: Annotated[float, Within(0.0, 10.0)] = 0.11
     """How much likelier a place may seem only because the map happens to show it more sharply: standard deviation of
     the logarithm, for each independent reading; so it was between simulated rooms that are alike."""
-    mapped_walls_go_on: Annotated[float, Within(0.0, 0.99, "of 1")] = 0.0
-    """Chance that the wall of the last two readings goes straight on to the next where the map has a wall; in any
-    building 0.6."""
+    mapped_walls_go_on: Annotated[float, Within(0.0, 0.99, "of 1")] = 0.6
+    """Chance that the wall of the last two readings goes straight on to the next where the map has a wall, as in
+    any building."""
     removed_share: Annotated[float, Within(1e-6, 0.99, "of 1")] = 0.1
     """Chance that an obstacle of which the map is sure stands there no more, or lets a beam pass."""
     unmapped_per_m: Annotated[float, Within(1e-6, 10.0, "1/m")] = 0.02

@@ -110,11 +110,12 @@ def second_look(
     # Before any reading, each place has an equal share of the belief that the robot is on the map at all.
     to_beat += math.log(_places(likelihood, settings) * settings.off_map_share / (1.0 - settings.off_map_share))
     # Belief alone was 0.9999 sure of the wrong one of two rooms that are alike (decision 16).
-    contrast = _contrast(hill, found)
+    elsewhere, beside = _contrasts(hill, found)
     on_walls = share_on_walls(likelihood, readings, found[0], settings.on_wall_m)
     least = settings.contrast_min if on_walls >= settings.on_walls_min else settings.contrast_off_walls_min
-    weighed = _weigh(found, scores - to_beat, float(aside.max()) - to_beat, (contrast, least), settings)
-    return replace(weighed, ends=ends_at(hill, found[0]))
+    stands_out = elsewhere >= least and beside >= settings.contrast_beside_min
+    weighed = _weigh(found, scores - to_beat, float(aside.max()) - to_beat, settings, stands_out=stands_out)
+    return replace(weighed, contrast=elsewhere, ends=ends_at(hill, found[0]))
 
 
 def _glance(
@@ -162,21 +163,21 @@ def _places(likelihood: Likelihood, settings: SecondLookSettings) -> float:
     return max(1.0, vacant_m2 / settings.same_within_m**2 * math.tau / settings.same_within_rad)
 
 
-def _contrast(hill: Hill, poses: NDArray[np.float64]) -> float:
-    """Return the least contrast of the first of poses ``float64[n, 3]`` with those that are seen on other walls.
+def _contrasts(hill: Hill, poses: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the least contrast of the first of poses ``float64[n, 3]`` with those elsewhere, and those beside it.
 
     Vuong's test for which of two models is nearer to the truth (Econometrica 57, 1989), the models being two places,
     and its standard error widened by what all readings have in common: how sharply the map shows a place.
-    A pose close by sees the same walls: what the map has wrong of them is as wrong for both, and belief is enough.
+    A pose beside it sees the same walls: what the map has wrong of them is as wrong for both, and widens nothing.
     """
-    elsewhere = poses[~near(poses, poses[0], _ELSEWHERE_M, _ELSEWHERE_RAD)]
-    logs = hill.likelihood.logs(hill.sight, np.concatenate((poses[:1], elsewhere))) * hill.weights
+    logs = hill.likelihood.logs(hill.sight, poses) * hill.weights
     said = logs[0] - logs[1:]
+    is_beside = near(poses[1:], poses[0], _ELSEWHERE_M, _ELSEWHERE_RAD)
     # A miss ends on no wall: there is nothing that the map could show more sharply in one place.
     in_common = hill.likelihood.model.map_sharpness_sigma * float(hill.weights[hill.sight.is_hit].sum())
-    errors = np.sqrt((said * said).sum(axis=1) + in_common**2)
+    errors = np.sqrt((said * said).sum(axis=1) + np.where(is_beside, 0.0, in_common**2))
     contrasts = np.divide(said.sum(axis=1), errors, out=np.zeros(len(said)), where=errors > 0.0)
-    return float(contrasts.min(initial=math.inf))
+    return float(contrasts[~is_beside].min(initial=math.inf)), float(contrasts[is_beside].min(initial=math.inf))
 
 
 def share_on_walls(likelihood: Likelihood, readings: Readings, pose: NDArray[np.float64], on_wall_m: float) -> float:
@@ -206,19 +207,19 @@ def _weigh(
     poses: NDArray[np.float64],
     evidence: NDArray[np.float64],
     aside: float,
-    contrasts: tuple[float, float],
     settings: SecondLookSettings,
+    *,
+    stands_out: bool,
 ) -> SecondLook:
     """Share the belief among the places, what lies beside the best, and nowhere, whose evidence is 0.
 
-    ``contrasts`` are what the best place has, and the least that it must have.
+    ``stands_out`` is whether the best place has all the contrast that it must have.
     """
-    contrast, least = contrasts
     # Less the greatest: an exponent above 700 overflows, and the shares stay the same.
     powers = np.exp(np.append(evidence, (aside, 0.0)) - max(float(evidence[0]), 0.0))
     shares = powers / powers.sum()
-    is_sure = float(shares[0]) >= 1.0 - settings.doubt_max and contrast >= least
+    is_sure = float(shares[0]) >= 1.0 - settings.doubt_max and stands_out
     nowhere = float(shares[-1])
     on_map = PoseState.LOCALIZED if is_sure else PoseState.AMBIGUOUS
     state = PoseState.LOST if nowhere > 0.5 else on_map
-    return SecondLook(state, poses, evidence, shares[:-2], float(shares[-2]), nowhere, contrast)
+    return SecondLook(state, poses, evidence, shares[:-2], float(shares[-2]), nowhere, math.inf)

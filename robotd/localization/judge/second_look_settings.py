@@ -17,9 +17,9 @@ class SecondLookSettings:
     """Of more readings only this many are looked at, those that end farthest apart."""
     glance_readings_max: Annotated[int, Within(1, 10_000)] = 40
     """The same for the first glance, at all places of the shortlist."""
-    starts_max: Annotated[int, Within(1, 100_000)] = 200
+    starts_max: Annotated[int, Within(1, 100_000)] = 2000
     """Places at which the first glance is taken, those first that explain most readings."""
-    places_max: Annotated[int, Within(1, 10_000)] = 16
+    places_max: Annotated[int, Within(1, 10_000)] = 64
     """Places that are looked at closely, those first that looked best at a glance."""
     same_within_m: Annotated[float, Within(0.001, 5.0, "m")] = 0.3
     """Poses nearer than this, and with headings nearer than ``same_within_rad``, are one place."""
@@ -32,6 +32,9 @@ class SecondLookSettings:
     contrast_min: Annotated[float, Within(0.0, 100.0)] = 1.28
     """What the readings say for the best place, rather than any other, must be this many standard errors above 0: by
     chance the wrong one of two places that are alike in truth reaches that once in ten times."""
+    contrast_beside_min: Annotated[float, Within(0.0, 100.0)] = 1.28
+    """The same for places that see the same walls, a step aside or a few degrees turned: along a corridor, or on coarse
+    cells, belief alone chose between them."""
     on_walls_min: Annotated[float, Within(0.0, 1.0, "of 1")] = 0.9
     """Where fewer of the hits end on walls, the robot may look at ground that nobody has mapped, which resembles some
     wall of any building; then ``contrast_off_walls_min`` counts."""

@@ -105,7 +105,7 @@ def test_however_coarse_the_cells_the_place_beats_being_nowhere(cell_m: float) -
     likelihood = Likelihood.of(spec, cells, ErrorModel(mapped_walls_go_on=0.6))
     sight, at = likelihood.sight(Readings(readings)), np.zeros((1, 3))
     assert (likelihood.logs(sight, at)[0] - likelihood.elsewhere_logs(sight)).sum() > 0.0
-    cells_alone = likelihood.with_model(ErrorModel())
+    cells_alone = likelihood.with_model(ErrorModel(mapped_walls_go_on=0.0))
     gained = likelihood.logs(sight, at)[0] - cells_alone.logs(sight, at)[0]
     assert gained.sum() > 0.0
 

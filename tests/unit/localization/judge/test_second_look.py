@@ -21,7 +21,7 @@ from robotd.localization.judge.climbing import Hill
 from robotd.localization.judge.ends import ends_at
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
-from robotd.localization.judge.second_look import SecondLook, _contrast, second_look, share_on_walls
+from robotd.localization.judge.second_look import SecondLook, _contrasts, second_look, share_on_walls
 from robotd.localization.judge.second_look_settings import SecondLookSettings
 from robotd.localization.judge.shortlist import near
 from robotd.sim.physics.walls import WallSegments, ray_cast
@@ -237,7 +237,9 @@ class OfHits:
 def contrast_of(*rows: list[float], sharpness: float = 0.0, misses: int = 0) -> float:
     poses = np.array([[APART_M * number, 0.0, 0.0] for number in range(len(rows))])
     sight = OfHits(np.arange(len(rows[0])) < len(rows[0]) - misses)
-    return _contrast(Hill(Said(*rows, sharpness=sharpness), sight, np.ones(len(rows[0]))), poses)  # type: ignore[arg-type]  # stand-ins
+    elsewhere, beside = _contrasts(Hill(Said(*rows, sharpness=sharpness), sight, np.ones(len(rows[0]))), poses)  # type: ignore[arg-type]  # stand-ins
+    assert beside == math.inf
+    return elsewhere
 
 
 def test_no_single_reading_decides_however_loud_it_is() -> None:
@@ -272,10 +274,14 @@ def test_misses_have_no_such_luck_as_there_is_no_wall_to_be_shown_sharply() -> N
     assert contrast_of(told, nothing, misses=70) == contrast_of(told, nothing)
 
 
-def test_what_lies_close_by_is_left_to_belief_alone() -> None:
-    """It is seen on the same walls, so no luck of the map tells the two apart."""
-    hill = Hill(Said([0.0] * 4), OfHits(np.ones(4, np.bool_)), np.ones(4))  # type: ignore[arg-type]  # stand-ins
-    assert _contrast(hill, np.array([[1.0, 2.0, 0.0], [1.4, 2.0, 0.1]])) == math.inf
+def test_what_lies_beside_must_stand_out_too_but_no_luck_of_the_map_is_held_against_it() -> None:
+    """It is seen on the same walls, so the map shows both as sharply: a step along a corridor, on belief alone."""
+    said = Said([0.1] * 100, [0.0] * 100, sharpness=0.1)
+    hill = Hill(said, OfHits(np.ones(100, np.bool_)), np.ones(100))  # type: ignore[arg-type]  # stand-ins
+    poses = np.array([[APART_M - 0.1, 2.0, 0.0], [APART_M + 0.4, 2.0, 0.1]])
+    elsewhere, beside = _contrasts(hill, poses)
+    assert elsewhere == math.inf
+    assert beside == pytest.approx(10.0)
 
 
 def test_one_of_two_rooms_that_exist_twice_is_seldom_taken_for_sure() -> None:
