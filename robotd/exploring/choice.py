@@ -72,8 +72,6 @@ class Choice:
 
     candidates: tuple[Candidate, ...]
     """Those that the next stop was chosen from, the best first; it is the first, unless this is the end."""
-    overlap_min: float
-    """What they had to overlap with the map."""
     seen_m2: float
     """Free ground that was seen."""
     ending: WhyEnded | None
@@ -163,14 +161,14 @@ def _chosen(known: _Known, question: ChoiceQuestion, settings: ExploringSettings
     fresh = (views.opening_m > 0.0) & _apart(places_m, (*question.stops_m, *question.tried.in_vain_m), settings.apart_m)
     left = _left(known, question, settings)
     if not fresh.any():
-        return Choice((), 0.0, known.seen_m2, WhyEnded.UNREACHABLE if left else WhyEnded.COMPLETE, left)
+        return Choice((), known.seen_m2, WhyEnded.UNREACHABLE if left else WhyEnded.COMPLETE, left)
     # Or the most that there is.
     overlap_min = min(settings.overlap_min, float(views.overlap[fresh].max()))
     which = np.flatnonzero(fresh & (views.overlap >= overlap_min))
     ways_m = known.ways[cells[which, 0], cells[which, 1]] * known.spec.resolution_m
     best = _ranked(places_m[which], views[which], ways_m, question)[: settings.shown]
     is_enough = views.area_m2[fresh].max() < settings.good_enough * known.seen_m2
-    return Choice(best, overlap_min, known.seen_m2, WhyEnded.GOOD_ENOUGH if is_enough else None, left)
+    return Choice(best, known.seen_m2, WhyEnded.GOOD_ENOUGH if is_enough else None, left)
 
 
 def _ranked(

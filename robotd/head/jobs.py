@@ -328,8 +328,6 @@ class Chosen(msgspec.Struct, frozen=True):
     ending: str | None
     """Why there is nowhere; None unless ``goal_m`` is None."""
     candidates: tuple[CandidateStop, ...]
-    overlap_min: float
-    """What they had to overlap with the map to be chosen from."""
     seen_m2: float
     left: tuple[LeftOpen, ...]
 

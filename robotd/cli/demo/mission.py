@@ -16,7 +16,7 @@ from robotd.client import Client
 from robotd.client.mission_run import MissionEvent, final_estimate
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepDone
-from robotd.contract.missions import Mission
+from robotd.contract.missions import Explore, Mission
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import MissionError
 from robotd.core.pose import Pose2
@@ -61,7 +61,9 @@ class _Narrator:
     def show(self, event: MissionEvent) -> None:
         """Tell what is worth a line."""
         if isinstance(event, MissionProgress) and event.phase is MissionPhase.SWEEPING and event.stops > 1:
-            self._console.print(f"  stop {event.stop + 1} of {event.stops}: sweeping")
+            # Who explores does not know how many it will be.
+            of = "" if event.kind == Explore.kind else f" of {event.stops}"
+            self._console.print(f"  stop {event.stop + 1}{of}: sweeping")
         elif isinstance(event, MissionProgress) and event.message:
             self._console.print(f"  {event.message}")
         elif isinstance(event, Status):

@@ -1,4 +1,4 @@
-"""A simulated room: make a map stop by stop, save it, then drive about and be found in it."""
+"""A simulated room: explore it, save the map, drive about and be found on it, and find itself when nothing is known."""
 
 import argparse
 import shutil
@@ -19,7 +19,7 @@ from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import bold, command_line
 from robotd.config import Config
 from robotd.contract.events import MapChanged
-from robotd.contract.missions import DriveTo, Localize, MapStart
+from robotd.contract.missions import DriveTo, Explore, Localize, MapStart, PriorHeading
 from robotd.core.errors import RobotdError
 from robotd.core.reading import Sweep
 from robotd.grid.occupancy import OccupancyGrid
@@ -36,7 +36,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("world", nargs="?", default="laboratory", help="built-in world or TOML file")
     parser.add_argument("--seed", type=whole(0), default=1, metavar="N", help="of the simulated robot (default: 1)")
     parser.add_argument("--localizations", type=whole(1), default=4, metavar="N", help="how many (default: 4)")
-    parser.add_argument("--stops", type=whole(0), default=None, metavar="N", help="map from the first N stops only")
+    parser.add_argument(
+        "--stops",
+        type=whole(0),
+        default=None,
+        metavar="N",
+        help="map the first N good places to stop, in place of exploring",
+    )
     output_argument(parser, "--out", DEMO, "for the results (default: demo)", default="demo")
 
 
@@ -55,16 +61,19 @@ def run(arguments: argparse.Namespace) -> int:
         client = parts.client
         recording = client.record_start("recording.mcap")
         client.arm()
-        console.print("Making the map, stop by stop:")
-        stops_m = world.stops_m[: arguments.stops]
-        sweeps, _ = follow(console, client, MapStart.of(world.name, stops_m, world.start_pose))
+        sweeps, stops_m = _mapped(parts, console, world, arguments.stops)
         print_readings(console, sweeps)
         entry = client.map_save()
         console.print(f"  map saved: {directory / 'maps' / entry.name / str(entry.version)} ({entry.digest[:12]})")
         trials = [_localize_at(parts, console, probe_m) for probe_m in world.probes_m[: arguments.localizations]]
         the_map = client.map_show()
+        if arguments.stops is None:
+            trials.append(_carried_off(parts, console, world.name))
         client.record_stop()
-    console.print(f"Found in it, {len(trials)} times (position unknown in the whole map, heading from odometry):")
+    known = (
+        "heading from odometry" if arguments.stops is not None else "heading from odometry, the last time unknown, too"
+    )
+    console.print(f"Found in it, {len(trials)} times (position unknown in the whole map, {known}):")
     print_trials(console, trials)
     _draw(directory, world, stops_m, the_map, trials[-1])
     console.print(f"  every byte recorded: {recording}; try: {command_line('robotctl', 'replay', recording)}")
@@ -99,6 +108,30 @@ def _keep_unfinished(directory: Path) -> None:
 def brisk() -> DrivingSettings:
     """Return how to drive when somebody is watching."""
     return DrivingSettings(speed_mps=0.6, turn_radps=1.5, deceleration_mps2=0.4, turn_deceleration_radps2=2.0)
+
+
+def _mapped(
+    parts: Rig, console: Console, world: World, stops: int | None
+) -> tuple[tuple[Sweep, ...], tuple[tuple[float, float], ...]]:
+    """Make the map; return the sweeps, and where the robot stopped after the start."""
+    if stops is not None:
+        console.print("Making the map, stop by stop:")
+        stops_m = world.stops_m[:stops]
+        sweeps, _ = follow(console, parts.client, MapStart.of(world.name, stops_m, world.start_pose))
+        return sweeps, stops_m
+    console.print("Exploring: after each look round it goes where the most is expected to be seen.")
+    sweeps, _ = follow(console, parts.client, Explore.of(world.name, world.start_pose))
+    truths = [true_pose(parts.truth_file, sweep.readings[0].time_ns) for sweep in sweeps[1:]]
+    return sweeps, tuple((truth.x_m, truth.y_m) for truth in truths)
+
+
+def _carried_off(parts: Rig, console: Console, name: str) -> Trial:
+    """Load the map anew, as if the robot had been carried there: odometry says nothing of where it is on it."""
+    console.print("Carried off: the map is loaded anew, neither place nor heading is known, and it looks round:")
+    parts.client.map_load(name)
+    (sweep,), estimate = follow(console, parts.client, Localize(heading=PriorHeading.UNKNOWN))
+    assert estimate is not None  # a localization that is done has one
+    return Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)
 
 
 def _localize_at(parts: Rig, console: Console, probe_m: tuple[float, float]) -> Trial:

@@ -55,7 +55,7 @@ def _taken_up(arguments: argparse.Namespace) -> int:
             if not kept:
                 raise MapError(f"no map {name} is in use or in the store, so none can be gone on with")
             # The newest, saved or not: it is what the last stop left.
-            entry = client.map_load(name, max(kept))
+            entry = client.map_load(name, max(kept), None)
             err().print(f"loaded {name} version {entry.version}, made of {entry.stops} stops")
         with client.subscribe(Topic.POSE) as events:
             pose = events.next(_PATIENCE_S)

@@ -188,6 +188,14 @@ class FakeClient:
 def client(monkeypatch: pytest.MonkeyPatch) -> FakeClient:
     """Every verb meets this client in place of a daemon."""
     fake = FakeClient()
-    for user in ("verbs.status_and_arming", "verbs.maps", "motion", "verbs.recordings", "verbs.where", "live"):
+    for user in (
+        "verbs.status_and_arming",
+        "verbs.maps",
+        "motion",
+        "verbs.recordings",
+        "verbs.where",
+        "verbs.explore",
+        "live",
+    ):
         monkeypatch.setattr(f"robotd.cli.{user}.connect", lambda arguments: fake)
     return fake
