@@ -37,10 +37,10 @@ export function drawOverlay(context, overlay) {
 export async function rankOverlay(fields) {
   const { rows, cols, resolution_m, origin_x_m, origin_y_m } = fields;
   const levels = await unpacked(fields.levels_zlib, rows * cols);
-  // From half of the readings on: below that nearly every place is alike.
+  // From a quarter of the readings on: below that nearly every place is alike.
   const picture = pictured(rows, cols, (cell) => {
-    const share = Math.max(0, ((levels[cell] ?? 0) / 255 - 0.4) / 0.6);
-    return ((Math.round(230 * share ** 1.5) << 24) | (0x54 << 16) | (0xb4 << 8) | 0xff) >>> 0;
+    const share = Math.max(0, ((levels[cell] ?? 0) / 255 - 0.25) / 0.75);
+    return ((Math.round(235 * share ** 1.2) << 24) | (0x54 << 16) | (0xb4 << 8) | 0xff) >>> 0;
   });
   return { picture, rows, cols, resolution_m, origin_x_m, origin_y_m };
 }
@@ -50,22 +50,26 @@ export async function rankOverlay(fields) {
  * @param {Uint8Array} cells @param {number} rows @param {number} cols
  */
 export function distances(cells, rows, cols) {
-  const [straight, aslant, knight] = [5, 7, 11];
+  const straight = 5;
+  const downs = [0, -1, -1, -1, -1, -1, -2, -2], rights = [-1, 0, -1, 1, -2, 2, -1, 1], lengths = [straight, straight, 7, 7, 11, 11, 11, 11];
   const far = new Uint16Array(rows * cols).fill(65000);
   for (let cell = 0; cell < far.length; cell++) if ((cells[cell] ?? WALL) >= WALL) far[cell] = 0;
-  const before = /** @type {const} */ ([[0, -1, straight], [-1, 0, straight], [-1, -1, aslant], [-1, 1, aslant], [-1, -2, knight], [-1, 2, knight], [-2, -1, knight], [-2, 1, knight]]);
-  for (const sign of [1, -1]) {
-    for (let n = 0; n < far.length; n++) {
-      const cell = sign === 1 ? n : far.length - 1 - n;
-      const row = Math.floor(cell / cols), col = cell % cols;
-      let least = far[cell] ?? 0;
-      if (least === 0) continue;
-      for (const [down, right, length] of before) {
-        const r = row + sign * down, c = col + sign * right;
-        if (r < 0 || c < 0 || r >= rows || c >= cols) continue;
-        least = Math.min(least, (far[r * cols + c] ?? 0) + length);
+  // Plain loops: this is done on the thread that answers for the page.
+  for (let sign = 1; sign >= -1; sign -= 2) {
+    for (let n = 0; n < rows; n++) {
+      const row = sign === 1 ? n : rows - 1 - n;
+      for (let m = 0; m < cols; m++) {
+        const col = sign === 1 ? m : cols - 1 - m, cell = row * cols + col;
+        let least = /** @type {number} */ (far[cell]);
+        if (least === 0) continue;
+        for (let step = 0; step < 8; step++) {
+          const r = row + sign * /** @type {number} */ (downs[step]), c = col + sign * /** @type {number} */ (rights[step]);
+          if (r < 0 || c < 0 || r >= rows || c >= cols) continue;
+          const there = /** @type {number} */ (far[r * cols + c]) + /** @type {number} */ (lengths[step]);
+          if (there < least) least = there;
+        }
+        far[cell] = least;
       }
-      far[cell] = least;
     }
   }
   return Float32Array.from(far, (one) => one / straight);

@@ -7,6 +7,7 @@ import { readFrame } from './decode.js';
 const ANSWER_WITHIN_MS = 65_000;
 /** A socket on which nothing comes for so long is dead, whatever it says of itself. */
 const DEAD_MS = 3000;
+const LOOK_MS = 500;
 
 /** What went wrong, in the gateway's words. */
 export class Refused extends Error {
@@ -26,6 +27,7 @@ export class Link {
   #failed = 0;
   #timer = 0;
   #heardAt = 0;
+  #lookedAt = 0;
 
   /**
    * @param {{ frame: (frame: import('../types').Frame) => void, text: (said: any) => void,
@@ -35,7 +37,7 @@ export class Link {
     this.to = to;
     addEventListener('online', () => this.#now());
     document.addEventListener('visibilitychange', () => document.hidden || this.#now());
-    setInterval(() => this.#look(), 500);
+    setInterval(() => this.#look(), LOOK_MS);
   }
 
   get isOpen() {
@@ -122,8 +124,11 @@ export class Link {
   }
 
   #look() {
-    const socket = this.#socket;
-    if (socket !== null && performance.now() - this.#heardAt > DEAD_MS) {
+    const socket = this.#socket, now = performance.now();
+    // If this page itself stood still, what came meanwhile has not been taken yet: the socket is not to blame.
+    const stoodStill = now - this.#lookedAt > 2 * LOOK_MS;
+    this.#lookedAt = now;
+    if (socket !== null && !stoodStill && now - this.#heardAt > DEAD_MS) {
       socket.close();
       this.#lost(socket, 1006);
     }
