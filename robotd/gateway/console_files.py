@@ -31,7 +31,7 @@ class ConsoleFiles:
         self._files = dict(_found(root, "")) if root.is_dir() else {}
         content = b"".join(file.data for _, file in sorted(self._files.items()))
         self.version = hashlib.sha256(content).hexdigest()[:12]
-        """Changes with every build; a page that is older offers to load itself anew."""
+        """Changes with every build; a page that is older offers to load itself again."""
 
     @property
     def are_built(self) -> bool:

@@ -27,7 +27,7 @@ class ListenSettings:
     tls_certificate: str = ""
     tls_key: str = ""
     plaintext: str = ""
-    """``i understand``: that whoever hears the network hears the tokens."""
+    """``i understand``: that who hears the network hears the tokens."""
 
     def __post_init__(self) -> None:
         """Refuse to be heard by everybody by mistake."""

@@ -78,7 +78,7 @@ class Crowd:
 
 
 class Rate:
-    """At most so many a second, and as many at once."""
+    """At most this many a second, and as many at once."""
 
     def __init__(self, per_s: float, now_s: float) -> None:
         self._per_s = per_s

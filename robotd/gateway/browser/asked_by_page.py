@@ -52,7 +52,7 @@ class PageCommands:
         """Return the answer to a request, as plain data.
 
         Raises:
-            ServerError: it was refused, or nobody knows whether it was carried out.
+            ServerError: it was refused, or it is not known whether it was carried out.
         """
         if isinstance(request, MissionRequest):
             raise ServerError(

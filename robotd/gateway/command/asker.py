@@ -29,7 +29,7 @@ UNKNOWN = "outcome_unknown"
 
 
 class Asks(Protocol):
-    """Whoever sends a request once."""
+    """Anyone who sends a request once."""
 
     async def ask(self, request: Request[R], within_s: float | None = None, who: str | None = None) -> R:
         """Send a request and return its answer; :meth:`Asker.ask` says more."""
@@ -64,7 +64,7 @@ class Asker:
 
         Raises:
             ServerError: the daemon refused; or nobody is there and nothing was sent (``no_daemon``); or no answer came,
-                and nobody knows whether it was carried out (``outcome_unknown``).
+                and it is not known whether it was carried out (``outcome_unknown``).
             RemoteProtocolError: the answer is not what the request promises.
         """
         exchange = self._exchanges.begin(request, _now_s(), who)

@@ -54,7 +54,7 @@ class Missions:
         """StartMission a mission for a browser, and keep its lease.
 
         Raises:
-            ServerError: another one drives, or the daemon refused, or nobody knows what came of it.
+            ServerError: another one drives, or the daemon refused, or it is not known what came of it.
         """
         self._arbiter.start(driver)
         try:

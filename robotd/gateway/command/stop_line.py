@@ -46,7 +46,7 @@ class StopLine:
         return await asyncio.shield(self._under_way[-1])
 
     async def end(self) -> None:
-        """Wait for the stops that are under way: they go on though whoever pressed is gone."""
+        """Wait for the stops that are under way: they go on though who pressed is gone."""
         await asyncio.gather(*self._under_way, return_exceptions=True)
 
     async def _until_confirmed(self, reason: str) -> float:

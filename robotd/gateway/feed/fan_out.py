@@ -21,7 +21,7 @@ log = logging.getLogger(__name__)
 
 
 class Listener(Protocol):
-    """Whoever is told: a browser's connection, for one."""
+    """Anyone who is told: a browser's connection, for one."""
 
     def hear(self, heard: HeardFrame) -> None:
         """Take a message; it must not wait."""

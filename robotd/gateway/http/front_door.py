@@ -141,7 +141,7 @@ class FrontDoor:
         return person
 
     def _who_may_stop(self, request: web.Request) -> Person:
-        """Return who stops: whoever signed in within a day; neither host, origin, role nor limit is asked."""
+        """Return who stops: anyone who signed in within a day; neither host, origin, role nor limit is asked."""
         whence = address_of(request, self._house.settings.listen.trusted_proxies)
         secret = request.cookies.get(cookie_name(self._house, request), "")
         session = self._house.sessions.may_stop(secret, unix_s())

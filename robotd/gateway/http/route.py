@@ -17,7 +17,7 @@ class Needs(enum.Enum):
     NOBODY = "nobody"
     """Everybody, signed in or not."""
     STOP = "stop"
-    """Whoever signed in within a day."""
+    """Anyone who signed in within a day."""
     VIEWER = "viewer"
     OPERATOR = "operator"
     ADMIN = "admin"
