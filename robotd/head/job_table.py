@@ -111,7 +111,7 @@ def _insert(desk: Desk, job: Insert) -> Inserted:
 def _place_stop(desk: Desk, job: PlaceStop) -> StopLaid:
     before = desk.map(job.map)
     localization = desk.settings.localization
-    made = with_stop(before, job.sweep, job.travel, job.map_from_robot, localization, anew=job.anew)
+    made = with_stop(before, job.sweep, job.travel, job.map_from_robot, localization, found_again=job.found_again)
     desk.hold(MapRef(job.map.number, job.map.generation + 1), made.held)
     return stop_laid(made, job.time_ns, job.map_id)
 

@@ -174,10 +174,10 @@ class PlaceStop(Job[StopLaid], frozen=True):
     travel: Travel
     """Since the stop before."""
     map_from_robot: Pose2
-    """Where the stop is, if it is the first or ``anew``; of no account to others."""
+    """Where the stop is, if it is the first or ``found_again``; of no account to others."""
     time_ns: int
     """When, as events tell it."""
-    anew: bool = False
+    found_again: bool = False
     """Whether the robot was found there by other means than its wheels, on a map that is gone on with."""
 
     @property

@@ -35,7 +35,13 @@ class MapWithStop:
 
 
 def with_stop(
-    held: Held, sweep: Sweep, travel: Travel, at: Pose2, localization: LocalizationSettings, *, anew: bool = False
+    held: Held,
+    sweep: Sweep,
+    travel: Travel,
+    at: Pose2,
+    localization: LocalizationSettings,
+    *,
+    found_again: bool = False,
 ) -> MapWithStop:
     """Return a map with one more stop; ``held`` stays as it is.
 
@@ -43,9 +49,9 @@ def with_stop(
         held: the map; a survey of it begins with its first stop.
         sweep: what was seen there.
         travel: since the stop before.
-        at: where the stop is, if it is the first or ``anew``.
+        at: where the stop is, if it is the first or ``found_again``.
         localization: how sweeps are sought.
-        anew: whether that was found by other means than wheels.
+        found_again: whether that was found by other means than wheels.
 
     Raises:
         MissionError: the map was stored without its stops.
@@ -56,7 +62,7 @@ def with_stop(
     if before is None:
         survey = Survey.begun(readings, at, _settings(held, localization))
     else:
-        survey, decisions = before.stepped(readings, before.found_at(at, travel) if anew else travel)
+        survey, decisions = before.stepped(readings, before.found_at(at, travel) if found_again else travel)
     pose = survey.graph.pose(len(survey.graph.stops) - 1)
     if any(isinstance(decision, Reconciled) for decision in decisions):
         made, cells = _made_again(held, sweep, survey)

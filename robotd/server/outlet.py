@@ -49,7 +49,7 @@ class Outlet:
     async def send_large(self, event: Published) -> None:
         """Publish what takes long to encode; one call at a time, or the numbers may come out of order.
 
-        It is not kept: who joins is told it anew.
+        It is not kept: who joins is told it again.
         """
         topic, _ = EVENTS[type(event)]
         self._send(topic, await asyncio.to_thread(_frame_of, event, self._session, self._number(topic)))

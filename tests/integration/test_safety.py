@@ -1,4 +1,4 @@
-"""Whatever goes wrong in whatever moment, the robot comes to rest, stays so, and moves again only when armed anew."""
+"""Whatever goes wrong in whatever moment, the robot comes to rest, stays so, and moves again only when armed again."""
 
 import asyncio
 from collections.abc import Awaitable, Callable

@@ -126,8 +126,8 @@ def _mapped(
 
 
 def _carried_off(parts: Rig, console: Console, name: str) -> Trial:
-    """Load the map anew, as if the robot had been carried there: odometry says nothing of where it is on it."""
-    console.print("Carried off: the map is loaded anew, neither place nor heading is known, and it looks round:")
+    """Load the map again, as if the robot had been carried there: odometry says nothing of where it is on it."""
+    console.print("Carried off: the map is loaded again, neither place nor heading is known, and it looks round:")
     parts.client.map_load(name)
     (sweep,), estimate = follow(console, parts.client, Localize(heading=PriorHeading.UNKNOWN))
     assert estimate is not None  # a localization that is done has one

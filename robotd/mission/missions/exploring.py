@@ -78,7 +78,7 @@ async def run_exploring(context: MissionContext, place: MapInUse, mission: Explo
         DeviceError, LinkTimeout, TransportError: a device failed; the robot must be stopped.
     """
     exploring = Exploring(context, place, mission, report, await _begun(context))
-    await exploring.look_round(anew=mission.resume)
+    await exploring.look_round(found_again=mission.resume)
     for goal_m in mission.stops_m:
         await exploring.visit(goal_m, "asked for")
     while (chosen := await exploring.choose()).goal_m is not None:
@@ -103,10 +103,10 @@ class Exploring:
     report: Reporter
     journey: Journey
 
-    async def look_round(self, *, anew: bool = False) -> None:
-        """Make a stop where the robot stands; the first on a map that is gone on with is ``anew``."""
+    async def look_round(self, *, found_again: bool = False) -> None:
+        """Make a stop where the robot stands; the first on a map that is gone on with is ``found_again``."""
         self.report.stop = self.journey.stops
-        stop = await survey_stop(self.context, self.place, self.report, anew=anew)
+        stop = await survey_stop(self.context, self.place, self.report, found_again=found_again)
         _, here = await _here(self.context)
         self.journey.stopped(stop, (here.x_m, here.y_m))
 

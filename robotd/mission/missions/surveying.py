@@ -32,10 +32,12 @@ class Surveyed:
     """From the stop before, as the wheels tell it."""
 
 
-async def survey_stop(context: MissionContext, place: MapInUse, report: Reporter, *, anew: bool = False) -> Surveyed:
+async def survey_stop(
+    context: MissionContext, place: MapInUse, report: Reporter, *, found_again: bool = False
+) -> Surveyed:
     """Sweep where the robot stands, and lay that into the map.
 
-    With ``anew`` it goes on with a map on which it was found by other means than its wheels.
+    With ``found_again`` it goes on with a map on which it was found by other means than its wheels.
 
     Raises:
         MissionError: too many readings failed; the robot stands.
@@ -46,7 +48,7 @@ async def survey_stop(context: MissionContext, place: MapInUse, report: Reporter
     faults = faults_text(sweep)
     report.at(MissionPhase.COMPUTING, message=faults)
     travel = context.whereabouts.stopped(sweep.in_odom)
-    inserted, outcome = await _laid_in(context, place, sweep, travel, anew=anew)
+    inserted, outcome = await _laid_in(context, place, sweep, travel, found_again=found_again)
     place.take(inserted)
     change = place.changes(now_ns(), inserted)
     context.publish(change, map_result(change, inserted.digest))
@@ -54,13 +56,13 @@ async def survey_stop(context: MissionContext, place: MapInUse, report: Reporter
 
 
 async def _laid_in(
-    context: MissionContext, place: MapInUse, sweep: Sweep, travel: Travel, *, anew: bool
+    context: MissionContext, place: MapInUse, sweep: Sweep, travel: Travel, *, found_again: bool
 ) -> tuple[Inserted, Outcome | None]:
     """Lay a sweep into the map, where it fits what was mapped so far, and tie odometry there."""
     if context.settings.localization.stops is StopPoses.ODOMETRY:
         return await context.head.ask(Insert(place.ref, sweep, _taken_at(context, sweep))), None
     laid = await context.head.ask(
-        PlaceStop(place.ref, place.map_id, sweep, travel, _taken_at(context, sweep), now_ns(), anew)
+        PlaceStop(place.ref, place.map_id, sweep, travel, _taken_at(context, sweep), now_ns(), found_again)
     )
     # In one step with the map that it is on: nobody is told a pose on a map that is no more.
     outcome = Outcome(laid.placed.outcome)

@@ -124,7 +124,7 @@ def test_a_stored_map_is_gone_on_with_from_where_the_robot_was_found() -> None:
     there = POSES[1] @ Pose2(0.3, 0.1, 0.2)
     sweep = as_sweep(9, sweep_at(WALLS, there, np.random.default_rng(7)))
     believed = there @ Pose2(0.03, -0.02, 0.01)
-    made = with_stop(stored, sweep, Travel(), believed, LocalizationSettings(), anew=True)
+    made = with_stop(stored, sweep, Travel(), believed, LocalizationSettings(), found_again=True)
     assert made.map_from_robot.distance_m(there) < 0.7 * believed.distance_m(there)
     assert made.held.survey is not None
     assert (made.held.survey.stored, len(made.held.survey.graph.stops)) == (4, 5)
@@ -139,4 +139,4 @@ def test_a_map_without_its_stops_is_not_gone_on_with() -> None:
     bare = replace(surveyed(1)[-1].held, survey=None, stops=None)
     sweep = as_sweep(9, sweep_at(WALLS, POSES[0], np.random.default_rng(7)))
     with pytest.raises(MissionError, match="without its stops"):
-        with_stop(bare, sweep, Travel(), POSES[0], LocalizationSettings(), anew=True)
+        with_stop(bare, sweep, Travel(), POSES[0], LocalizationSettings(), found_again=True)

@@ -15,7 +15,7 @@ export class Tiles {
     this.grid = grid;
   }
 
-  /** Paint everything anew in these colours. @param {import('./paint.js').Palette} palette */
+  /** Paint everything again in these colours. @param {import('./paint.js').Palette} palette */
   recolour(palette) {
     this.#table = colours(palette);
     this.#placement = null;

@@ -99,7 +99,7 @@ function notices(app) {
   </div>`;
 }
 
-/** Never disabled, never behind anything: in the top layer, where a dialog that opens later lets it be raised anew. @param {App} app */
+/** Never disabled, never behind anything: in the top layer, where a dialog that opens later lets it be raised again. @param {App} app */
 function stopButton(app) {
   const { phase, label } = app.stopping;
   return html`<div class="stop-place" popover="manual">

@@ -18,7 +18,7 @@ export const en = {
   'silent.daemon': 'nothing heard for {age}: the daemon is silent. On the robot: systemctl status robotd',
   'silent.daemon_never': 'the daemon has not been heard yet. On the robot: systemctl status robotd',
   'silent.base': 'no odometry for {age}: the base is silent.',
-  'other_life': 'The daemon was started anew: map, way and plan of before are gone from this page.', 'new_console': 'There is a newer console.', 'new_console.load': 'Load it',
+  'other_life': 'The daemon was started again: map, way and plan of before are gone from this page.', 'new_console': 'There is a newer console.', 'new_console.load': 'Load it',
   'hidden': 'You drive, and this page was hidden for {age}. A hidden page may fall silent, which stops the robot.', 'understood': 'Understood',
 
   'arm.title': 'Motion', 'arm.arm': 'Hold to arm', 'arm.disarm': 'Disarm', 'arm.clear': 'Clear faults', 'arm.will': 'Arms {devices}. Battery {battery}.', 'arm.none': 'no device',
