@@ -48,6 +48,12 @@ class Believed:
         """Of the heading."""
         return math.sqrt(self.covariance[2, 2])
 
+    def disbelief(self, pose: Pose2) -> float:
+        """Return how far off a pose lies: half its squared distance in standard deviations."""
+        turned_rad = wrap_rad(pose.heading_rad - self.pose.heading_rad)
+        off = np.array((pose.x_m - self.pose.x_m, pose.y_m - self.pose.y_m, turned_rad))
+        return float(off @ np.linalg.solve(self.covariance, off)) / 2.0
+
     def no_surer(self, than_m: float, than_rad: float) -> "Believed":
         """Return it with that much more doubt: who claims too much turns robust weights against the truth."""
         return Believed(self.pose, self.covariance + np.diag([than_m**2, than_m**2, than_rad**2]))
@@ -81,7 +87,12 @@ class PlacingSettings:
     """When a map explains a sweep, and how far around odometry's word it is looked for. The same for all buildings."""
 
     box_sigmas: float = 2.5
+    near_sigmas: float = 1.0
     box_m: float = 0.05
+    far_gain: float = 0.05
+    """What a place must be worth more than one nearer to odometry's word, times how much less odometry believes in it."""
+    sure_share: float = 0.6
+    """Where a place explains so much of a sweep, none nearer is asked for."""
     placed_consent: float = 0.7
     placed_share: float = 0.3
     """Through a doorway a sweep of the next room is explained in part, and in part it is by the first one's walls."""
@@ -168,10 +179,22 @@ def near_prior(
     ground: Ground, readings: Readings, prior: Believed, settings: PlacingSettings
 ) -> tuple[Tracked, Agreement] | None:
     """Return the best pose about where a sweep is believed to have been taken; None with too few readings."""
-    half_m = settings.box_sigmas * prior.deviation_m + settings.box_m
-    return _in_box(
-        ground, readings, PoseBox.around(prior.pose, half_m, settings.box_sigmas * prior.deviation_rad), settings
-    )
+    far = _within(ground, readings, prior, settings.box_sigmas, settings)
+    if far is None or far[1].explained_share >= settings.sure_share:
+        return far
+    near = _within(ground, readings, prior, settings.near_sigmas, settings)
+    if near is None:
+        return far
+    gained = _worth(far[1], settings) - _worth(near[1], settings)
+    less_believed = prior.disbelief(far[0].pose) - prior.disbelief(near[0].pose)
+    return far if gained >= settings.far_gain * less_believed else near
+
+
+def _within(
+    ground: Ground, readings: Readings, prior: Believed, sigmas: float, settings: PlacingSettings
+) -> tuple[Tracked, Agreement] | None:
+    half_m = sigmas * prior.deviation_m + settings.box_m
+    return _in_box(ground, readings, PoseBox.around(prior.pose, half_m, sigmas * prior.deviation_rad), settings)
 
 
 def _in_box(
