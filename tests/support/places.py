@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from robotd.app.compose import Daemon, head_settings
 from robotd.children.in_process import InProcess
 from robotd.config import Config
+from robotd.core.counted import Counted
 from robotd.core.grid_bytes import packed_cells, unpacked_cells
 from robotd.core.grid_spec import GridSpec
 from robotd.front.heart_side import LANES
@@ -41,7 +42,7 @@ class NearHead(FarHead):
         return cls(settings, lambda: InProcess(serve))
 
 
-def near_front() -> InProcess:
+def near_front(_runtime_dir: str, _counted: Counted) -> InProcess:
     """Return a front as the program has it, but as a task of this process."""
     return InProcess(serve_clients, LANES)
 
