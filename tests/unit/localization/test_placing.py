@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from robotd.contract.area import Area
+from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
 from robotd.grid.settings import GridSettings
+from robotd.grid.wall_field import WallField
 from robotd.localization.outcome import Outcome
 from robotd.localization.placing import (
     Believed,
@@ -36,6 +38,15 @@ def ground_of(*poses: Pose2, seed: int = 0) -> Ground:
 
 def seen_from(pose: Pose2, seed: int = 7) -> Readings:
     return sweep_at(WALLS, pose, np.random.default_rng(seed))
+
+
+def rooms_alike() -> WallField:
+    """Return two rooms of 7 m x 6 m, each with a doorway in the wall between them, which is a metre thick."""
+    walls = np.ones((140, 340), np.bool_)
+    for west in (20, 180):
+        walls[10:130, west : west + 140] = False
+    walls[54:82, 160:180] = False
+    return WallField.of(GridSpec(0.05, -1.0, -0.5, walls.shape), walls, walls)
 
 
 def off(pose: Pose2, other: Pose2) -> tuple[float, float]:
@@ -68,6 +79,20 @@ def test_new_ground_is_no_contradiction_and_odometry_stands() -> None:
     assert placed.believed.pose == far
     assert placed.believed.covariance == pytest.approx(2.0 * COVARIANCE)
     assert placed.agreement.contradicted_share < 0.12
+
+
+@pytest.mark.parametrize("heading_rad", [-0.6, -0.01, 0.1, 0.7])
+def test_a_room_seen_through_a_doorway_does_not_draw_in_a_stop_of_the_next_one_that_is_like_it(
+    heading_rad: float,
+) -> None:
+    walls, random = rooms_alike(), np.random.default_rng(1)
+    grid = OccupancyGrid(walls.spec, settings=GridSettings(raise_alpha=0.5, lower_alpha=0.9))
+    for x_m, y_m in ((1.2, 1.6), (3.4, 2.9), (2.5, 4.6), (5.6, 2.9)):
+        grid.lay(sweep_at(walls, Pose2(x_m, y_m, 0.0), random), Pose2(x_m, y_m, 0.0))
+    there = Pose2(9.2, 2.9, heading_rad)
+    prior = Believed(there, np.diag([0.31**2, 0.31**2, 0.6**2]))  # after four metres and a turn
+    placed = place(Ground(grid, LocalizationSettings()), sweep_at(walls, there, random), prior, USUAL)
+    assert off(placed.believed.pose, there)[0] < 0.3
 
 
 def test_a_sweep_of_somewhere_else_contradicts_and_leaves_odometrys_word() -> None:
