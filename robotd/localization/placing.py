@@ -92,7 +92,7 @@ class PlacingSettings:
     far_gain: float = 0.05
     """What a place must be worth more than one nearer to odometry's word, times how much less odometry believes in it."""
     sure_share: float = 0.6
-    """Where a place explains so much of a sweep, none nearer is asked for."""
+    """Where a place explains this share of a sweep, none nearer is asked for."""
     placed_consent: float = 0.7
     placed_share: float = 0.3
     """Through a doorway a sweep of the next room is explained in part, and in part it is by the first one's walls."""
