@@ -90,7 +90,7 @@ class PlacingSettings:
     near_sigmas: float = 1.0
     box_m: float = 0.05
     far_gain: float = 0.05
-    """What a place must be worth more than one nearer to odometry's word, times how much less odometry believes in it."""
+    """What a place must be worth more than one nearer to odometry's, times how much less odometry believes in it."""
     sure_share: float = 0.6
     """Where a place explains this share of a sweep, none nearer is asked for."""
     placed_consent: float = 0.7

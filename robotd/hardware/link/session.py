@@ -190,9 +190,12 @@ class Session:
 
     async def _repeat_until_answered(self, request: PendingRequest, takes_s: float) -> Received:
         data = self._wire.encode(request.message, request.seq)
-        began_ns, attempt = now_ns(), 0
-        while attempt < TRIES or self._may_answer_late(began_ns):
+        began_ns = sent_ns = now_ns()
+        attempt = 0
+        # The last try is sent no sooner than the line has to be heard again: one of before may have gone unheard.
+        while attempt < TRIES or self._may_answer_late(began_ns, sent_ns):
             self._counters.retries += attempt > 0
+            sent_ns = now_ns()
             self._line.write(data)
             # A slow answer is waited for after the last sure try only: the board is at work on it, to ask again does no
             # harm, and a request that was lost is found out sooner.
@@ -204,13 +207,13 @@ class Session:
         self._counters.timeouts += 1
         raise LinkTimeout(f"{self.device}: no answer to {type(request.message).__name__} in {attempt} tries")
 
-    def _may_answer_late(self, began_ns: int) -> bool:
-        """Say whether to ask on: for as long as the line may be silent, a request may stay without its answer.
+    def _may_answer_late(self, began_ns: int, sent_ns: int) -> bool:
+        """Say whether to ask on after a try: for as long as the line may be silent, one may stay without its answer.
 
         A board that gets no processor for a while is late with both, and to be late is no failure. One that is lost is
         found out by the reader, sooner.
         """
-        return self._serving and (now_ns() - began_ns) / NS_PER_S < self._silence_s
+        return self._serving and (sent_ns - began_ns) / NS_PER_S < self._silence_s
 
     def _round_trip(self, message: Message) -> RoundTrip:
         return self._round_trips.setdefault(type(message), RoundTrip())

@@ -63,7 +63,7 @@ def test_the_example_of_the_quick_start_is_answered_as_it_says(
     files: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     page = (Path(__file__).parents[3] / "docs" / "quickstart.md").read_text(encoding="utf-8")
-    for file, language in zip(files, ("toml", "csv"), strict=True):
+    for file, language in zip(files, ("toml", "text"), strict=True):
         (example,) = re.findall(rf"```{language}\n(outline_m.*?|bearing_deg.*?)```", page, re.DOTALL)
         Path(file).write_text(example, encoding="utf-8")
     regions = []

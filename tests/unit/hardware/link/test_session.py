@@ -376,7 +376,7 @@ async def test_a_request_on_a_line_on_which_nothing_is_heard_is_repeated_until_i
         await asyncio.sleep(0.1)
         heard, b.line.from_board = b.line.from_board, never
         asking = asyncio.create_task(b.session.ask(ReadLimits(), Limits))
-        await asyncio.sleep(0.7)
+        await asyncio.sleep(0.85)
         assert not asking.done()
         b.line.from_board = heard
         assert isinstance(await asking, Limits)

@@ -21,6 +21,7 @@ from robotd.localization.describe import Situation, described
 from robotd.localization.even_headings import even_headings
 from robotd.localization.fit.refinement_settings import RefinementSettings
 from robotd.localization.judged_regions import JudgedRegion
+from robotd.localization.obstacles.error_radius import ErrorRadius
 from robotd.localization.obstacles.prepared_map import PreparedMap
 from robotd.localization.places.pieces import connected_components, pieces_of
 from robotd.localization.places.shapes import cover_of
@@ -84,7 +85,7 @@ def ready_rooms() -> ReadyMap:
     occupied[1:5, 1:6] = False
     occupied[1:5, 7:12] = False
     grid = OccupancyGrid(GridSpec(0.5, -1.0, 0.0, (6, 13)), np.where(occupied, np.uint8(255), np.uint8(0)))
-    return ReadyMap.of(grid, LocalizationSettings(range_error_m=0.0, blocked_by=1))
+    return ReadyMap.of(grid, LocalizationSettings(error_radius=ErrorRadius.CONSTANT, range_error_m=0.0, blocked_by=1))
 
 
 def regions_of(ranks: RankGrid, least_rank: int, most: int = 99) -> tuple[Region, ...]:
