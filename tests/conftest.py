@@ -4,6 +4,7 @@ import asyncio
 import gc
 import inspect
 import os
+import signal
 import tempfile
 import threading
 from collections.abc import Iterator
@@ -28,6 +29,9 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("house")
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in what a script puts in the background, and its children
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 _TEST_FILES = f"{tempfile.gettempdir()}/pytest-of-"
 """Where ``tmp_path`` is; libraries may keep files of their own open elsewhere."""

@@ -33,7 +33,7 @@ WORDS = {
     "pose": ("where", "print the newest pose estimate"),
     "watch": ("where", "print what happens, as it happens, until Ctrl-C"),
     "top": ("top", "show mode, links, pose, mission, sweep and log as they change; keys stop and arm"),
-    "plan": ("where", "say by which way a place is reached, or why not, before anybody drives there"),
+    "plan": ("where", "say by which way a place on the map in use is reached, or why not; nothing moves"),
     "drive-to": ("where", "drive to a place on the map in use, and stand there"),
     "drive": ("hands", "drive straight ahead, or back, by odometry; needs no map"),
     "turn": ("hands", "turn on the spot by odometry; needs no map"),
@@ -53,13 +53,19 @@ WORDS = {
         "exports",
         "write a recording for other programs: a trajectory, a CARMEN log, a bag of ROS, a file for Foxglove",
     ),
-    "report": ("reports", "write what a recorded robot did as one page, to keep and to open offline"),
+    "report": (
+        "reports",
+        "write what a recorded robot did as one page: map and way, stops, looks round, failures, lines, digests",
+    ),
     "eval": ("evaluate", "tell how often localization is right, ambiguous, lost, or sure and wrong on real logs"),
     "config": ("configuration", "check and show configurations"),
     "schema": ("wire_schema", "print every request, reply and event as one JSON Schema, made from the types"),
     "exact": ("exact", "localize on a map of polygons by the exact combinatorial algorithm, without rounding"),
     "gateway": ("gateway", "say who may sign in to the console that robotd-gateway serves"),
-    "install": ("install", "put unit, rules, user and a commented configuration where systemd looks for them"),
+    "install": (
+        "install",
+        "put the unit, rules, user and a commented configuration where systemd looks; what you changed is kept",
+    ),
     "doctor": ("doctor", "say what this installation consists of, which kernels it uses and why, and what it can see"),
     "demo": ("demo", "show the main job, end to end, on a simulated robot"),
 }
@@ -106,7 +112,7 @@ def whole_parser() -> Iterator[tuple[str, argparse.ArgumentParser]]:
     for word in WORDS:
         for verb in verbs_of(word):
             parser = argparse.ArgumentParser(
-                prog=f"robotctl {verb.name}", formatter_class=argparse.RawDescriptionHelpFormatter
+                prog="robotctl " + verb.name, formatter_class=argparse.RawDescriptionHelpFormatter
             )
             verb.add_to(parser)
             yield verb.name, parser

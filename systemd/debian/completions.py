@@ -35,5 +35,11 @@ def cases() -> list[str]:
     return [f'        2:"{first}") words="{" ".join(words)}" ;;' for first, words in seconds.items()] + lines
 
 
-script = _BASH.format(first=" ".join(WORDS), cases="\n".join(cases()))
-print(script if sys.argv[1] == "bash" else _ZSH + script, end="")
+def main(shell: str) -> None:
+    """Print the script for a shell."""
+    script = _BASH.format(first=" ".join(WORDS), cases="\n".join(cases()))
+    print(script if shell == "bash" else _ZSH + script, end="")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -6,15 +6,6 @@ from pathlib import Path
 
 from robotd.cli.main import whole_parser
 
-path, version = Path(sys.argv[1]), sys.argv[2]
-text = [
-    f'.TH ROBOTCTL 1 "" "robotd {version}" "User Commands"',
-    ".SH NAME",
-    "robotctl \\- talk to robotd",
-    ".SH SYNOPSIS",
-]
-text += [".B robotctl", ".I VERB", "..."]
-
 
 def literal(block: str) -> list[str]:
     """Return lines as they are."""
@@ -22,7 +13,27 @@ def literal(block: str) -> list[str]:
     return [".nf", *(f"\\&{line}" for line in escaped.splitlines()), ".fi"]
 
 
-for name, parser in whole_parser():
-    text += [f'.SH "{name.upper()}"', *literal(parser.format_help())]
-path.parent.mkdir(parents=True, exist_ok=True)
-path.write_bytes(gzip.compress(("\n".join(text) + "\n").encode(), 9, mtime=0))
+def page(version: str) -> str:
+    """Return the page, in the language of man."""
+    text = [
+        f'.TH ROBOTCTL 1 "" "robotd {version}" "User Commands"',
+        ".SH NAME",
+        "robotctl \\- talk to robotd",
+        ".SH SYNOPSIS",
+        ".B robotctl",
+        ".I VERB",
+        "...",
+    ]
+    for name, parser in whole_parser():
+        text += [f'.SH "{name.upper()}"', *literal(parser.format_help())]
+    return "\n".join(text) + "\n"
+
+
+def main(path: Path, version: str) -> None:
+    """Write the page, packed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(gzip.compress(page(version).encode(), 9, mtime=0))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), sys.argv[2])

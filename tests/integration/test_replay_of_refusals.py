@@ -17,6 +17,7 @@ from robotd.contract.requests import (
     ListMaps,
     MapLoad,
     MapSave,
+    PlanTo,
     RecordStart,
     RecordStop,
     Renew,
@@ -72,7 +73,7 @@ async def test_who_looks_without_end_leaves_nothing_in_the_journal(live: Live, k
         assert list(it.journal.remembered) == before
 
 
-LOOKS_AT: dict[type[Request[Any]], tuple[Any, ...]] = {Renew: (1,)}
+LOOKS_AT: dict[type[Request[Any]], tuple[Any, ...]] = {Renew: (1,), PlanTo: (1.0, 2.0)}
 
 
 async def test_a_client_that_renews_without_end_leaves_nothing_in_the_journal_and_replays(

@@ -15,7 +15,7 @@ from robotd.cli.demo.room import brisk, fresh
 from robotd.cli.exit_codes import OK
 from robotd.cli.outputs import DEMO, output_argument
 from robotd.cli.quantities import whole
-from robotd.cli.show.terminal import bold, out
+from robotd.cli.show.terminal import bold, err, out, print_json
 from robotd.config import Config
 from robotd.core.errors import RobotdError
 from robotd.gateway.access.roles import Role
@@ -46,10 +46,16 @@ def run(arguments: argparse.Namespace) -> int:
     secret, token = make_token("you", Role.ADMIN, time.time(), is_for_one_use=True)
     TokenFile(settings.access.tokens).write(Tokens((token,)))
     emulator = ["sim", arguments.world, "--seed", str(arguments.seed)]
-    out().print(bold("robotd console") + f": starting a robot in the {arguments.world}; all it makes is in {directory}")
+    if not arguments.json:
+        out().print(
+            bold("robotd console") + f": starting a robot in the {arguments.world}; all it makes is in {directory}"
+        )
     with rig(directory, wired(Config(driving=brisk()), directory), emulator), _gateway(directory, settings) as address:
-        out().print("Open this address in a browser; it signs in once. Ctrl-C ends robot and console.\n")
-        out().print(f"  {address}#{secret}\n", markup=False, soft_wrap=True)
+        if arguments.json:
+            print_json({"address": f"{address}#{secret}", "directory": str(directory)})
+        else:
+            out().print("Open this address in a browser; it signs in once. Ctrl-C ends robot and console.\n")
+            out().print(f"  {address}#{secret}\n", markup=False, soft_wrap=True)
         sys.stdout.flush()  # who reads through a pipe waits for the address
         with suppress(KeyboardInterrupt):  # which is how it ends
             signal.pause()
@@ -66,7 +72,7 @@ def _require_console() -> None:
 
     try:
         if not is_fresh():
-            out().print("building the console (once)")
+            err().print("building the console (once)")
             build()
     except (OSError, subprocess.CalledProcessError) as error:
         raise RobotdError(f"the console cannot be built: {error}") from error

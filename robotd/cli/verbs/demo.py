@@ -24,6 +24,5 @@ VERBS = (
         "robotctl demo console laboratory",
         console.run,
         console.add_arguments,
-        prints_json=False,
     ),
 )

@@ -71,7 +71,7 @@ def _every(text: str) -> int:
 
 
 def _row(kind: str, what: str, log: str, arguments: Callable[[argparse.ArgumentParser], None]) -> Verb:
-    example = f"robotctl import {kind} {log} --out lab.building"
+    example = command_line("robotctl", "import", kind, log, "--out", "lab.building")
     return Verb(f"import {kind}", f"make a recorded building of {what}, for robotctl sim", example, _import, arguments)
 
 

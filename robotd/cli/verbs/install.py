@@ -1,7 +1,7 @@
 """``install``: units, rules, users, directories and a first configuration, where this machine looks for them."""
 
 import argparse
-import os
+import stat
 import sys
 from pathlib import Path
 
@@ -23,12 +23,7 @@ _NEXT = (
 
 def _install(arguments: argparse.Namespace) -> int:
     root, prefix = arguments.root.absolute(), arguments.prefix.absolute()
-    program = root / prefix.relative_to("/") / "bin" / "robotd"
-    if not os.access(program, os.X_OK):
-        raise RobotdError(
-            f"{program}: there is no such program; first: python3 -m venv {prefix}, then {prefix}/bin/pip install"
-            " robotd, or say with --prefix where it is"
-        )
+    _require_program(root / prefix.relative_to("/") / "bin" / "robotd", prefix)
     is_here = root == Path("/")
     files = tuple(service_files(prefix, root, systemd_version() if is_here else None))
     for file in files:
@@ -41,6 +36,20 @@ def _install(arguments: argparse.Namespace) -> int:
     if is_here and not arguments.dry_run:
         out().print(f"now, as root: {'; '.join(_NEXT)}", markup=False)
     return OK
+
+
+def _require_program(program: Path, prefix: Path) -> None:
+    try:
+        mode = program.stat().st_mode
+    except PermissionError as error:
+        raise RobotdError(f"{program}: {error.strerror}") from error
+    except OSError:
+        mode = 0
+    if not mode & stat.S_IXUSR:
+        raise RobotdError(
+            f"{program}: there is no such program; first: python3 -m venv {prefix}, then {prefix}/bin/pip install"
+            " robotd, or say with --prefix where it is"
+        )
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:

@@ -142,7 +142,7 @@ def _place(context: MissionContext) -> MapInUse:
 def _place_named(context: MissionContext, name: str) -> MapInUse:
     place = _place(context)
     if place.name != name:
-        raise MissionError(f"the map in use is {place.name}, not {name}; first: robotctl map load {name}")
+        raise MissionError(f"the map in use is {place.name}, not {name}; load that first, with robotctl map load NAME")
     return place
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from mcap.reader import make_reader
-from mcap_ros2.reader import read_ros2_messages
+from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from robotd.app.replaying import replay_events
@@ -120,7 +120,9 @@ def _poses(told: _Told, form: str, bag: Path) -> Trip:
 
 
 def _by_mcap_ros2(told: _Told, file: Path) -> Trip:
-    read = [_pose(one.ros_msg) for one in read_ros2_messages(str(file), topics=["/pose"])]
+    with file.open("rb") as opened:
+        messages = make_reader(opened, decoder_factories=[DecoderFactory()]).iter_decoded_messages(topics=["/pose"])
+        read = [_pose(one.decoded_message) for one in messages]
     worst = max(_apart(a, b) for a, b in zip(read, told.best, strict=True))
     return Trip(
         "ROS 2 bag, poses", "out", size_bytes(file), f"{len(read)} poses", worst, 1e-6, "m, rad", "mcap-ros2-support"

@@ -74,6 +74,9 @@ OTHERS = {
     "export carmen file": ["NEW"],
     "export foxglove file": ["NEW"],
     "export bag file": ["NEW"],
+    "report file": ["NEW"],
+    "gateway token new --config": ["somebody"],
+    "gateway token revoke --config": ["somebody"],
 }
 """What else the command line needs for the verb to come as far as the bad file."""
 MAP_YAML = b"image: in.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
@@ -111,6 +114,7 @@ GOOD = {
             "config show file",
             "doctor file",
             "gateway token list --config",
+            "gateway token new --config",
         )
     ),
     *(("map import --maps", kind) for kind in ("missing", "a directory", "a directory with something in it")),

@@ -44,6 +44,7 @@ OUTPUTS = {
     "export carmen out",
     "export foxglove out",
     "export bag out",
+    "report out",
     "sim --truth",
     "sim --links",
     "sim --write-config",
@@ -53,6 +54,7 @@ OUTPUTS = {
     "eval --json",
     "demo room --out",
     "demo building --out",
+    "demo console --out",
 }
 NO_OUTPUTS = {"--prefix", "--root", "--runtime-dir", "--config", "--maps", "log", "map", "readings", "file"}
 """Paths that are read; ``record start FILE`` is the daemon's to refuse, which has the file."""
@@ -103,6 +105,7 @@ def command(name: str, target: Path, directory: Path) -> list[str]:
         "export carmen": [str(directory / "no.mcap")],
         "export foxglove": [str(directory / "no.mcap")],
         "export bag": [str(directory / "no.mcap")],
+        "report": [str(directory / "no.mcap")],
         "sim": ["office"],
         "config init": ["--drive", "a", "--pantilt", "b", "--rangefinder", "c"],
         "fake": [str(directory / "no.mcap")],
