@@ -29,12 +29,12 @@ def bearings_along(length_m: float, half_width_m: float) -> tuple[float, ...]:
     [-37, -17, -9, 0, 9, 17, 37]
     """
     reach_m = length_m + half_width_m
-    aside = {
+    to_the_left_rad = {
         math.asin(half_width_m / out_m)
         for out_m in (reach_m / 2**halving for halving in range(_HALVINGS))
         if out_m > half_width_m
     }
-    return tuple(sorted({0.0, *aside, *(-bearing_rad for bearing_rad in aside)}))
+    return tuple(sorted({0.0, *to_the_left_rad, *(-bearing_rad for bearing_rad in to_the_left_rad)}))
 
 
 def in_the_way(readings: Iterable[RangeReading], length_m: float, half_width_m: float) -> RangeReading | None:

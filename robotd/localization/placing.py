@@ -50,8 +50,7 @@ class Believed:
 
     def disbelief(self, pose: Pose2) -> float:
         """Return how far off a pose lies: half its squared distance in standard deviations."""
-        turned_rad = wrap_rad(pose.heading_rad - self.pose.heading_rad)
-        off = np.array((pose.x_m - self.pose.x_m, pose.y_m - self.pose.y_m, turned_rad))
+        off = self._off(pose)
         return float(off @ np.linalg.solve(self.covariance, off)) / 2.0
 
     def no_surer(self, than_m: float, than_rad: float) -> "Believed":
@@ -61,15 +60,15 @@ class Believed:
     def fused(self, measured: Pose2, covariance: NDArray[np.float64]) -> "Believed":
         """Return it after a measurement: each has a say by how sure it is, in each direction."""
         gain = self.covariance @ np.linalg.inv(self.covariance + covariance)
-        off = (
-            measured.x_m - self.pose.x_m,
-            measured.y_m - self.pose.y_m,
-            wrap_rad(measured.heading_rad - self.pose.heading_rad),
-        )
-        x_m, y_m, turned_rad = (gain @ off).tolist()
+        x_m, y_m, turned_rad = (gain @ self._off(measured)).tolist()
         pose = Pose2(self.pose.x_m + x_m, self.pose.y_m + y_m, wrap_rad(self.pose.heading_rad + turned_rad))
         left = (np.eye(3) - gain) @ self.covariance
         return Believed(pose, (left + left.T) / 2.0)
+
+    def _off(self, pose: Pose2) -> NDArray[np.float64]:
+        """Return by how much a pose differs, along the axes of the map, ``float64[3]``."""
+        turned_rad = wrap_rad(pose.heading_rad - self.pose.heading_rad)
+        return np.array((pose.x_m - self.pose.x_m, pose.y_m - self.pose.y_m, turned_rad))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

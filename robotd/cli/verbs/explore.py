@@ -8,7 +8,7 @@ from robotd.cli.motion import MissionOutcome, carry_out, mission_verb
 from robotd.cli.quantities import number, positive, whole
 from robotd.cli.show.terminal import err
 from robotd.cli.show.wording import as_json, ending_in_words
-from robotd.cli.verbs.maps import map_name, pose_argument
+from robotd.cli.verbs.maps import map_name, pose_argument, stops_argument
 from robotd.cli.verbs.where import found_in_words
 from robotd.client.mission_run import MissionEvent
 from robotd.contract.area import Bounds
@@ -87,15 +87,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         metavar=("WEST", "SOUTH", "EAST", "NORTH"),
         help="the rectangle of the map to explore [m] (default: 20 m to all sides of the start)",
     )
-    parser.add_argument(
-        "--stop",
-        action="append",
-        nargs=2,
-        type=number,
-        default=[],
-        metavar=("X", "Y"),
-        help="where to stop first [m], once for each; after that it chooses for itself",
-    )
+    stops_argument(parser, "where to stop first [m], once for each; after that it chooses for itself")
     parser.add_argument(
         "--stops-max", type=whole(1, 1000), default=100, metavar="N", help="no more stops than this (default: 100)"
     )

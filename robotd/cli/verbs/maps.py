@@ -56,14 +56,8 @@ def _start(arguments: argparse.Namespace) -> int:
 
 def _start_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", type=map_name, help="what to call the map")
-    parser.add_argument(
-        "--stop",
-        action="append",
-        nargs=2,
-        type=number,
-        default=[],
-        metavar=("X", "Y"),
-        help="where to stop and sweep [m], once for each; the robot's place at the start comes first by itself",
+    stops_argument(
+        parser, "where to stop and sweep [m], once for each; the robot's place at the start comes first by itself"
     )
     pose_argument(parser, "--start", "where the robot stands now, which fixes the map's axes (default: 0 0 0)")
     parser.add_argument("--world", metavar="WORLD", help="take start and stops from a world of robotctl sim")
@@ -97,6 +91,11 @@ class _PoseAction(argparse.Action):
 def pose_argument(parser: argparse.ArgumentParser, name: str, summary: str) -> None:
     """Let the command line name a pose, ``X Y DEG``."""
     parser.add_argument(name, action=_PoseAction, nargs=3, type=number, metavar=("X", "Y", "DEG"), help=summary)
+
+
+def stops_argument(parser: argparse.ArgumentParser, summary: str) -> None:
+    """Let the command line name stops, ``--stop X Y`` once for each."""
+    parser.add_argument("--stop", action="append", nargs=2, type=number, default=[], metavar=("X", "Y"), help=summary)
 
 
 def _save(arguments: argparse.Namespace) -> int:
