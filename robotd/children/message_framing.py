@@ -1,5 +1,6 @@
 """Messages in a stream of bytes, and back: four bytes of length, least first, then the message."""
 
+from collections import deque
 from collections.abc import Iterator
 
 from robotd.core.errors import RemoteProtocolError
@@ -20,7 +21,11 @@ class Unframer:
     def __init__(self, longest: int = LONGEST) -> None:
         """Refuse messages of more than ``longest`` bytes, before any room is made for them."""
         self._longest = longest
-        self._waiting = bytearray()
+        # Pieces, put together when a message is whole: a map's bytes are copied once, not with every piece.
+        self._pieces: deque[memoryview] = deque()
+        self._held = 0
+        self._length: int | None = None
+        """Of the message that is on its way, once its first bytes are here."""
 
     def feed(self, data: bytes) -> Iterator[bytes]:
         """Yield the messages that are whole now.
@@ -28,13 +33,33 @@ class Unframer:
         Raises:
             RemoteProtocolError: a message says that it is longer than messages may be; nothing after it can be read.
         """
-        self._waiting += data
-        while len(self._waiting) >= _LENGTH:
-            length = int.from_bytes(self._waiting[:_LENGTH], "little")
-            if length > self._longest:
-                raise RemoteProtocolError(f"a message of {length} bytes, expected at most {self._longest}")
-            if len(self._waiting) < _LENGTH + length:
-                return
-            message = bytes(memoryview(self._waiting)[_LENGTH : _LENGTH + length])
-            del self._waiting[: _LENGTH + length]
+        self._pieces.append(memoryview(data))
+        self._held += len(data)
+        while (message := self._next()) is not None:
             yield message
+
+    def _next(self) -> bytes | None:
+        if self._length is None:
+            if self._held < _LENGTH:
+                return None
+            self._length = int.from_bytes(self._taken(_LENGTH), "little")
+            if self._length > self._longest:
+                raise RemoteProtocolError(f"a message of {self._length} bytes, expected at most {self._longest}")
+        if self._held < self._length:
+            return None
+        message = self._taken(self._length)
+        self._length = None
+        return message
+
+    def _taken(self, count: int) -> bytes:
+        """Return the next ``count`` bytes, which are here."""
+        self._held -= count
+        taken: list[memoryview] = []
+        while count:
+            piece = self._pieces.popleft()
+            if piece.nbytes > count:
+                self._pieces.appendleft(piece[count:])
+                piece = piece[:count]
+            taken.append(piece)
+            count -= piece.nbytes
+        return b"".join(taken)

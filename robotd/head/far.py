@@ -204,7 +204,7 @@ class FarHead:
         elif made is not None and made.number not in self._memory:
             self.forget(made.number)  # nobody heard of it
 
-    async def _answered(self, lane: Channel, data: bytes) -> bytes:
+    async def _answered(self, lane: Channel, data: bytes) -> memoryview:
         """Send a job, and return its answer; ChildError if it is none, or of another job."""
         number = next(self._jobs).to_bytes(NUMBER, "little")
         if not lane.send(number, data):
@@ -217,7 +217,7 @@ class FarHead:
         # An answer that is one behind would be believed, and each after it.
         if answer[:NUMBER] != number:
             raise ChildError("it answered another job than it was asked, or one twice")
-        return answer[NUMBER:]
+        return memoryview(answer)[NUMBER:]  # not a copy: it may hold a map
 
     def _done_with(self, asked: _Asked) -> None:
         self._under_way = None

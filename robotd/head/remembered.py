@@ -44,7 +44,7 @@ class RememberedStep:
         """The job as bytes."""
         return zlib.decompress(self._kept) if self._is_packed else self._kept
 
-    def check(self, answer: bytes) -> None:
+    def check(self, answer: bytes | memoryview) -> None:
         """Refuse an answer that is not what it was; ChildError says so."""
         found = unpack_answer(self.kind, answer)
         if self.digest is not None and getattr(found, "digest", None) != self.digest:

@@ -18,7 +18,7 @@ NUMBER = 8
 _ERRORS: dict[str, type[RobotdError]] = {
     kind.__name__: kind for kind in (MapError, MissionError, TooLarge, RobotdError)
 }
-_NULL = msgspec.msgpack.encode(None)
+_NULL = msgspec.Raw(msgspec.msgpack.encode(None))
 _LONGEST_TEXT = 2000
 """Letters of an error."""
 
@@ -76,7 +76,7 @@ def pack_error(error: Exception) -> bytes:
     return msgspec.msgpack.encode((None, kind, text[:_LONGEST_TEXT], where))
 
 
-def unpack_answer(kind: type[Job[A]], data: bytes) -> A:
+def unpack_answer(kind: type[Job[A]], data: bytes | memoryview) -> A:
     """Return the answer of a job of a kind.
 
     Raises:
@@ -86,7 +86,7 @@ def unpack_answer(kind: type[Job[A]], data: bytes) -> A:
     """
     try:
         answered = msgspec.msgpack.decode(data, type=_Answered)
-        if bytes(answered.fields) != _NULL:
+        if answered.fields != _NULL:
             answer: A = msgspec.msgpack.decode(answered.fields, type=kind.answer)
             return answer
     except (msgspec.MsgspecError, ValueError) as error:

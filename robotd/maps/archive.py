@@ -18,7 +18,15 @@ from robotd.maps.entry import UNSAVED, MapEntry
 from robotd.maps.lock import sole_writer
 from robotd.maps.manifest import Manifest, check_name
 from robotd.maps.places import check_new_name, directories, leftovers, next_version, temporary_place, versions
-from robotd.maps.version_files import MANIFEST, Content, NewVersion, check_readable, read_content, read_manifest
+from robotd.maps.version_files import (
+    MANIFEST,
+    Content,
+    NewVersion,
+    Storable,
+    check_readable,
+    read_content,
+    read_manifest,
+)
 
 UNSAVED_KEPT = 3
 """How many such versions of each map are kept; they take no place from the others."""
@@ -65,7 +73,7 @@ class Archive(Generic[T]):
     def save(
         self,
         name: str,
-        content: Content,
+        content: Storable,
         metadata: dict[str, Any],
         created_unix_ns: int,
         *,

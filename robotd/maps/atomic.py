@@ -6,17 +6,18 @@ the rename is synced. All calls that change maps are here, through :mod:`os`.
 
 import os
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 _READABLE_BY_ALL = 0o644
 _LISTABLE_BY_ALL = 0o755
 
 
-Buffer = bytes | memoryview
+Blocks = Iterable[bytes]
+"""A file in pieces, as often as it is asked for: what is large is never in memory whole."""
 
 
-def write_synced(path: Path, data: Buffer) -> None:
+def write_synced(path: Path, blocks: Blocks) -> None:
     """Write a new file down to the disk.
 
     Raises:
@@ -24,10 +25,11 @@ def write_synced(path: Path, data: Buffer) -> None:
     """
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, _READABLE_BY_ALL)
     try:
-        rest = memoryview(data)
-        while rest:
-            # The disk may take a part alone, as it does when it is nearly full.
-            rest = rest[os.write(descriptor, rest) :]
+        for block in blocks:
+            rest = memoryview(block)
+            while rest:
+                # The disk may take a part alone, as it does when it is nearly full.
+                rest = rest[os.write(descriptor, rest) :]
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
@@ -53,7 +55,7 @@ def make_directory(path: Path) -> None:
     sync_directory(path.parent)
 
 
-def publish_directory(temporary: Path, final: Path, files: Mapping[str, Buffer]) -> None:
+def publish_directory(temporary: Path, final: Path, files: Mapping[str, Blocks]) -> None:
     """Make the directory ``final`` with these files: after a crash at any moment it is there whole, or not there.
 
     ``temporary`` must lie on the same file system; after a crash it may be left behind.
@@ -62,14 +64,14 @@ def publish_directory(temporary: Path, final: Path, files: Mapping[str, Buffer])
         OSError: ``final`` exists already, or the disk refused.
     """
     make_directory(temporary)
-    for name, data in files.items():
-        write_synced(temporary / name, data)
+    for name, blocks in files.items():
+        write_synced(temporary / name, blocks)
     sync_directory(temporary)  # before its name: the disk may write the two in another order than we did
     os.rename(temporary, final)  # noqa: PTH104  # every change of the disk goes through os, for the fault tests
     sync_directory(final.parent)
 
 
-def replace_file(temporary: Path, final: Path, data: Buffer) -> None:
+def replace_file(temporary: Path, final: Path, data: bytes) -> None:
     """Put another file in the place of one: after a crash at any moment there is the old one or the new, whole.
 
     ``temporary``, a directory to be, must lie on the same file system; after a crash it may be left behind.
@@ -78,7 +80,7 @@ def replace_file(temporary: Path, final: Path, data: Buffer) -> None:
         OSError: the disk refused.
     """
     make_directory(temporary)
-    write_synced(temporary / final.name, data)
+    write_synced(temporary / final.name, (data,))
     os.rename(temporary / final.name, final)  # noqa: PTH104  # every change of the disk goes through os, for the fault tests
     sync_directory(final.parent)
     remove_leftover(temporary)

@@ -3,7 +3,7 @@
 import hashlib
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, fields
 from typing import Any, Self
 
@@ -42,9 +42,13 @@ class FileSum:
     sha256: str
 
     @classmethod
-    def of(cls, data: bytes | memoryview) -> Self:
-        """Return the sum of these bytes."""
-        return cls(len(data), hashlib.sha256(data).hexdigest())
+    def of(cls, blocks: Iterable[bytes]) -> Self:
+        """Return the sum of a file, given in pieces."""
+        size_bytes, digest = 0, hashlib.sha256()
+        for block in blocks:
+            size_bytes += len(block)
+            digest.update(block)
+        return cls(size_bytes, digest.hexdigest())
 
 
 @dataclass(frozen=True, slots=True)

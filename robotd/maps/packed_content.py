@@ -2,12 +2,13 @@
 
 import zlib
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from robotd.core.errors import MapError
 from robotd.core.grid_spec import MAX_SIDE_CELLS, GridSpec
+from robotd.maps.atomic import Blocks
 from robotd.maps.manifest import Manifest
 from robotd.maps.version_files import IMAGE, YAML, Content, checked_blocks, files_of
 
@@ -16,6 +17,9 @@ _QUICK = 1
 """Level of zlib, as of :mod:`robotd.core.grid_bytes`."""
 _LONGEST_FILE = MAX_SIDE_CELLS**2 + 2**20
 """Bytes: a byte a cell, and a head."""
+_BLOCK_BYTES = 2**20
+_PACKED_BYTES = 2**16
+"""Unpacked at a time: what zlib leaves of its input for want of room is copied."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,21 +59,48 @@ class PackedContent:
         Raises:
             MapError: one is not packed as it should be, or longer than files are; never more is unpacked.
         """
-        files = {name: _unpacked(name, data) for name, data in self.files.items()}
+        files = {name: b"".join(blocks) for name, blocks in self.blocks().items()}
         return Content(self.spec, self.digest, files, self.stops)
+
+    def blocks(self) -> Mapping[str, Blocks]:
+        """Return the files as they were, unpacked as they are taken; MapError then, as for :meth:`unpacked`."""
+        return {name: _Unpacked(name, data) for name, data in self.files.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class _Unpacked:
+    """A file, unpacked again each time it is asked for.
+
+    Whole it would be 64 MiB, and zlib puts what is large together while it holds the interpreter: the thread that
+    writes a map would keep the heart's loop for 20 ms.
+    """
+
+    name: str
+    data: bytes
+
+    def __iter__(self) -> Iterator[bytes]:
+        unpacking, left = zlib.decompressobj(), _LONGEST_FILE
+        for begin in range(0, len(self.data), _PACKED_BYTES):
+            packed: bytes | memoryview = memoryview(self.data)[begin : begin + _PACKED_BYTES]
+            while block := self._next(unpacking, packed):
+                left -= len(block)
+                if left < 0:
+                    raise self._damaged("it is longer than files are")
+                yield block
+                packed = unpacking.unconsumed_tail
+        if not unpacking.eof or unpacking.unused_data:
+            raise self._damaged("it is cut off, or goes on")
+
+    def _next(self, unpacking: "zlib._Decompress", packed: bytes | memoryview) -> bytes:
+        try:
+            return unpacking.decompress(packed, _BLOCK_BYTES)
+        except zlib.error as error:
+            raise self._damaged(str(error)) from error
+
+    def _damaged(self, why: str) -> MapError:
+        return MapError(f"{self.name} cannot be unpacked: {why}")
 
 
 def _packed(blocks: Iterable[bytes]) -> bytes:
     packing = zlib.compressobj(_QUICK)
     return b"".join((*map(packing.compress, blocks), packing.flush()))
-
-
-def _unpacked(name: str, data: bytes) -> bytes:
-    unpacking = zlib.decompressobj()
-    try:
-        file = unpacking.decompress(data, _LONGEST_FILE)
-    except zlib.error as error:
-        raise MapError(f"{name} cannot be unpacked: {error}") from error
-    if not unpacking.eof or unpacking.unused_data:
-        raise MapError(f"{name} cannot be unpacked: it is cut off, too long, or goes on")
-    return file

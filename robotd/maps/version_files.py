@@ -9,11 +9,11 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from robotd.core.errors import MapError
 from robotd.core.grid_spec import GridSpec
-from robotd.maps.atomic import Buffer
+from robotd.maps.atomic import Blocks
 from robotd.maps.manifest import FileSum, Manifest, decode_manifest
 
 MANIFEST, CELLS, STOPS, IMAGE, YAML = "manifest.json", "cells.bin", "stops.bin", "map.pgm", "map.yaml"
@@ -21,16 +21,37 @@ _MANIFEST_MAX_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 20
 
 
+class Storable(Protocol):
+    """What a version is made of: its files but for the manifest, in pieces, and what that says of them."""
+
+    @property
+    def spec(self) -> GridSpec:
+        """Where its cells lie."""
+
+    @property
+    def digest(self) -> str:
+        """Of the grid."""
+
+    @property
+    def stops(self) -> int | None:
+        """How many stops ``stops.bin`` has; None if there is none."""
+
+    def blocks(self) -> Mapping[str, Blocks]:
+        """Return its files by name; MapError, while they are taken, if one is not as it should be."""
+
+
 @dataclass(frozen=True, slots=True)
 class Content:
-    """What a version holds: the bytes of its files but for the manifest, and what that says of them."""
+    """As :class:`Storable`, the files whole."""
 
     spec: GridSpec
     digest: str
-    """Of the grid."""
     files: dict[str, bytes]
     stops: int | None
-    """How many stops ``stops.bin`` has; None if there is none."""
+
+    def blocks(self) -> Mapping[str, Blocks]:
+        """Return each file as one piece."""
+        return {name: (data,) for name, data in self.files.items()}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,15 +59,15 @@ class NewVersion:
     """A map about to be stored."""
 
     name: str
-    content: Content
+    content: Storable
     sums: Mapping[str, FileSum]
     metadata: dict[str, Any]
     created_unix_ns: int
 
     @classmethod
-    def of(cls, name: str, content: Content, metadata: dict[str, Any], created_unix_ns: int) -> "NewVersion":
+    def of(cls, name: str, content: Storable, metadata: dict[str, Any], created_unix_ns: int) -> "NewVersion":
         """Return a map with the sums of its files, which take a while for a large one."""
-        sums = {file: FileSum.of(data) for file, data in content.files.items()}
+        sums = {file: FileSum.of(blocks) for file, blocks in content.blocks().items()}
         return cls(name, content, sums, metadata, created_unix_ns)
 
     def is_like(self, manifest: Manifest) -> bool:
@@ -55,7 +76,7 @@ class NewVersion:
             self.sums.get(file) == manifest.files.get(file) for file in (CELLS, STOPS)
         )
 
-    def files(self, version: int) -> tuple[Mapping[str, Buffer], Manifest]:
+    def files(self, version: int) -> tuple[Mapping[str, Blocks], Manifest]:
         """Return its files by name, the manifest last, and what that says.
 
         Raises:
@@ -68,7 +89,7 @@ class NewVersion:
         )
         described = manifest.encode()
         check_readable(self.name, described)
-        return {**it.files, MANIFEST: described}, manifest
+        return {**it.blocks(), MANIFEST: (described,)}, manifest
 
 
 def read_manifest(path: Path, name: str, version: int) -> Manifest:

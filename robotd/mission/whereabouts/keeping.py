@@ -138,7 +138,7 @@ class Keeping:
         if made.remark is not None:
             log.warning("map %s goes to the store without its stops: %s", name, made.remark)
         save = partial(self._archive.save, in_place_of=place.kept_beside)
-        return await self._disk.run("save map", lambda: save(name, made.content.unpacked(), told, created_ns))
+        return await self._disk.run("save map", lambda: save(name, made.content, told, created_ns))
 
 
 def _state_of(place: MapInUse) -> tuple[str, int]:

@@ -140,7 +140,7 @@ def _log_read(data: bytes) -> object:
 
 def _manifest() -> list[bytes]:
     spec = GridSpec(0.05, -1.0, -2.0, (4, 5))
-    files = {"cells.bin": FileSum.of(b"cells")}
+    files = {"cells.bin": FileSum.of((b"cells",))}
     return [Manifest("lab", 3, 1_700_000_000_000_000_000, "ab", spec, files, {"note": "a"}, None).encode()]
 
 

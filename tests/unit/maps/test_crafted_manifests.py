@@ -9,7 +9,7 @@ from robotd.core.errors import MapError
 from robotd.core.grid_spec import GridSpec
 from robotd.maps.manifest import _MIGRATIONS, SCHEMA, FileSum, Manifest, _sum, decode_manifest
 
-GOOD = Manifest("lab", 3, 17, "ab", GridSpec(0.05, 0.0, 0.0, (4, 5)), {"cells.bin": FileSum.of(b"cells")}, {}, None)
+GOOD = Manifest("lab", 3, 17, "ab", GridSpec(0.05, 0.0, 0.0, (4, 5)), {"cells.bin": FileSum.of((b"cells",))}, {}, None)
 SPEC = {"resolution_m": 0.05, "origin_x_m": 0.0, "origin_y_m": 0.0, "shape": [4, 5]}
 
 

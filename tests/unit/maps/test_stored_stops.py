@@ -83,7 +83,7 @@ def forge(path: Path, stops: bytes | None, count: int | None) -> None:
     files = {name: one for name, one in manifest.files.items() if name != "stops.bin"}
     if stops is not None:
         (path / "stops.bin").write_bytes(stops)
-        files["stops.bin"] = FileSum.of(stops)
+        files["stops.bin"] = FileSum.of((stops,))
     forged = dataclasses.replace(manifest, files=files, stops=count)
     (path / "manifest.json").write_bytes(forged.encode())
 

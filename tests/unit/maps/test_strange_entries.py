@@ -11,7 +11,7 @@ import pytest
 from robotd.core.errors import MapError
 from robotd.core.grid_spec import MAX_SIDE_CELLS, GridSpec
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.maps.atomic import Buffer, publish_directory
+from robotd.maps.atomic import Blocks, publish_directory
 from robotd.maps.store import MapStore
 
 SPEC = GridSpec(0.05, 0.0, 0.0, (6, 8))
@@ -186,7 +186,7 @@ def test_what_could_not_be_loaded_again_is_not_reported_saved(root: Path, metada
 
 
 def test_a_file_system_that_keeps_another_name_is_found_out(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def publish_under_another_name(temporary: Path, final: Path, files: dict[str, Buffer]) -> None:
+    def publish_under_another_name(temporary: Path, final: Path, files: dict[str, Blocks]) -> None:
         publish_directory(temporary, final.with_name(f"{final.name}~"), files)
 
     monkeypatch.setattr("robotd.maps.archive.publish_directory", publish_under_another_name)
