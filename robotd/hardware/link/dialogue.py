@@ -12,6 +12,7 @@ when a timer happened to fire, and a poll is sent only when nothing was answered
 
 import asyncio
 import contextlib
+import math
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -29,6 +30,9 @@ M_co = TypeVar("M_co", covariant=True)
 
 _PIECES_MAX = 50
 """More than this since a request was given up, and the line counts as never quiet: one that streams, or is stuck."""
+_SILENCE_S = 1.0
+"""So long an answer may stay out before the device is lost: as long as one that reports by itself may be silent, for
+one that gets no processor for a while, or whose line does not, is late and not gone."""
 
 
 class Wire(Protocol[M_co]):
@@ -114,7 +118,8 @@ class Dialogue(Generic[M]):
         self._unsettled_ns: int | None = self._heard_ns
         """When something was given up whose answer may still come; None if all is settled."""
         self._lost: RobotdError | None = None
-        self._silence_s: float | None = None
+        self._is_served = False
+        """Once it was greeted; while it is not, whether anybody is there is found out sooner."""
         self._bytes_came = asyncio.Event()
         self._message_came = asyncio.Event()
 
@@ -150,7 +155,8 @@ class Dialogue(Generic[M]):
             data: the request.
             settles: whether a message is its answer, a refusal included.
             timeout_s: how long a try may stay without it.
-            tries: how often the request may be sent; 1 for whatever must not happen twice.
+            tries: how often the request is sent at least; 1 for whatever must not happen twice. One of a device that
+                is being served is repeated until its answer is late by :data:`_SILENCE_S`.
             despite_stops: a stop does not concern it: it asks, and moves nothing.
 
         Raises:
@@ -161,6 +167,7 @@ class Dialogue(Generic[M]):
         # Before the lock: a stop that comes while this waits for its turn ends it, too.
         stops = self._stops
         async with self._one_at_a_time:
+            tries = self._enough(tries, timeout_s)
             for attempt in range(tries):
                 await self._settle_down()
                 self._check(self._stops if despite_stops else stops)  # against itself: no stop concerns it
@@ -206,6 +213,15 @@ class Dialogue(Generic[M]):
         """Put the stop on the wire from any thread, while the loop is stuck; never raises."""
         self._line.write_past_loop(data)
 
+    def _enough(self, tries: int, timeout_s: float) -> int:
+        """Return how often to send what may be repeated.
+
+        By count, not by the clock: a replay, whose timers fire late, sends as many.
+        """
+        if tries == 1 or not self._is_served:
+            return tries
+        return max(tries, 1 + math.ceil(_SILENCE_S / timeout_s))
+
     async def until_lost(self, silence_s: float | None = None) -> NoReturn:
         """Wait until the line is lost, or nothing that is understood came for so long; raise why.
 
@@ -213,6 +229,7 @@ class Dialogue(Generic[M]):
             TransportError: the line is lost.
             LinkTimeout: no message came for ``silence_s``: noise is no sign of life.
         """
+        self._is_served = True
         while not self._reader.done():
             if silence_s is None:
                 await asyncio.wait({self._reader})

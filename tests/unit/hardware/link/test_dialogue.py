@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 import pytest
 
@@ -151,6 +152,37 @@ async def test_no_answer_to_any_try_is_a_timeout_in_bounded_time() -> None:
             await t.ask("a", tries=3)
         assert t.requests == ["a", "a", "a"]
         assert now_ns() - began_ns < (3 * (0.2 + QUIET_S) + 0.01) * NS_PER_S
+
+
+async def test_a_device_that_is_served_is_asked_for_as_long_as_a_line_may_be_silent() -> None:
+    answers = iter(([], [], [], [], [], [(0.01, "a at last")]))
+    async with talk(lambda _: next(answers)) as t:
+        serving = asyncio.create_task(t.dialogue.until_lost())
+        await asyncio.sleep(0)
+        assert await t.ask("a", tries=3) == "a at last"
+        assert t.counters.retries == 5
+        assert t.counters.timeouts == 0
+        await _ended(serving)
+
+
+async def test_what_must_not_happen_twice_is_asked_once_and_a_device_that_is_gone_is_found_out() -> None:
+    async with talk(lambda _: []) as t:
+        serving = asyncio.create_task(t.dialogue.until_lost())
+        await asyncio.sleep(0)
+        with pytest.raises(LinkTimeout):
+            await t.ask("once")
+        began_ns = now_ns()
+        with pytest.raises(LinkTimeout):
+            await t.ask("a", tries=3)
+        assert 1.0 * NS_PER_S <= now_ns() - began_ns < 2.0 * NS_PER_S
+        assert t.requests[0] == "once"
+        assert set(t.requests[1:]) == {"a"}
+        await _ended(serving)
+
+
+async def _ended(task: "asyncio.Task[NoReturn]") -> None:
+    task.cancel()
+    await asyncio.wait({task})
 
 
 async def test_an_answer_whose_asker_was_cancelled_is_not_taken_for_that_of_the_next_request() -> None:
