@@ -8,6 +8,8 @@ from robotd.core.pose import Pose2
 from robotd.slam.graph import Edge, EdgeKind
 from robotd.slam.stops import Poses
 
+GROUP = 5
+"""False loops that say the same: stops in a row, taken for others in a row, all by one mistake."""
 STEP_COVARIANCE = np.diag([0.02**2, 0.02**2, math.radians(0.35) ** 2])
 
 
@@ -49,6 +51,19 @@ def false_loops(truth: Poses, count: int, random: np.random.Generator) -> list[E
         if np.hypot(*(truth[earlier, :2] - truth[later, :2])) > 2.0:
             x_m, y_m, heading_rad = random.normal(0.0, (0.3, 0.3, 0.2)).tolist()
             found.append(Edge(earlier, later, Pose2(x_m, y_m, heading_rad), STEP_COVARIANCE, EdgeKind.LOOP))
+    return found
+
+
+def false_groups(truth: Poses, count: int, random: np.random.Generator) -> list[Edge]:
+    """Return loops in groups of :data:`GROUP`, each of which agrees with itself: rooms that are alike."""
+    found: list[Edge] = []
+    for _ in range(count):
+        earlier = int(random.integers(0, len(truth) - 10 * GROUP))
+        later = int(random.integers(earlier + 5 * GROUP, len(truth) - GROUP))
+        mistake = _pose(truth, earlier) @ Pose2(*random.uniform(-3.0, 3.0, 3).tolist()) @ _pose(truth, later).inverse()
+        for at in range(GROUP):
+            step = _pose(truth, earlier + at).inverse() @ mistake @ _pose(truth, later + at)
+            found.append(Edge(earlier + at, later + at, step, STEP_COVARIANCE, EdgeKind.LOOP))
     return found
 
 

@@ -10,7 +10,7 @@ from robotd.core.pose import Pose2
 from robotd.slam.graph import Edge, EdgeKind, EdgeTable, chi2, linear, residuals
 from robotd.slam.solve import STOPS_MAX, solve
 from robotd.slam.stops import Poses
-from tests.support.chains import STEP_COVARIANCE, edges_of, false_loops, start_of, truth_of
+from tests.support.chains import GROUP, STEP_COVARIANCE, edges_of, false_groups, false_loops, start_of, truth_of
 
 
 def problem(stops: int, seed: int) -> tuple[Poses, list[Edge], Poses]:
@@ -74,13 +74,30 @@ def test_it_is_nearer_to_the_truth_than_the_steps_and_always_the_same() -> None:
 def test_false_loops_lose_their_say(share: float) -> None:
     truth, edges, start = problem(200, 4)
     clean = solve(start, edges).poses
-    loops = sum(edge.kind is EdgeKind.LOOP for edge in edges)
-    false = false_loops(truth, round(loops * share / (1.0 - share)), np.random.default_rng(5))
+    loops = _loops(edges)
+    _lose_their_say(
+        start, edges, clean, false_loops(truth, round(loops * share / (1.0 - share)), np.random.default_rng(5))
+    )
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5])
+def test_so_do_groups_of_false_loops_that_agree(share: float) -> None:
+    truth, edges, start = problem(200, 4)
+    clean = solve(start, edges).poses
+    groups = round(_loops(edges) * share / (1.0 - share)) // GROUP
+    _lose_their_say(start, edges, clean, false_groups(truth, groups, np.random.default_rng(5)))
+
+
+def _loops(edges: list[Edge]) -> int:
+    return sum(edge.kind is EdgeKind.LOOP for edge in edges)
+
+
+def _lose_their_say(start: Poses, edges: list[Edge], clean: Poses, false: list[Edge]) -> None:
     solution = solve(start, [*edges, *false])
     assert np.hypot(*(solution.poses - clean)[:, :2].T).max() <= 0.05
     refused = set(solution.refused)
     assert {len(edges) + at for at in range(len(false))} <= refused
-    assert len(refused) - len(false) <= 0.1 * loops
+    assert len(refused) - len(false) <= 0.1 * _loops(edges)
 
 
 def test_fixed_stops_stay() -> None:
