@@ -29,47 +29,13 @@ def distance_transform(sources: NDArray[np.bool_], *, outside: bool = False) -> 
     return np.where(squares == NOWHERE, np.inf, np.sqrt(squares))
 
 
-def squared_distances(
-    sources: NDArray[np.bool_], *, outside: bool = False, limit_cells: int | None = None
-) -> NDArray[np.int32]:
-    """Return the squares of those distances, ``int32[rows, cols]``; ``NOWHERE`` if no source is within the limit.
+def squared_distances(sources: NDArray[np.bool_], *, outside: bool = False) -> NDArray[np.int32]:
+    """Return the squares of those distances, ``int32[rows, cols]``; ``NOWHERE`` if there is no source.
 
-    O(cells), whatever the limit is. Arguments as of :func:`distance_transform`, and:
-
-    Args:
-        sources: as above.
-        outside: as above.
-        limit_cells: how far to look; None for as far as the grid goes.
+    O(cells). Arguments as of :func:`distance_transform`.
     """
     squares = np.empty(sources.shape, np.int32)
-    limit = _ANY_DISTANCE if limit_cells is None else limit_cells
     kernels.in_use().distance.squared_distances(
-        sources, squares, CellWindow.whole(sources.shape), limit_cells=limit, outside=outside
+        sources, squares, CellWindow.whole(sources.shape), limit_cells=_ANY_DISTANCE, outside=outside
     )
     return squares
-
-
-def squared_distances_updated(
-    squares: NDArray[np.int32],
-    sources: NDArray[np.bool_],
-    changed: CellWindow,
-    *,
-    outside: bool = False,
-    limit_cells: int,
-) -> NDArray[np.int32]:
-    """Return what :func:`squared_distances` returns after some sources came or went, from what it was before.
-
-    O(cells within twice the limit of the window), and a copy.
-
-    Args:
-        squares: of the sources as they were, with the same limit; not changed.
-        sources: as they are now.
-        changed: holds all cells that became a source or ceased to be one.
-        outside: as above.
-        limit_cells: as above; without a limit any cell could change.
-    """
-    updated = squares.copy()
-    # No source farther than the limit has a say, so farther cells keep their distance.
-    window = changed.grown(limit_cells, sources.shape)
-    kernels.in_use().distance.squared_distances(sources, updated, window, limit_cells=limit_cells, outside=outside)
-    return updated

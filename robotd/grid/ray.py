@@ -17,8 +17,6 @@ Lengths and positions are in cells, positions as ``(row, col)`` with cell ``(r, 
 import numpy as np
 from numpy.typing import NDArray
 
-_CENTRE = 0.5
-
 
 def ray_cells(
     starts: NDArray[np.float64],
@@ -47,20 +45,6 @@ def ray_cells(
     cells = np.floor(starts[ray] + k[:, None] * steps[ray]).astype(np.intp)
     inside = ((cells >= 0) & (cells < shape)).all(axis=1)
     return ray[inside], cells[inside] @ np.array([shape[1], 1])
-
-
-def ray_offsets(bearing_rad: float, length_cells: float) -> NDArray[np.intp]:
-    """Return ``intp[n, 2]``: the ``(row, col)`` offsets of a ray's cells from the cell at whose centre it starts.
-
-    Never empty: the first is ``(0, 0)``, even for a length of zero or less.
-
-    >>> ray_offsets(0.25, 3.5).tolist()
-    [[0, 0], [0, 1], [1, 2], [1, 3]]
-    """
-    bearing = np.array([bearing_rad])
-    count = max(1, int(sample_counts(bearing, np.array([length_cells]))[0]))
-    offsets: NDArray[np.intp] = np.floor(_CENTRE + np.arange(count)[:, None] * ray_steps(bearing)).astype(np.intp)
-    return offsets
 
 
 def ray_steps(bearings_rad: NDArray[np.float64]) -> NDArray[np.float64]:

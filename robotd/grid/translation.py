@@ -1,4 +1,4 @@
-"""Grid-level moves: translation and reflection ([BrownDonald2000]_ sec. 2.3.2).
+"""Grid-level moves: translation ([BrownDonald2000]_ sec. 2.3.2).
 
 The rest of the paper's grid-level operations, cell-wise arithmetic and logic, are NumPy's own operators; the
 convolution (Minkowski sum) is :func:`robotd.grid.footprints.dilate`.
@@ -29,11 +29,6 @@ def translated(
     here_cols, there_cols = _overlap(moved.shape[1], cells.shape[1], col)
     moved[here_rows, here_cols] = cells[there_rows, there_cols]
     return moved
-
-
-def reflected(cells: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Return the grid turned by 180 degrees about its centre, as the Minkowski difference asks; a view."""
-    return cells[::-1, ::-1]
 
 
 def _overlap(moved_size: int, size: int, step: int) -> tuple[slice, slice]:

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from robotd.grid.readings import Readings
-from robotd.localization.count.count_all import count_all
 from robotd.localization.even_headings import even_headings
+from robotd.localization.reference.count_all import count_all
 from robotd.localization.search.bounded_search import best_poses
 from tests.benchmarks.sections.scaling import site_of
 

@@ -16,6 +16,7 @@ from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.living import LEASE_S
 from tests.support.replayed import check, replayed
+from tests.support.true_range import true_range_m
 
 
 async def test_the_head_looks_where_asked_and_a_scan_needs_no_map(live: Live, tmp_path: Path) -> None:
@@ -56,7 +57,7 @@ async def test_ranges_are_measured_where_the_head_points_and_nothing_moves(live:
         await it.daemon.control.perform(RecordStop())
     shots = [event for event in said if isinstance(event, RangeMeasured)]
     assert [shot.number for shot in shots] == list(range(20))
-    there = robot._laser.true_range_m()
+    there = true_range_m(robot)
     good = [shot.range_m for shot in shots if shot.status is ReadingStatus.OK and shot.range_m is not None]
     assert statistics.median(good) == pytest.approx(there, abs=0.02)
     check(replayed(file))

@@ -17,6 +17,7 @@ from robotd.sim.physics.steppers import StepperSettings
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.calibrating import by_key, carried_out, constants
+from tests.support.true_range import true_range_m
 
 pytestmark = pytest.mark.slow
 
@@ -85,7 +86,7 @@ async def test_the_range_bias_is_found_before_a_wall(live: Live) -> None:
     async with live(robot, config) as it:
         await it.done(Turn(math.pi * COUNTS_PER_RAD / 4_400.0))
         await it.done(Look(-PAN_ZERO_RAD, 0.0))
-        wall_m = robot._laser.true_range_m()
+        wall_m = true_range_m(robot)
         (found,) = (await carried_out(it, calibrate_range(constants(config), wall_m))).found
     assert found.value == pytest.approx(RANGE_BIAS_M, abs=0.005 * wall_m)
     assert 0.0 < found.error < 0.005

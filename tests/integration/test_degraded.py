@@ -22,7 +22,7 @@ from robotd.sim.boards.rangefinder_board import RangefinderBoard
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.emulators.emulated_ptu import PtuEmulator
-from robotd.sim.faults.laid import cables, connects_of
+from robotd.sim.faults.laid import cables
 from robotd.sim.physics.plant import ShotAnswer
 from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live
@@ -159,7 +159,8 @@ async def test_without_a_base_it_still_says_where_it_stands(tmp_path: Path) -> N
     robot = office()
     config = in_directory(Config(), tmp_path)
     async with cables(robot) as laid:
-        daemon = compose(config, connects_of(laid), head_on(AtOnce(), config), unpaced(AtOnce()), new_journal(config))
+        connects = {device: cable.connect for device, cable in laid.items()}
+        daemon = compose(config, connects, head_on(AtOnce(), config), unpaced(AtOnce()), new_journal(config))
         parts = [asyncio.create_task(part) for part in daemon.parts().values()]
         await until_ready(daemon)
         await daemon.control.perform(Arm())

@@ -18,11 +18,11 @@ from robotd.contract.events import Event, MapChanged, SweepDone
 from robotd.core.clock import NS_PER_S
 from robotd.core.pose import Odometry
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.interop.tum import decode_tum
 from robotd.logs.carmen import parse_carmen
 from robotd.logs.scan import PoseSource
 from robotd.sim.buildings.log_file import read_log
 from tests.support.recorded_session import laid_together, record_session
+from tests.support.tum_reader import decode_tum
 
 pytestmark = pytest.mark.slow
 

@@ -27,7 +27,7 @@ from robotd.recording.preroll import PrerollJournal
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects
 from robotd.sim.faults.cable import Cable
-from robotd.sim.faults.laid import cables, connects_of
+from robotd.sim.faults.laid import cables
 from robotd.sim.robot import DEVICES, SimulatedRobot
 from tests.support.living import AtOnce, in_directory, until_ready
 from tests.support.places import head_on, unpaced
@@ -139,7 +139,8 @@ async def bench(
     journal = new_journal(config)
     compute = worker or unpaced(AtOnce())
     async with cables(robot) as laid:
-        daemon = compose(config, connects_of(laid), head_on(compute, config), compute, journal)
+        connects = {device: cable.connect for device, cable in laid.items()}
+        daemon = compose(config, connects, head_on(compute, config), compute, journal)
         await daemon.control.perform(RecordStart())
         with daemon.control.events.subscribe(depth=100_000) as events:
             parts = [asyncio.create_task(part, name=name) for name, part in daemon.parts().items()]

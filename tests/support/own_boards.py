@@ -1,9 +1,15 @@
 """The boards of a simulated robot that speak our own protocol, to look inside."""
 
+from firmware_proto.common import Kill
+from firmware_proto.framing import RawFrame, encode_frame
 from robotd.core.errors import ConfigError
+from robotd.hardware.wire.board import EMERGENCY_SEQ
 from robotd.sim.boards.emulated_board import Board
 from robotd.sim.hosting.host import OwnBoard
 from robotd.sim.robot import EmulatedRobot
+
+KILL_BYTES = encode_frame(RawFrame(Kill.TYPE, EMERGENCY_SEQ, b""))
+"""What a switch or another host may say to a board; the daemon itself never kills, it stops."""
 
 
 def board_of(robot: EmulatedRobot, device: str) -> OwnBoard:

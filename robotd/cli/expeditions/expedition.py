@@ -18,7 +18,7 @@ from robotd.contract.explored import ExploringEnded
 from robotd.contract.missions import Explore
 from robotd.contract.requests import Arm
 from robotd.core.broadcast import Subscription
-from robotd.core.clock import VirtualClockLoop
+from robotd.core.clock import run_virtual
 from robotd.core.pose import Pose2
 from robotd.grid.footprints import dilate
 from robotd.grid.tables import NO_INFORMATION
@@ -67,11 +67,7 @@ class Expedition:
 
 def expedition(world: World, seed: int) -> Expedition:
     """Return what came of a robot of that seed: the same seed, the same answer."""
-    loop = VirtualClockLoop()
-    try:
-        return loop.run_until_complete(_explored(world, seed))
-    finally:
-        loop.close()
+    return run_virtual(_explored(world, seed))
 
 
 async def _explored(world: World, seed: int) -> Expedition:

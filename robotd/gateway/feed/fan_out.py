@@ -61,7 +61,7 @@ class FanOut:
     def show_rank(self, listener: Listener, *, show: bool) -> None:
         """Tell somebody of the heat map, or no more: the daemon makes it only while somebody looks."""
         (self._see_rank.add if show else self._see_rank.discard)(listener)
-        if self._see_rank:
+        if self.wants_rank:
             self._rank_wanted.set()
         else:
             self._rank_wanted.clear()

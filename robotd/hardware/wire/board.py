@@ -7,7 +7,7 @@ import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from firmware_proto.common import BoardKind, HelloReply, Kill, Ping, Stop
+from firmware_proto.common import BoardKind, HelloReply, Ping, Stop
 from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START, answers_for, requests_for
 from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.framing import Deframer, RawFrame, encode_frame
@@ -19,7 +19,6 @@ EMERGENCY_SEQ = 0xFFFF
 """``seq`` of the preformatted frames, so that their answers are not taken for those of a session's request."""
 
 STOP_BYTES = encode_frame(RawFrame(Stop.TYPE, EMERGENCY_SEQ, b""))
-KILL_BYTES = encode_frame(RawFrame(Kill.TYPE, EMERGENCY_SEQ, b""))
 
 _SEQ_SPAN = 1 << 16
 

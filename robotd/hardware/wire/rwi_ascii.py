@@ -17,8 +17,6 @@ LINE_MAX_BYTES = 64
 
 TICKS_PER_S = 256
 """Of the base's clock: unit of the watchdog and of the report period."""
-POSITION_ZERO = 0x80000000
-"""What the argument of an absolute rotation counts from."""
 BUMPERS_NONE = 0xFFFF
 """The sixteen bump switches are active low."""
 

@@ -13,7 +13,7 @@ import numpy as np
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
 from robotd.localization.conservative.conservative_rank import ConservativeMap, ConservativeRankGrid
-from robotd.localization.count.count_all import MEMORY_BYTES, heading_batches
+from robotd.localization.count.heading_batches import MEMORY_BYTES, heading_batches
 from robotd.localization.count.limits import FEW_HEADINGS, POSES_TOLD_MAX
 from robotd.localization.search.cell_disk import CellDisk
 
@@ -47,6 +47,8 @@ class UnexcludedStop:
         self._within = within
         self._outlier_share = outlier_share
         self._threads = threads
+        # With few headings each batch costs only itself; with many, the counts of all would not fit into
+        # memory, and all is counted again.
         self._kept = self._grid(self.headings_rad) if len(self.headings_rad) <= FEW_HEADINGS else None
 
     def add(self, readings: Readings) -> None:
@@ -60,6 +62,7 @@ class UnexcludedStop:
 
         O(headings x readings x cells), and a multiple of what :class:`.RankGrid` takes.
         """
+        # Rounded down: half an outlier more would be a reading that the promise does not cover.
         least_rank = max(1, len(self.readings) - math.floor(self._outlier_share * len(self.readings)))
         best, count, found = 0, 0, []
         for first, ranks in self._grids():
@@ -93,4 +96,6 @@ class UnexcludedStop:
         if self._within is None:
             return found
         inside = self._within.touches(found.poses[:, 1:])
+        # The best rank stays that of all: how many readings any place explains does not depend on where
+        # somebody asked.
         return replace(found.part(inside), best_rank=found.best_rank) if inside.any() else PoseSet.nothing()

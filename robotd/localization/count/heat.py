@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from robotd.core.grid_spec import GridSpec
 from robotd.grid.kernels.shared.packed_map import TILE_ROWS, WORD_CELLS
 from robotd.grid.readings import Readings
-from robotd.localization.count.count_all import MEMORY_BYTES, heading_batches
+from robotd.localization.count.heading_batches import MEMORY_BYTES, heading_batches
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.obstacles.levels import Levels
 
@@ -51,6 +51,7 @@ def counted_apart(levels: Levels, readings: Readings, headings_rad: Sequence[flo
     """Count readings for the picture alone: where the best poses are searched for, nothing else counts them."""
     spec = levels.spec
     work = len(readings) * len(headings_rad) * len(levels.maps[0].packed.tiles) * TILE_ROWS * WORD_CELLS
+    # Evenly fewer headings, and not fewer readings: a picture of half the readings would show other places.
     thinned_rad = headings_rad[:: max(1, math.ceil(work / _MOST_WORK))]
     block = block_of(spec)
     greatest = np.zeros(tuple(-(-side // block) for side in spec.shape), np.uint8)

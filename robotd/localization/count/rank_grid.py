@@ -36,8 +36,8 @@ class RankGrid:
 
     The counts of 2048 cells (a tile of 32 x 64 with a free cell in it), at one heading, take 256 bytes for every binary
     digit, of which there are nine up to 511 readings: 300 headings of a room of 7 x 9 m at 50 mm take 10 MB, of
-    256 x 256 free cells 22 MB, of 1024 x 1024 free cells 350 MB. More than 1 GiB is refused; :func:`.count_all`
-    counts maps of any size.
+    256 x 256 free cells 22 MB, of 1024 x 1024 free cells 350 MB. More than 1 GiB is refused: larger maps are
+    searched, or counted a batch of headings at a time (:mod:`.heading_batches`).
     """
 
     def __init__(self, the_map: PreparedMap, headings_rad: Sequence[float], *, threads: int = 1) -> None:
@@ -60,6 +60,8 @@ class RankGrid:
         self._map = the_map.packed
         row, col = the_map.packed.origin
         self._first_cell = row + the_map.obstacles.rim, col + the_map.obstacles.rim
+        # Before anything is allocated: the kernel of the operating system would only notice when the pages are
+        # touched.
         self._refuse_if_too_large(bits_of(0))
         self._counters = self._map.blank_counters(len(self.headings_rad), bits_of(0))
 
@@ -77,6 +79,7 @@ class RankGrid:
             ValueError: there are more than 65535; then none was counted.
             TooLarge: the counts of this many readings would take more than 1 GiB; then none was counted.
         """
+        # Checked here and not in the kernel, whose counters would wrap without a word.
         if self.readings + len(readings) > _READINGS_MAX:
             raise ValueError(f"a rank grid counts {_READINGS_MAX} readings")
         self._count(readings, on or self._the_map, subtract=False)
@@ -123,6 +126,7 @@ class RankGrid:
         missing = bits - self._counters.shape[2]
         if missing > 0:
             self._refuse_if_too_large(bits)
+            # New planes at the top are zeros: the counts stay what they are.
             self._counters = np.pad(self._counters, ((0, 0), (0, 0), (0, missing), (0, 0)))
 
     def _refuse_if_too_large(self, bits: int) -> None:
@@ -169,8 +173,11 @@ class RankGrid:
 
         Only free cells are poses, even for a rank of 0.
         """
+        # On counters as they lie, 64 cells a word: to unpack all counts first would be sixteen times the
+        # memory.
         reached = kernels.in_use().count.at_least(self._counters, self._map, max(least, 0))
         if least <= 0:
+            # Every count reaches 0, also those of the cells beside free ones in a tile.
             reached &= self._map.free[PAD_WORDS:-PAD_WORDS, TILE_ROWS:-TILE_ROWS].T
         heading, row, word = np.nonzero(reached)
         which, bit = np.nonzero(unpack(reached[heading, row, word][:, None], WORD_CELLS))
@@ -208,11 +215,6 @@ class RankGrid:
         least = max(1, best_rank - slack)
         poses = self.cells_of_rank(least)
         return PoseSet(poses, self.rank_at(poses), best_rank, least)
-
-    @property
-    def best_cells(self) -> NDArray[np.intp]:
-        """The poses of greatest rank (the paper's loc), as :meth:`cells_of_rank`."""
-        return self.cells_of_rank(self.best_rank)
 
 
 def bits_of(readings: int) -> int:

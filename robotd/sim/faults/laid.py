@@ -10,7 +10,6 @@ from tempfile import TemporaryDirectory
 from robotd.core.errors import TransportError
 from robotd.core.together import ended
 from robotd.hardware.transport.pty import PtyEnd, open_pty
-from robotd.hardware.transport.transport import Connect
 from robotd.sim.buildings.world import load_world
 from robotd.sim.faults.cable import Cable
 from robotd.sim.faults.plan import PlannedFault, carry_out
@@ -150,8 +149,3 @@ def _reboot(robot: EmulatedRobot, device: str) -> Callable[[], None] | None:
         return None
     boot_ids = random.Random(f"{device}/reboots")  # each boot has another, each run the same
     return lambda: board.reboot(boot_ids.getrandbits(32))
-
-
-def connects_of(laid: Mapping[str, Cable]) -> dict[str, Connect]:
-    """Return what a daemon is given to open its lines."""
-    return {device: cable.connect for device, cable in laid.items()}

@@ -97,11 +97,8 @@ class Laser:
             return self._answer(ShotStatus.TOO_NEAR)
         return self._answer(ShotStatus.OK, range_m)
 
-    def true_range_m(self) -> float:
-        """Return the way of the light to the first wall or the floor; ``inf`` if there is neither."""
-        return self._true_range_m(*self._head.beam_rad)
-
     def _true_range_m(self, pan_rad: float, tilt_rad: float) -> float:
+        """Return the way of the light to the first wall or the floor; ``inf`` if there is neither."""
         settings = self._settings
         tilt_rad += settings.tilt_zero_rad
         world_from_beam = self._body.true_pose @ Pose2(

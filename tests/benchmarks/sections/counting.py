@@ -43,7 +43,7 @@ def all_poses(room: str, occupied: NDArray[np.bool_]) -> Iterator[Timing]:
     yield timed(f"{title}: map to counts, two threads", lambda: whole(2), 15)
     ranks = whole(1)
     yield timed(f"{title}: greatest rank", lambda: ranks.best_rank, 15)
-    yield timed(f"{title}: poses of greatest rank", lambda: ranks.best_cells, 15)
+    yield timed(f"{title}: poses of greatest rank", lambda: ranks.best_poses().poses, 15)
     yield timed(f"{room}, heat map of {HEADINGS} headings: greatest over headings, a byte a cell", ranks.heat, 15)
     yield timed(f"{room}, the same from the slow counts of 5 headings", lambda: _slow_heat(occupied, sweep), 5)
     few = sweep[:: len(sweep) // 10]

@@ -18,12 +18,12 @@ from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.readings import Readings
 from robotd.grid.wall_field import WallField
-from robotd.localization.count.count_all import count_all
 from robotd.localization.count.rank_grid import bits_of
 from robotd.localization.even_headings import even_headings
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.levels import Levels
 from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.reference.count_all import count_all
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 from tests.benchmarks import workload
 from tests.benchmarks.timing import Timing

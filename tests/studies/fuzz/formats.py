@@ -7,11 +7,11 @@ from robotd.grid.image import encode_pgm
 from robotd.interop.grey_image import decode_grey, encode_png
 from robotd.interop.map_server import import_map
 from robotd.interop.map_server_yaml import MapServerYaml, decode_map_yaml
-from robotd.interop.tum import decode_tum
 from robotd.logs.scan import RecordedLog
 from robotd.logs.sweeps_csv import parse_sweeps
 from robotd.sim.buildings.building import RecordedBuilding, encode_recorded_building, select_stops
 from tests.studies.fuzz.target import KIB, MIB, Target
+from tests.support.tum_reader import decode_tum
 
 _GREY = np.arange(20, dtype=np.uint8).reshape(4, 5) * 13
 _YAML = (

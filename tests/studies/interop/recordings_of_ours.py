@@ -25,10 +25,10 @@ from robotd.contract.events import Event, MapChanged, SweepDone
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import ReadingStatus
 from robotd.interop.fan import from_axis_m
-from robotd.interop.tum import decode_tum
 from robotd.sim.buildings.log_file import read_log
 from tests.studies.interop.trip import Trip, size_bytes
 from tests.support.recorded_session import laid_together
+from tests.support.tum_reader import decode_tum
 
 _AIM_M = 0.02
 """How far a beam's end is off where a head's aim is taken for even steps."""

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.footprints import dilate, disk_footprint
-from robotd.grid.ray import ray_offsets
-from robotd.grid.translation import reflected, translated
+from robotd.grid.translation import translated
 from robotd.localization.reference.directional_flood import directional_flood
 from robotd.localization.reference.flooded_poses import (
     flooded_blocked_set,
@@ -21,6 +20,7 @@ from robotd.localization.reference.flooded_poses import (
     flooded_feasible_poses,
 )
 from robotd.localization.reference.floods import UNREACHED, Metric, flood
+from robotd.localization.reference.pixelized_vector import ray_offsets
 from robotd.localization.reference.probe import Probe, probe_of
 
 Mask = NDArray[np.bool_]
@@ -71,7 +71,7 @@ def _convolved(axes: Axes) -> None:
     q = np.zeros((7, 7), np.bool_)
     q[3, 3] = q[3, 4] = q[4, 5] = q[4, 6] = True
     _sheet(axes, p.shape)
-    _fill(axes, dilate(p, reflected(q)), _FIRST)
+    _fill(axes, dilate(p, q[::-1, ::-1]), _FIRST)
     _fill(axes, p, _OBSTACLE)
     for row, col in np.argwhere(q).tolist():
         axes.add_patch(Rectangle((col - 3, row - 3), 1, 1, facecolor=_SECOND, edgecolor=_INK, linewidth=0.6))

@@ -6,9 +6,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
-from robotd.grid.distance import distance_transform, squared_distances, squared_distances_updated
+from robotd.grid.distance import distance_transform
 from robotd.grid.footprints import dilate, disk_footprint
-from robotd.grid.window import CellWindow
 
 masks = hnp.arrays(
     np.bool_,
@@ -45,19 +44,3 @@ def test_what_is_near_enough_is_what_growing_by_a_disk_adds(
 
 def test_without_sources_everything_is_infinitely_far() -> None:
     assert np.isinf(distance_transform(np.zeros((3, 4), np.bool_))).all()
-
-
-@settings(max_examples=100)
-@given(masks, st.data(), st.integers(0, 6), st.booleans())
-def test_what_changed_cells_can_reach_is_worked_out_anew_and_the_rest_kept(
-    sources: NDArray[np.bool_], data: st.DataObject, limit: int, outside: bool
-) -> None:
-    flat = data.draw(st.sets(st.integers(0, sources.size - 1), max_size=4))
-    window = CellWindow.bounding(np.array(sorted(flat), np.intp), sources.shape)
-    changed = sources.copy()
-    changed[window.slices] ^= data.draw(hnp.arrays(np.bool_, changed[window.slices].shape))
-    before = squared_distances(sources, outside=outside, limit_cells=limit)
-    kept = before.copy()
-    updated = squared_distances_updated(before, changed, window, outside=outside, limit_cells=limit)
-    assert np.array_equal(updated, squared_distances(changed, outside=outside, limit_cells=limit))
-    assert np.array_equal(before, kept)

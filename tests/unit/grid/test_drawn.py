@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.drawn import FAR_CELLS, Drawn
 from robotd.grid.kernels.draw.draw_kernel import turned
-from robotd.grid.ray import ray_offsets
 from robotd.grid.readings import Readings
+from robotd.localization.reference.pixelized_vector import ray_offsets
 
 RESOLUTION_M, RADIUS, REACH = 0.05, 1.5, 300
 readings = st.builds(

@@ -6,7 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.grid.ray import ray_cells, ray_offsets
+from robotd.grid.ray import ray_cells
+from robotd.localization.reference.pixelized_vector import ray_offsets
 
 SHAPE = (12, 17)
 coordinates = st.floats(-25.0, 40.0)

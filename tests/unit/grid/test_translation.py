@@ -1,10 +1,10 @@
-"""Translation and reflection, cell by cell."""
+"""Translation, cell by cell."""
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robotd.grid.translation import reflected, translated
+from robotd.grid.translation import translated
 
 sizes = st.integers(1, 6)
 steps = st.integers(-9, 9)
@@ -21,7 +21,3 @@ def test_each_cell_shows_what_lies_that_far_from_it(
     for r, c in np.ndindex(moved.shape):
         inside = 0 <= r + row < rows and 0 <= c + col < cols
         assert moved[r, c] == (cells[r + row, c + col] if inside else -1)
-
-
-def test_reflection_is_half_a_turn() -> None:
-    assert reflected(np.array([[1, 2, 3], [4, 5, 6]])).tolist() == [[6, 5, 4], [3, 2, 1]]

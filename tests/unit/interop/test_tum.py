@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from robotd.core.errors import RecordingError
 from robotd.core.pose import Pose2
-from robotd.interop.tum import TimedPose, decode_tum, encode_tum
+from robotd.interop.tum import TimedPose, encode_tum
+from tests.support.tum_reader import decode_tum
 
 coordinates = st.floats(-1e6, 1e6)
 timed_poses = st.builds(

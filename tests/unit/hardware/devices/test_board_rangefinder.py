@@ -16,6 +16,7 @@ from robotd.sim.physics.laser import LaserSettings
 from robotd.sim.physics.noise import NOISELESS
 from robotd.sim.physics.plant import ShotAnswer
 from robotd.sim.robot import SimSettings
+from tests.support.true_range import true_range_m
 from tests.unit.hardware.devices.conftest import rig
 
 pytestmark = pytest.mark.usefixtures("either_firmware")
@@ -28,7 +29,7 @@ async def test_a_shot_has_its_range_with_bias_its_strength_and_its_time() -> Non
         await r.rangefinder.switch_laser(on=True)
         before_ns = now_ns()
         shot = await r.rangefinder.shoot(timeout_s=1.0)
-        truth_m = r.robot._laser.true_range_m()
+        truth_m = true_range_m(r.robot)
         assert shot.status is ReadingStatus.OK
         assert shot.range_m == pytest.approx(truth_m + 0.01, abs=0.0006)
         assert abs(shot.time_ns - before_ns) < MS

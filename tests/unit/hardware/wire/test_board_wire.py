@@ -15,7 +15,8 @@ from firmware_proto.framing import Deframer, RawFrame, encode_frame
 from firmware_proto.rangefinder_messages import Shot, ShotStatus
 from firmware_proto.schema import Message
 from robotd.core.errors import LocalProtocolError
-from robotd.hardware.wire.board import EMERGENCY_SEQ, KILL_BYTES, STOP_BYTES, BoardWire, Received, WireCounters
+from robotd.hardware.wire.board import EMERGENCY_SEQ, STOP_BYTES, BoardWire, Received, WireCounters
+from tests.support.own_boards import KILL_BYTES
 
 NO_GAPS = WireCounters(0, 0, 0, 0, 0, 0)
 

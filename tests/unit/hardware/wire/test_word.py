@@ -7,8 +7,9 @@ from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.framing import RawFrame, encode_frame
 from firmware_proto.rangefinder_messages import Shoot
 from robotd.hardware.wire import dimetix, disto, dynamixel, lw20, lwnx, ptu, rflex, rwi_ascii, scip, tfmini
-from robotd.hardware.wire.board import KILL_BYTES, STOP_BYTES, requests_to
+from robotd.hardware.wire.board import STOP_BYTES, requests_to
 from robotd.hardware.wire.word import Repeat, Word, Words
+from tests.support.own_boards import KILL_BYTES
 
 DRIVE = requests_to(BoardKind.DRIVE)
 

@@ -54,8 +54,9 @@ def test_rank_is_how_many_feasible_pose_sets_hold_a_free_cell(
     assert np.array_equal(ranks.rank, expected)
     assert ranks.best_rank == expected.max()
     free = np.broadcast_to(~occupied, expected.shape)
-    assert np.array_equal(ranks.best_cells, np.argwhere((expected == expected.max()) & free))
-    assert np.array_equal(ranks.rank_at(ranks.best_cells), np.full(len(ranks.best_cells), expected.max()))
+    best = ranks.cells_of_rank(ranks.best_rank)
+    assert np.array_equal(best, np.argwhere((expected == expected.max()) & free))
+    assert np.array_equal(ranks.rank_at(best), np.full(len(best), expected.max()))
 
 
 def drawn_obstacles(seed: int, shape: tuple[int, int], outside: tuple[bool, bool], blocked_by: int) -> Obstacles:
@@ -206,7 +207,7 @@ def test_a_map_without_free_cells_has_no_poses() -> None:
     ranks = RankGrid(map_of(np.ones((4, 5), np.bool_)), [0.0])
     ranks.add(Readings.of((RangeReading(0, 0.0, ReadingStatus.OK, 1.0),)))
     assert ranks.best_rank == 0
-    assert ranks.best_cells.shape == (0, 3)
+    assert ranks.cells_of_rank(ranks.best_rank).shape == (0, 3)
     assert ranks.rank.shape == (1, 4, 5)
 
 

@@ -131,7 +131,7 @@ def test_headings_are_joined_across_north() -> None:
     regions = regions_of(ranks, 4)
     east = [region for region in regions if math.cos(region.centre.heading_rad) > 0.9]
     assert len(east) == 2  # one in each room
-    assert {int(heading) for heading, _, _ in ranks.best_cells if heading < 9 or heading > 27} >= {35, 0, 1}
+    assert {int(heading) for heading, _, _ in ranks.best_poses().poses if heading < 9 or heading > 27} >= {35, 0, 1}
     assert all(abs(region.centre.heading_rad) < 0.05 for region in east)
     for region in east:
         low_rad, high_rad = region.extent.heading_min_rad, region.extent.heading_max_rad

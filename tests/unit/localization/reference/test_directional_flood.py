@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
-from robotd.grid.ray import ray_offsets
 from robotd.localization.reference import directional_flood as module
 from robotd.localization.reference.directional_flood import directional_flood, is_ray
+from robotd.localization.reference.pixelized_vector import ray_offsets
 
 sources_of_any_shape = hnp.arrays(
     np.bool_,

@@ -12,11 +12,11 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
-from robotd.localization.count.count_all import count_all
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.levels import Levels
 from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.reference.count_all import count_all
 from robotd.localization.reference.rank import loc_of, rank_of
 from robotd.localization.search.bounded_search import SearchMap, best_poses
 

@@ -128,7 +128,7 @@ def test_with_its_four_headings_localization_finds_the_place_by_translation_alon
     ranks = RankGrid(PreparedMap.of_binary(binary, 3.0), result.headings_rad)
     for reading in sweep:
         ranks.add(Readings.of((reading,)))
-    number, row, col = ranks.best_cells[0].tolist()
+    number, row, col = ranks.best_poses().poses[0].tolist()
     assert math.dist(binary.spec.centre_of(row, col), place_m) < 0.15
     assert off_rad(result.headings_rad[number], heading, math.tau) < math.radians(2.0)
 

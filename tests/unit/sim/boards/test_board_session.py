@@ -37,12 +37,13 @@ from firmware_proto.pantilt_messages import Aim, ReadAim, ReadLimits
 from firmware_proto.rangefinder_messages import SetLaser, Shoot, ShotStatus
 from firmware_proto.rules import RULES
 from firmware_proto.schema import Message
-from robotd.hardware.wire.board import KILL_BYTES, STOP_BYTES, BoardWire, Received
+from robotd.hardware.wire.board import STOP_BYTES, BoardWire, Received
 from robotd.sim.boards.drive_board import DriveBoard
 from robotd.sim.boards.emulated_board import Board
 from robotd.sim.boards.pantilt_board import PanTiltBoard
 from robotd.sim.boards.rangefinder_board import RangefinderBoard
 from robotd.sim.physics.plant import ShotAnswer
+from tests.support.own_boards import KILL_BYTES
 
 
 class Still:

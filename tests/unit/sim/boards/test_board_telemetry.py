@@ -15,9 +15,10 @@ from firmware_proto.common import (
 )
 from firmware_proto.rangefinder_messages import ShotStatus
 from firmware_proto.schema import Message
-from robotd.hardware.wire.board import KILL_BYTES, BoardWire, Received
+from robotd.hardware.wire.board import BoardWire, Received
 from robotd.sim.boards.rangefinder_board import RangefinderBoard
 from robotd.sim.physics.plant import ShotAnswer
+from tests.support.own_boards import KILL_BYTES
 
 START_US = 1_000_000
 PERIOD_US = 50_000

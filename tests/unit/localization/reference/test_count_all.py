@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.readings import Readings
-from robotd.localization.count.count_all import count_all
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.even_headings import even_headings
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.prepared_map import PreparedMap
+from robotd.localization.reference.count_all import count_all
 
 
 @settings(max_examples=40, deadline=None)

@@ -1,22 +1,20 @@
-"""All poses counted within a stated memory: headings in batches, of which only the best poses are kept.
+"""All poses counted, batch by batch within a stated memory, of which only the best are kept: what a search must find.
 
 A :class:`.RankGrid` holds the counts of all headings at once, which it must if readings are to
 come one by one. Where they are all there, one batch of headings after the other gives the same best poses, and the
 memory is that of one batch: so maps of any size can be counted. The bounded search (:mod:`.bounded_search`)
-gives the same answer sooner, by not counting what cannot be best.
+gives the same answer sooner, by not counting what cannot be best; it is what the programs use.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
-from robotd.localization.count.rank_grid import RankGrid, bits_of
+from robotd.localization.count.heading_batches import MEMORY_BYTES, heading_batches
+from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.obstacles.prepared_map import PreparedMap
-
-MEMORY_BYTES = 1 << 28
-"""256 MiB."""
 
 
 def count_all(
@@ -55,15 +53,3 @@ def count_all(
     least = max(1, best - slack)
     near = counts >= least  # what came near the best of earlier headings may not come near the best
     return PoseSet(poses[near], counts[near], best, least)
-
-
-def heading_batches(
-    the_map: PreparedMap, readings: int, headings_rad: Sequence[float], memory_bytes: int
-) -> Iterator[tuple[int, Sequence[float]]]:
-    """Yield headings in batches whose counters take no more than this much memory, each after its first one's number.
-
-    A batch has one heading at least, whatever that takes.
-    """
-    batch = max(1, memory_bytes // max(1, the_map.packed.counter_bytes(1, bits_of(readings))))
-    for first in range(0, len(headings_rad), batch):
-        yield first, headings_rad[first : first + batch]
