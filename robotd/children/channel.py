@@ -66,12 +66,14 @@ class Inbox:
 
     def lose(self, reason: ChildError) -> None:
         """Note that no more will come; the first reason counts."""
+        # What comes first is the cause; that the socket is closed after it only follows.
         self._lost = self._lost or reason
         self._news.set()
 
     async def get(self) -> bytes:
         """Wait for a message; ChildError if none is to come."""
         while not self._messages:
+            # Asked only when nothing waits: what was sent before the end is received first.
             if self._lost is not None:
                 raise self._lost
             self._news.clear()
@@ -91,8 +93,10 @@ class Outgoing:
 
     def put(self, parts: Sequence[Part]) -> bool:
         """Let all of these wait, or none of them; return which."""
+        # Views, not one joined message: a map of megabytes is not copied on the loop to be sent.
         views = [memoryview(part).cast("B") for part in parts if len(part)]
         length = sum(view.nbytes for view in views)
+        # All or none: half a message would leave the other end out of step for good.
         if self.bytes + length > self._room_bytes:
             return False
         self._parts.extend(views)
@@ -110,6 +114,7 @@ class Outgoing:
         while count:
             first = self._parts[0]
             if first.nbytes > count:
+                # The kernel takes as much as it has room for, which seldom ends where a part does.
                 self._parts[0] = first[count:]
                 return
             count -= first.nbytes

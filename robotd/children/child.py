@@ -84,13 +84,18 @@ class Child:
             began_ns = now_ns()
             cause, was_wanted = await self._one_life()
             was_ready = self.is_ready.is_set()
+            # Back-off is for what fails by itself: one that we killed, or that served for a while, is followed
+            # at once.
             if not was_wanted or (was_ready and now_ns() - began_ns > _LASTED_S * NS_PER_S):
                 wait_s = 0.0
             else:
+                # Twice nothing is nothing: the first wait of a row comes from the `or`.
                 wait_s = min(2.0 * wait_s, LONGEST_WAIT_S) or FIRST_WAIT_S
+            # An end that we asked for is no trouble, and nobody should have to read it as one.
             level = logging.WARNING if was_wanted else logging.INFO
             self._log.log(level, "process %s: %s; started again in %.1f s", self._name, cause, wait_s)
             self.is_ready.clear()
+            # Told before the wait: what hangs on the child must not count on it for as long.
             self._died(Death(cause, was_ready, wait_s))
             await asyncio.sleep(wait_s)
 
@@ -110,7 +115,10 @@ class Child:
             if unwanted in done:
                 running.kill()
                 return unwanted.result(), False
+            # Of several tasks that see the end, the process's own exit says most: a signal or a code, not a
+            # closed socket.
             await asyncio.wait((ended,), timeout=_LAST_WORDS_S)
+            # In this order: from what happened to what was noticed of it.
             cause = next(task for task in (ended, watched, served) if task.done()).result()
             running.kill()
             return cause, True
@@ -139,6 +147,7 @@ class Child:
 
     async def _see_off(self, running: Running) -> None:
         """Let it end by itself, or end it: none outlives this."""
+        # Hung up on before it is killed: one that is well ends by itself, and its exit code says how.
         running.close()
         try:
             with suppress(TimeoutError):

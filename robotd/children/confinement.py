@@ -22,10 +22,14 @@ def confine_to_program(sockets_in: str) -> str:
     """
     allowed = dict.fromkeys(_program(), _READ)
     if sockets_in:
+        # It may remove its sockets as well: what a killed front left behind is in the way of the next one's
+        # bind.
         allowed[Path(sockets_in).absolute()] = _MAKE_SOCKETS
     try:
         confine(allowed)
     except OSError as error:
+        # All that is left where the kernel has no Landlock: no program that it might start can be more than it
+        # is.
         no_new_privileges()
         return error.strerror or str(error)
     return ""

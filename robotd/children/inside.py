@@ -53,17 +53,21 @@ def adopted(argv: Sequence[str]) -> Birth:
     """
     parent, memory_bytes, sockets_in, descriptors, *arguments = argv
     die_with_parent()  # beside the end of the channel, which a child that computes would find out late
+    # The kernel signals a death only to those that asked before it.
     if os.getppid() != int(parent):  # it went before we had asked for that
         raise SystemExit(0)
     no_realtime()
     # Only the parent decides when to end: of a terminal's Ctrl-C it hears as well, and stops the robot first.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
+    # Address space and not resident memory: the kernel refuses the one at the allocation, where Python can
+    # raise an error.
     if int(memory_bytes):
         with suppress(OSError, ValueError):  # where that is forbidden it is for the service manager
             resource.setrlimit(resource.RLIMIT_AS, (int(memory_bytes), int(memory_bytes)))
     with suppress(OSError):  # where memory is short, the kernel shall take a child before the one that stops the robot
         Path("/proc/self/oom_score_adj").write_text("500", encoding="ascii")
+    # Last: everything above still needs what it takes away.
     unconfined = confine_to_program(sockets_in)
     return Birth(tuple(int(number) for number in descriptors.split(",")), tuple(arguments), unconfined)
 
@@ -81,4 +85,6 @@ async def live(life: Channel, version: str) -> None:
     life.send(READY, version.encode())
     with suppress(ChildError):
         while True:
+            # Given back as it came: a child need not know what a ping is, and cannot answer one that was not
+            # sent.
             life.send(await life.receive())

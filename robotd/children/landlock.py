@@ -76,6 +76,7 @@ def confine(allowed: Mapping[Path, Access]) -> None:
         OSError: the kernel has no Landlock, or refuses it.
     """
     there = version()
+    # A right that this kernel does not know would make it refuse all of them.
     handled = _all(access for access in Access if _SINCE.get(access, 1) <= there)
     tcp, scoped = _NO_TCP if there >= 4 else 0, _NO_ABSTRACT_SOCKETS_NO_SIGNALS if there >= 6 else 0
     attributes = _RULESET.pack(handled.value, tcp, scoped)
@@ -90,10 +91,12 @@ def confine(allowed: Mapping[Path, Access]) -> None:
 
 def _allow(ruleset: int, path: Path, access: Access) -> None:
     try:
+        # A handle for naming alone: the child need not have the right to read what it is allowed to list.
         place = os.open(path, os.O_PATH | os.O_CLOEXEC)
     except FileNotFoundError:
         return
     try:
+        # Rights of directories on a plain file are an error to the kernel.
         rights = access if path.is_dir() else access & Access.OF_A_FILE
         _called(_ADD_RULE, ruleset, _PATH_BENEATH, _RULE.pack(rights.value, place), 0)
     finally:

@@ -40,6 +40,7 @@ class MemoryChannel:
     def close(self) -> None:
         """Give the channel up."""
         peer, self._peer = self._peer, None
+        # Both ends are told, as a socket's are: the one that closes may have a task that still receives.
         self._inbox.lose(HungUp("it was closed"))
         self._taken.set()
         if peer is not None:

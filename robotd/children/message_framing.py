@@ -43,6 +43,7 @@ class Unframer:
             if self._held < _LENGTH:
                 return None
             self._length = int.from_bytes(self._taken(_LENGTH), "little")
+            # At once: what says that it has four gigabytes must not be waited for, or held.
             if self._length > self._longest:
                 raise RemoteProtocolError(f"a message of {self._length} bytes, expected at most {self._longest}")
         if self._held < self._length:

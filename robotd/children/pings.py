@@ -57,8 +57,10 @@ async def watch(
     number = 0
     while True:
         number += 1
+        # A number that was never sent before: an echo of the last ping does not pass for an answer to this one.
         life.send(number.to_bytes(_NUMBER, "little"))
         await _answered(life, number, patience.silent_s, share)
+        # After the answer: one ping is under way at a time, so a slow child is not buried in them.
         await asyncio.sleep(patience.between_s)
 
 
@@ -92,6 +94,8 @@ async def _said(life: Channel, within_s: float, share: Callable[[], Share]) -> b
                 return await life.receive()
         except TimeoutError:
             waited_s += left_s
+            # Only what the child could have used counts: on a busy machine it may wait for a processor longer
+            # than it may be silent.
             left_s = within_s - share().could_act_s(before, waited_s)
     raise TimeoutError
 

@@ -66,6 +66,8 @@ class Process:
         self._process = process
         self.life, *self.lanes = (SocketChannel(end) for end in ends)
         self._ended: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+        # A descriptor and not SIGCHLD: it is of this child alone, is known on the loop at once, and needs no
+        # handler of the program's.
         self._watch = os.pidfd_open(process.pid)
         asyncio.get_running_loop().add_reader(self._watch, self._reap)
 
@@ -80,10 +82,12 @@ class Process:
 
     async def ended(self) -> str:
         """Wait until it has ended, and return how."""
+        # Several wait for one end; one of them that is cancelled must not take it from the others.
         return await asyncio.shield(self._ended)
 
     def kill(self) -> None:
         """End it at once: stopped, stuck or computing."""
+        # A number that was reaped may be somebody else's process by now.
         if self._process.returncode is None:
             self._process.kill()
 
@@ -124,6 +128,7 @@ def _spawn(program: Program) -> Process:
         # Safe path: what lies in the working directory must not be imported in place of what is installed.
         command = [sys.executable, "-P", *program.runs, str(os.getpid()), str(program.memory_bytes)]
         command += [program.sockets_in, ",".join(map(str, inherited)), *program.arguments]
+        # No pipes: what it says goes over its lanes, and its log to where ours goes.
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=(*inherited, *program.inherits))
         try:
             running = Process(process, near_ends)

@@ -27,6 +27,7 @@ def share_of(pid: int) -> Share:
         ran_ns, waited_ns, _ = Path(f"/proc/{pid}/schedstat").read_text(encoding="ascii").split()
         # After the name, which may hold anything.
         state = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()[0]
+    # Ended since, or no `schedstat` in this kernel: then patience goes by the clock alone.
     except (OSError, ValueError):
         return Share()
     return Share(int(ran_ns) / NS_PER_S, int(waited_ns) / NS_PER_S, state == "R")

@@ -43,6 +43,8 @@ class SocketChannel:
         length = sum(memoryview(part).nbytes for part in parts)
         if self._socket is None or not self._outgoing.put((header(length), *parts)):
             return False
+        # Tried at once: most messages fit into the socket's buffer, and a turn of the loop later would be a
+        # turn later for a stop.
         if not self._is_writing:
             self._write()
         return True
@@ -89,6 +91,8 @@ class SocketChannel:
         except ProtocolError as error:
             self._lose(ChildError(str(error)))
             return
+        # No more is read until some was taken: the kernel's buffer fills, and the sender is told by its own
+        # `send`.
         if self._inbox.bytes > self._room_bytes:
             self._is_reading = False
             self._loop.remove_reader(self._socket)
@@ -115,6 +119,7 @@ class SocketChannel:
     def _hand_over(self, end: socket.socket) -> None:
         written = 0
         while self._outgoing.bytes and written < _WRITTEN_BYTES:
+            # Several pieces a call: header and body are apart, and a call each would double the system calls.
             count = end.sendmsg(self._outgoing.pieces(_PIECES))
             self._outgoing.drop(count)
             written += count
@@ -122,6 +127,8 @@ class SocketChannel:
     def _lose(self, reason: ChildError) -> None:
         self._inbox.lose(reason)
         self._left.set()
+        # First forgotten, then closed: a callback that is due already finds no socket, not a number that is
+        # somebody else's.
         end, self._socket = self._socket, None
         if end is not None:
             self._loop.remove_reader(end)

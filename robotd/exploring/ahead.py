@@ -32,6 +32,7 @@ def bearings_along(length_m: float, half_width_m: float) -> tuple[float, ...]:
     to_the_left_rad = {
         math.asin(half_width_m / out_m)
         for out_m in (reach_m / 2**halving for halving in range(_HALVINGS))
+        # Nearer than its own breadth nothing can be beside the leg but what is beside the robot already.
         if out_m > half_width_m
     }
     return tuple(sorted({0.0, *to_the_left_rad, *(-bearing_rad for bearing_rad in to_the_left_rad)}))
@@ -47,6 +48,7 @@ def in_the_way(readings: Iterable[RangeReading], length_m: float, half_width_m: 
     """
     hits = (reading for reading in readings if reading.status is ReadingStatus.OK)
     met = (reading for reading in hits if _is_met(head_m(reading), length_m, half_width_m))
+    # The nearest is what it would hit first; what stands behind that is seen from the next place.
     return min(met, key=lambda reading: math.hypot(*head_m(reading)), default=None)
 
 
@@ -64,6 +66,8 @@ def shape_of(reading: RangeReading, fan: Iterable[RangeReading]) -> tuple[Point,
     """
     met_m = head_m(reading)
     heads_m = [head_m(one) for one in fan if one.status is ReadingStatus.OK]
+    # Bounded: the fan also meets the walls behind, and a way round a chair must not become a way round the
+    # room.
     near_m = tuple(one for one in heads_m if math.dist(one, met_m) <= _BROAD_M)
     return near_m if any(math.dist(one, met_m) <= _SAME_M for one in near_m) else ()
 

@@ -144,6 +144,8 @@ class _Known:
     def candidates(self, settings: ExploringSettings) -> NDArray[np.intp]:
         """Return the cells of the lattice that the robot can go to and that lie within bounds, ``intp[n, 2]``."""
         step = max(1, round(settings.lattice_m / self.spec.resolution_m))
+        # A lattice of the grid and not of the bounds: the same candidates come up at each choice, so that what
+        # was tried is recognized.
         cells = np.argwhere(np.isfinite(self.ways[::step, ::step])) * step
         return cells[_holds(self.outlook.within, self.points_m(cells))]
 
@@ -158,6 +160,8 @@ def _chosen(known: _Known, question: ChoiceQuestion, settings: ExploringSettings
     cells = known.candidates(settings)
     places_m = known.points_m(cells)
     views = known.outlook.views(places_m, settings)
+    # What was tried is left out by where it lies, not by what it sees: a place that showed nothing new will not
+    # by asking again.
     fresh = (views.opening_m > 0.0) & _apart(places_m, (*question.stops_m, *question.tried.in_vain_m), settings.apart_m)
     left = _left(known, question, settings)
     if not fresh.any():
@@ -167,6 +171,7 @@ def _chosen(known: _Known, question: ChoiceQuestion, settings: ExploringSettings
     which = np.flatnonzero(fresh & (views.overlap >= overlap_min))
     ways_m = known.ways[cells[which, 0], cells[which, 1]] * known.spec.resolution_m
     best = _ranked(places_m[which], views[which], ways_m, question)[: settings.shown]
+    # Of all that is fresh, not of the chosen: a small addition near by must not hide a hall far away.
     is_enough = views.area_m2[fresh].max() < settings.good_enough * known.seen_m2
     return Choice(best, known.seen_m2, WhyEnded.GOOD_ENOUGH if is_enough else None, left)
 
@@ -179,6 +184,7 @@ def _ranked(
     turns_rad = facing_rad(places_m, (start.x_m, start.y_m), start.heading_rad)
     pace = question.pace
     seconds = [pace.seconds(way_m, turn_rad) for way_m, turn_rad in zip(ways_m, turns_rad, strict=True)]
+    # Area a second and not area a metre: a sweep takes as long as ten metres of way.
     scores = views.area_m2 / np.array(seconds)
     return tuple(
         Candidate(

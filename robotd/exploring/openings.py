@@ -82,6 +82,7 @@ def _inside(spec: GridSpec, within: Rectangle) -> NDArray[np.bool_]:
 
 def _pieces(cells: NDArray[np.bool_]) -> list[list[tuple[int, int]]]:
     """Part cells into pieces that touch by sides or corners, each from its first cell on."""
+    # A dict and not a set: it keeps its order, so pieces come out the same in every process.
     left = dict.fromkeys((row, col) for row, col in np.argwhere(cells).tolist())
     pieces = []
     while left:
@@ -97,6 +98,7 @@ def _pieces(cells: NDArray[np.bool_]) -> list[list[tuple[int, int]]]:
 
 def _opening(spec: GridSpec, piece: NDArray[np.intp], near: NDArray[np.bool_]) -> Opening:
     spread = np.ptp(piece, axis=0) + 1
+    # A cell of it and not its mean, which of a bent stretch may lie in a wall.
     middle = np.hypot(*(piece - piece.mean(axis=0)).T).argmin()
     row, col = piece[middle].tolist()
     is_near = bool(near[piece[:, 0], piece[:, 1]].any())

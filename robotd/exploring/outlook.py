@@ -69,6 +69,7 @@ class Outlook:
             cut_off_m: farther than this nothing is seen.
         """
         cast = kernels.in_use().cast
+        # Made once for a choice: thousands of candidates cast a hundred and eighty beams each.
         skips, unknown_skips = cast.skip_codes(walls, unknown), cast.skip_codes(~unknown, np.zeros_like(unknown))
         return cls(spec, skips, unknown_skips, _inside(extent_of(spec), within), cut_off_m)
 
@@ -85,6 +86,7 @@ class Outlook:
         area_m2 = np.zeros_like(ways_m)
         at, beam = np.nonzero(open_)
         entered_m = places_m[at] + ahead[beam] * ways_m[open_, None]
+        # As far as the map knows on: a beam that comes out on known ground has not found a hall.
         ends_m = np.minimum(ways_m[open_] + self._unknown_m(entered_m, ahead[beam]), reach_m[open_])
         area_m2[open_] = _expected(ways_m[open_], ends_m, settings.unknown_per_m)
         return Views(
@@ -155,6 +157,7 @@ def _broad(open_: NDArray[np.bool_], widths_m: NDArray[np.float64], least_m: flo
 def _expected(ways_m: NDArray[np.float64], reach_m: NDArray[np.float64], per_m: float) -> NDArray[np.float64]:
     """Return the integral from ``way`` to ``reach`` of ``s exp(-per_m (s - way)) ds``: ground a radian, in m2."""
     beyond_m = np.maximum(reach_m - ways_m, 0.0)
+    # In closed form: a sum over cells of each beam would cost as much as casting it.
     left = np.exp(-per_m * beyond_m)
     expected: NDArray[np.float64] = ways_m * (1.0 - left) / per_m + (1.0 - left * (1.0 + per_m * beyond_m)) / per_m**2
     return expected

@@ -1,4 +1,4 @@
-"""WhyLeft a robot that explores stops exploring."""
+"""Why a robot that explores ends, and why it leaves an opening alone."""
 
 import enum
 

@@ -25,6 +25,7 @@ async def _run(birth: Birth) -> None:
 
 def main() -> NoReturn:
     """Serve clients until the daemon hangs up."""
+    # Before the heavy imports, which begin threads: what is confined later does not bind those.
     birth = adopted(sys.argv[1:])
     configure(*birth.arguments)
     birth.tell(log)

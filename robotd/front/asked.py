@@ -94,8 +94,11 @@ class Asked:
             numbered = decode_request(await lane.receive(), LONGEST_REQUEST, FROM_FRONT)
             if isinstance(numbered, BadRequest):
                 if numbered.means_stop:
+                    # In doubt it is a stop (decision 17), also from a front that has lost its mind.
                     self._obey(_UNREADABLE)
                 raise ChildError(f"it asked what nobody understands: {numbered.error.message}")
+            # Only upwards: by its number it is known what a stop overtook, so a number that comes twice would
+            # be a way round that.
             if numbered.id <= latest:
                 raise ChildError(f"it asked number {numbered.id} after number {latest}")
             latest = numbered.id
@@ -111,10 +114,13 @@ class Asked:
             return
         if isinstance(request, STOPPING):
             self._obey(request)
+            # Both lanes carry stops; the later one counts, whichever was read first.
             self._stopped_at = max(self._stopped_at, numbered.id)
+        # After stops: there is always room for one.
         elif len(self._under_way) >= _MOST_UNDER_WAY:
             self._answers.send(*refusal(numbered.id, _BUSY))
             return
+        # What only reads may be overtaken; what could lead to motion was asked by who did not know of the stop.
         elif request.is_noted and numbered.id < self._stopped_at:
             self._answers.send(*refusal(numbered.id, _OVERTAKEN))
             return
@@ -128,11 +134,15 @@ class Asked:
 
     def _obey(self, stop: Stop | Disarm) -> None:
         try:
+            # Here, where it is taken, without a task in between: a task would have its turn after all that is
+            # ready now.
             self._heart.halt(stop)
         except Exception:  # what takes the next stop must live on
             log.exception("%s", stop.cmd)
         # An arm under way would go on to the next device after the stop.
         for task in self._arming():
+            # Noted before it is cancelled: its end is answered as overtaken, which is not how a dying front's
+            # end is.
             self._overtaken.add(task)
             task.cancel()
 
@@ -141,6 +151,7 @@ class Asked:
 
     async def _answer(self, numbered: NumberedRequest) -> None:
         parts = await self._carried_out(numbered)
+        # An answer waits for room; it may hold a map, and the front takes one at its own pace.
         while not self._answers.send(*parts):
             await self._answers.room()
 
@@ -148,6 +159,7 @@ class Asked:
         try:
             return answer(numbered.id, await self._perform(numbered))
         except asyncio.CancelledError:
+            # Cancelled because the front is gone: nobody is there to be answered.
             if asyncio.current_task() not in self._overtaken:
                 raise
             return refusal(numbered.id, _OVERTAKEN)
@@ -155,6 +167,8 @@ class Asked:
             return refusal(numbered.id, as_refusal(error))
         except Exception as error:
             log.exception("request %s", numbered.request.cmd)
+            # The kind alone: the text of an unforeseen error may hold paths and values that are not the
+            # client's.
             return refusal(numbered.id, ServerError(ErrorCode.INTERNAL, f"internal error: {type(error).__name__}"))
 
     async def _perform(self, numbered: NumberedRequest) -> object:
@@ -180,10 +194,12 @@ class Asked:
         return Renewed(progress)
 
     async def _give_up(self) -> None:
+        # Nobody reads any more: what is made for readers alone stops with them.
         self._heart.watch(frozenset())
         if self._arming():
             self._obey(Stop("stopped, as the front that asked to arm is gone"))
         tasks = list(self._under_way)
         for task in tasks:
             task.cancel()
+        # Waited for: the next front must not be served beside what the last one left.
         await asyncio.gather(*tasks, return_exceptions=True)

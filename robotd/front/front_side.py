@@ -37,6 +37,7 @@ class FrontSide:
         answered = self._ask(self._stops, request)
         self._stopping.add(answered)
         answered.add_done_callback(self._stopping.discard)
+        # Else asyncio would complain of an error that nobody looked at.
         answered.add_done_callback(_heard)
 
     def watch(self, topics: frozenset[Topic]) -> None:
@@ -71,6 +72,7 @@ class FrontSide:
         self._number += 1
         number = self._number
         answered = asyncio.get_running_loop().create_future()
+        # Refused, not queued: what waits here would be carried out after its client has given it up.
         if not lane.send(encode_request(number, request, client)):
             answered.set_exception(_STUCK)
             return answered

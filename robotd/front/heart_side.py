@@ -52,11 +52,13 @@ class HeartSide:
             ChildError: it is gone, or sent what no front sends.
         """
         stops, requests = lanes
+        # First: it reads no file of ours (decision 45), so all that it goes by comes over this lane.
         requests.send(settings_message(self._settings))
         asked = Asked(self._heart, self._outcomes, requests)
         lines: asyncio.Queue[LogEntry] = asyncio.Queue(DEPTH)
         # A full queue drops lines: what logs must not wait for those who read.
         relayed = relay_log(lambda line: None if lines.full() else lines.put_nowait(line))
+        # Of a front that is slow the oldest events are lost, not the newest, and the heart waits for neither.
         with self._heart.events.subscribe(DEPTH) as events, relayed:
             await together(
                 asked.take(stops, requests),
@@ -73,6 +75,7 @@ async def _tell_events(events: Subscription[Event], decimator: Decimator, lane: 
             continue
         try:
             await _tell(happened, lane)
+        # The lane is gone, which is no fault of this event.
         except ChildError:
             raise
         except Exception as error:  # one event that has no form must not end those that have one

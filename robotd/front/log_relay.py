@@ -27,10 +27,12 @@ class _Relay(logging.Handler):
         self._is_failing = False
 
     def emit(self, record: logging.LogRecord) -> None:
+        # Its own complaints are not relayed: each would be the next line that fails.
         if record.name == __name__:
             return
         try:
             line = (record.levelname, record.name, _shown(record.getMessage()))
+            # Records come from every thread; events are the loop's alone.
             self._loop.call_soon_threadsafe(self._on_loop, *line)
         except Exception as error:  # a bad record, or a loop that has ended
             self._complain(record.name, error)

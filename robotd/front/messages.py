@@ -90,6 +90,7 @@ def event(published: Published) -> Parts:
     """Return an event; TypeError, ValueError and their like if it has no form."""
     if isinstance(published, MapChanged):
         return _map(_NO_NUMBER, published)
+    # In the form in which clients read it, so that there is no second one to keep in step.
     packed: bytes = msgpack.packb(to_wire(published)[1])
     return _EVENT, packed
 
@@ -138,6 +139,7 @@ def _map(number: int, change: MapChanged) -> Parts:
             is_packed=change.packed is not None,
         )
     )
+    # Half the bytes of an index of this machine, and the same on each.
     cells = change.cells.astype(_INDEX).tobytes()
     values = np.ascontiguousarray(change.values, np.uint8).reshape(-1).data
     return _MAP, len(head).to_bytes(_LENGTH, "little"), head, cells, values if change.packed is None else change.packed

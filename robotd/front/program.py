@@ -28,6 +28,7 @@ async def serve_clients(life: Channel, lanes: Sequence[Channel]) -> NoReturn:
 
 
 async def _live(life: Channel, server: Server) -> NoReturn:
+    # Ready only when a client could connect: until then the heart counts it as not there.
     await server.serving.wait()
     await live(life, __version__)
     raise ChildError("the heart hung up")

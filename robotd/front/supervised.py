@@ -41,5 +41,7 @@ def _start(runtime_dir: str, counted: Counted) -> Process:
 
 
 def _died(halt: Callable[[str], None], death: Death) -> None:
+    # One that was of use is followed by another; one that never was is a fault that will not mend, and nobody
+    # could send a stop.
     if not death.was_ready:
         halt(f"no client can be heard: {death.cause}")

@@ -24,6 +24,7 @@ class ThreadCompute:
     """
 
     def __init__(self) -> None:
+        # One worker: jobs that overtake each other would come back in another order in a replay.
         self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="compute", initializer=give_way)
 
     async def run(self, name: str, function: Callable[..., T], *args: object) -> T:

@@ -23,7 +23,9 @@ def stop_laid(made: MapWithStop, time_ns: int, map_id: str) -> StopLaid:
     placed = next((one for one in decisions if isinstance(one, StopPlaced)), None)
     reconciled = next((one for one in decisions if isinstance(one, Reconciled)), None)
     return StopLaid(
+        # Bytes and not numbers: msgpack would make an object of each, and twice.
         cells=cells.astype("<i8", copy=False).tobytes(),
+        # Only what changed: a sweep changes some thousand cells of a map that may have millions.
         values=held.grid.cells.reshape(-1)[cells].tobytes(),
         digest=held.digest,
         stops=len(held.stops.stops),

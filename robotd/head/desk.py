@@ -49,13 +49,16 @@ class Desk:
         generations = self._maps.get(ref.number, {})
         if ref.generation not in generations:
             raise NotHeld(f"no map {ref.number} of generation {ref.generation} is held")
+        # Not at the insertion: a mission that was stopped meanwhile goes on from the generation before.
         for older in [generation for generation in generations if generation < ref.generation]:
             del generations[older]
         return generations[ref.generation]
 
     def ready(self, ref: MapRef) -> ReadyMap:
         """Return a map made ready for localization; NotHeld if there is none."""
+        # Made when it is first localized on: a map in the making is never, unless stops are placed on it.
         held, ready = self.map(ref).made_ready(self.settings.localization, self.settings.error_model)
+        # Kept with the generation: the next look on it finds it ready.
         self.hold(ref, held)
         return ready
 

@@ -158,6 +158,7 @@ class FarHead:
                 self._away.cancel()
 
     def _wait(self, job: Job[Any]) -> _Asked:
+        # Packed when it is asked, not when it is sent: what it was made of may change while it waits.
         asked = _Asked(job, pack_job(job))
         self._asked.append(asked)
         self._news.set()
@@ -165,6 +166,7 @@ class FarHead:
 
     async def _serve(self, lanes: Sequence[Channel]) -> None:
         (lane,) = lanes
+        # With each start again, over the lane: the child reads no configuration of its own.
         lane.send(self._settings)
         about = await lane.receive()
         # Before anything new: a job may be about a map that only the one before held.
@@ -172,6 +174,8 @@ class FarHead:
             step.check(await self._answered(lane, step.data))
         self._back(printable_bytes(about))
         while True:
+            # One at a time, though the lane would take more: who answers out of turn can only be seen if one
+            # answer is due.
             while not self._asked:
                 self._news.clear()
                 await self._news.wait()
@@ -179,6 +183,7 @@ class FarHead:
 
     async def _do(self, lane: Channel, asked: _Asked) -> None:
         self._under_way = asked
+        # Left in the queue while it is computed: if this head dies the next one is asked the same.
         data = await self._answered(lane, asked.data)
         try:
             answer: Any = unpack_answer(type(asked.job), data)
@@ -189,6 +194,7 @@ class FarHead:
             if not asked.answer.done():
                 asked.answer.set_exception(error)
             return
+        # Before the answer is handed on: what is asked next may be about what this one made.
         self._note(asked, answer)
         self._done_with(asked)
         if not asked.answer.done():
@@ -199,6 +205,8 @@ class FarHead:
         made = asked.job.makes
         if isinstance(asked.job, Forget):
             self._memory.forget(asked.job.number)
+        # Only what somebody heard of is remembered: numbers that no mission knows would be fed to every head to
+        # come.
         elif not asked.answer.done():
             self._memory.note(asked.job, answer)
         elif made is not None and made.number not in self._memory:
@@ -210,6 +218,7 @@ class FarHead:
         if not lane.send(number, data):
             raise ChildError("it takes no more jobs")
         try:
+            # The loop's own clock and not a silence that a replay knows: in a replay no head is away.
             async with asyncio.timeout(self._job_s):
                 answer = await lane.receive()
         except TimeoutError:
@@ -228,6 +237,7 @@ class FarHead:
         if asked is self._under_way:
             # Not at once: it may be nearly done, and a new head must be fed all that this one holds.
             asyncio.get_running_loop().call_later(UNWANTED_S, self._end_unwanted, asked)
+        # Not begun yet: it is simply not asked.
         elif asked in self._asked:
             self._asked.remove(asked)
         self._tell()
@@ -238,6 +248,7 @@ class FarHead:
 
     def _died(self, death: Death) -> None:
         asked, self._under_way = self._under_way, None
+        # Nobody waits for it any more: it need not be asked again.
         if asked is not None and asked.answer.done():
             self._asked.remove(asked)
         elif asked is not None:

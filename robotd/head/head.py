@@ -34,6 +34,7 @@ class NotedHead:
         self._inner = inner
         self._counted = counted
         self._note = note
+        # Counted by name: a replay asks in the same order, so the third of a name is the same job.
         self._done: Counter[str] = Counter()
         self.number = inner.number
         self.forget = inner.forget
@@ -47,6 +48,7 @@ class NotedHead:
             self._note_next(job)
             raise
         self._note_next(job)
+        # Spaces are not for labels.
         self._counted.observe("job_seconds", (now_ns() - asked_ns) / NS_PER_S, job=job.name.replace(" ", "_"))
         return answer
 

@@ -66,10 +66,12 @@ class Held:
 
         Those are flat indices, ascending; this map stays as it is.
         """
+        # A copy: who holds the generation before must find it as it was.
         grid = OccupancyGrid(self.grid.spec, self.grid.cells, self.grid.settings)
         cells = grid.insert(sweep, map_from_robot)
         latest = latest_with(self.latest, grid.usable(sweep), map_from_robot, grid.spec)
         stops = None if self.stops is None else self.stops.with_stop(MapStop.of(sweep, map_from_robot))
+        # Joined with what changed before: what is ready may be some generations old.
         changed = self.changed.joined(CellWindow.bounding(cells, grid.spec.shape))
         return Held(grid, grid.digest(), stops, latest, self.ready, changed), cells
 

@@ -147,6 +147,7 @@ def _show_ranks(desk: Desk, job: ShowRanks) -> RanksShown:
     heat = None if estimator is None else estimator.heat()
     if estimator is None or heat is None:
         return RanksShown(None)
+    # Here and not in the heart, which would be kept by it; the front and clients take it as it is.
     levels = zlib.compress(heat.levels.tobytes(), _QUICK)
     return RanksShown(Ranks(heat.spec, heat.block, heat.readings, heat.headings, levels))
 
@@ -181,6 +182,7 @@ def _choose_leg(desk: Desk, job: ChooseLeg) -> LegChosen:
     obstacles = ~free_cells(held.grid, planning.gap_cells) | held.obstacles()
     cell_m = held.grid.spec.resolution_m
     robot_cells, clearance_cells = planning.robot_radius_m / cell_m, planning.clearance_m / cell_m
+    # Two rooms: a robot that already stands nearer to a wall than it would drive must be allowed to leave.
     tight = ~inflated(obstacles, robot_cells, 0.0)
     room = Room(held.grid.spec, tight, ~inflated(obstacles, robot_cells, clearance_cells))
     return LegChosen(best_leg(room, ready.meanings[0].walls, job.rivals, job.cutoff_m, job.speed_mps))

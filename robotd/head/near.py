@@ -27,6 +27,8 @@ class HeadAtHand:
 
     async def ask(self, job: Job[A]) -> A:
         """Return the answer of a job, see :class:`robotd.head.head.Head`."""
+        # Through bytes also here: what cannot be sent, or is shared by mistake, shows in tests and replays,
+        # too.
         data = pack_job(job)
         # A replay hands back what was noted when it was noted; of the rest it knows no time, and waits for none.
         if job.is_noted:

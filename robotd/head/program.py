@@ -35,15 +35,19 @@ async def serve(life: Channel, lanes: Sequence[Channel]) -> None:
         for task in tasks:
             task.cancel()
         await asyncio.wait(tasks)
+        # The parent has gone: whatever is computed still has no reader.
         worker.abandon()
 
 
 async def _work(lane: Channel, worker: ThreadCompute) -> None:
     desk = Desk(msgspec.msgpack.decode(await lane.receive(), type=HeadSettings), threads=cores())
+    # Said unasked: the log of the daemon then tells by which kernels it computes.
     lane.send(str(kernels.in_use().about).encode())
     while True:
         message = await lane.receive()
         number, job = message[:NUMBER], message[NUMBER:]
+        # One job at a time: an answer must not wait behind another, nor two share the desk.
         answer = await worker.run("", answer_to, desk, job)
+        # Too large for the channel: who asked must hear so, not wait for what never comes.
         if not lane.send(number, answer):
             lane.send(number, pack_error(TooLarge(f"an answer of {len(answer)} bytes")))

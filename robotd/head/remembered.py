@@ -77,4 +77,6 @@ class Memory:
 
     def __iter__(self) -> Iterator[RememberedStep]:
         """Return the steps in the order in which they must be done: a stop comes after the map that it is on."""
+        # Numbers only grow, and a stop is begun on a map that is there: so their order is one in which it can
+        # be done.
         return (step for number in sorted(self._steps) for step in self._steps[number])

@@ -64,6 +64,7 @@ def with_stop(
     else:
         survey, decisions = before.stepped(readings, before.found_at(at, travel) if found_again else travel)
     pose = survey.graph.pose(len(survey.graph.stops) - 1)
+    # Stops have moved: a cell does not tell which stop said what, so nothing less than all of it will do.
     if any(isinstance(decision, Reconciled) for decision in decisions):
         made, cells = _made_again(held, sweep, survey)
     elif survey.graph.stops[-1].is_laid:
@@ -81,6 +82,7 @@ def _resumed(held: Held, localization: LocalizationSettings) -> Survey | None:
     """Return the survey of a map that was stored; None of one that has just begun."""
     if held.stops is None:
         raise MissionError("this map was stored without its stops, and cannot be gone on with: explore a new one")
+    # With the misses: what a stop saw to be empty speaks against a wrong loop as well.
     stops = [(Readings(stop.beams(misses=True)), stop.map_from_robot) for stop in held.stops.stops]
     return Survey.resumed(stops, _settings(held, localization)) if stops else None
 
@@ -95,6 +97,7 @@ def _made_again(held: Held, sweep: Sweep, survey: Survey) -> tuple[Held, NDArray
     moved = tuple(
         replace(stop, map_from_robot=graph.pose(at)) for stop, at in zip(stops, graph.laid.tolist(), strict=True)
     )
+    # In the order of the stops, as they were laid in: cells saturate, so another order gives another map.
     grid, latest = OccupancyGrid(held.grid.spec, settings=held.grid.settings), np.zeros_like(held.latest)
     for stop in moved:
         grid.lay_in(stop)

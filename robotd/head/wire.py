@@ -70,7 +70,9 @@ def pack_answer(answer: object) -> bytes:
 def pack_error(error: Exception) -> bytes:
     """Return what went wrong as bytes."""
     name = type(error).__name__
+    # By the very class: another one of the same name would be raised here as what it is not.
     kind = name if _ERRORS.get(name) is type(error) or isinstance(error, NotHeld) else ""
+    # An error that nobody foresaw may have no text: its kind is then all there is.
     text = str(error) if kind else repr(error)
     where = "" if kind else "".join(traceback.format_exception(error))[-_LONGEST_TEXT:]
     return msgspec.msgpack.encode((None, kind, text[:_LONGEST_TEXT], where))
@@ -96,5 +98,6 @@ def unpack_answer(kind: type[Job[A]], data: bytes | memoryview) -> A:
     if answered.kind == NotHeld.__name__:
         raise RemoteProtocolError(answered.text)
     failed = JobFailed(answered.text)
+    # Where it was raised is another process, whose frames end there: they come along as text.
     failed.add_note(answered.where)
     raise failed

@@ -37,6 +37,7 @@ def advice_on(settings: LocalizationSettings, spec: GridSpec, sweep: SweepFacts)
     # The conservative mode takes its radii from bounds of its own, and asks nothing of the map between beams.
     if settings.conservative:
         return None
+    # One at a time, the gravest: mending that often mends the others.
     return next(_at_odds(settings, spec, sweep), None)
 
 
@@ -48,6 +49,8 @@ def _at_odds(settings: LocalizationSettings, spec: GridSpec, sweep: SweepFacts) 
             f" half of all readings are lost at the true place; take {cell_m:g}"
         )
     step_rad, most_rad = settings.heading_step_rad, _most_heading_step_rad(settings, spec, sweep.reach_m)
+    # Not positive means that bearings alone err by more than any step could: then finer headings would not
+    # help.
     if step_rad > most_rad > 0.0:
         yield (
             f"localization.heading_step_rad = {step_rad:g} is too coarse for readings of {sweep.reach_m:g} m: half a"

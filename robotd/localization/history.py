@@ -95,8 +95,11 @@ class History:
             is_complete: whether no further place is left beside these.
         """
         moved = self.moved(travel, motion)
+        # A list that was cut may lack the true place, so its silence about a member says nothing.
         if not (regions and is_complete):
             return Looked(moved, (True,) * len(regions))
+        # Grown before they are met with what is carried: cells and headings are rounded, and the map errs by as
+        # much.
         found = [Member(_grown(region.extent, _MATCHING_M, _MATCHING_RAD), _evidence(region)) for region in regions]
         if self.is_anywhere:
             return Looked(History(_ordered(found)), (True,) * len(found))
@@ -112,6 +115,8 @@ class History:
                 ]
                 kept = [replace(one, evidence=evidence) for one, evidence in best]
             return Looked(History(_ordered(kept + _fading(moved.members, kept))), tuple(map(bool, met)))
+        # What was believed is not thrown away by one look: a look that found a wrong place would else have the
+        # last word.
         rivals = [replace(one, looks_left=_RIVAL_LOOKS) for one in moved.members if one.looks_left is None]
         history = History(_ordered([*found, *rivals, *_fading(moved.members, [])]))
         # As far again, and it is not the wheels any more.
@@ -123,6 +128,7 @@ class History:
 def reached(extent: Extent, travel: Travel, motion: MotionError) -> Extent:
     """Return the box round every pose to which a pose of a box may have come by some travel."""
     off_m, off_rad = motion.bounds(travel)
+    # The heading is not known exactly, so the step may lead anywhere along an arc: its box is that of the arc.
     way_m, towards_rad = math.hypot(travel.step.x_m, travel.step.y_m), math.atan2(travel.step.y_m, travel.step.x_m)
     low_rad, width_rad = extent.heading_min_rad + towards_rad, extent.heading_max_rad - extent.heading_min_rad
     x_least, x_most = _cosines(low_rad, width_rad)
@@ -149,6 +155,7 @@ def shared(one: Extent, other: Extent) -> Extent | None:
 def _shared_headings(one: Extent, other: Extent) -> tuple[float, float] | None:
     width_rad = one.heading_max_rad - one.heading_min_rad
     other_width_rad = other.heading_max_rad - other.heading_min_rad
+    # Counted from where the first begins: on a circle there is no other order of four ends.
     after_rad = (other.heading_min_rad - one.heading_min_rad) % math.tau
     pieces = [
         (max(0.0, low_rad), min(width_rad, low_rad + other_width_rad)) for low_rad in (after_rad, after_rad - math.tau)

@@ -37,6 +37,8 @@ def judged_regions(
         headings_rad: those that were tried.
         most: how many regions to return.
     """
+    # A place that climbed may lie in no region at all; the nearest pose is the one that it climbed from, or
+    # beside it.
     nearest = np.array([_nearest(poses_m, place) for place in look.poses], np.intp)
     # Regions of places that were looked at come first: rank is a good shortlist and a poor judge (decision 16).
     pieces = pieces_of(found, headings_rad, most, nearest)

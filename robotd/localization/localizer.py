@@ -84,6 +84,8 @@ class Localizer:
         likelihoods = [meaning.likelihood for meaning in meanings]
         meant, look = likeliest_look(likelihoods, readings, poses_m, found.ranks, self.judgement.second_look)
         state = self._claimed(found, look)
+        # After the judgement: connecting is dear where poses are many, and a robot that is lost has no region
+        # to tell.
         connected, left_out = self._connected(found, poses_m, look, state)
         situation = Situation(
             self.the_map, meanings[meant].walls, self.stop.headings_rad, readings, self.judgement.refinement

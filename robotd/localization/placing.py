@@ -59,10 +59,13 @@ class Believed:
 
     def fused(self, measured: Pose2, covariance: NDArray[np.float64]) -> "Believed":
         """Return it after a measurement: each has a say by how sure it is, in each direction."""
+        # As a Kalman filter takes a measurement: in a corridor the map has a say across it and odometry along
+        # it.
         gain = self.covariance @ np.linalg.inv(self.covariance + covariance)
         x_m, y_m, turned_rad = (gain @ self._off(measured)).tolist()
         pose = Pose2(self.pose.x_m + x_m, self.pose.y_m + y_m, wrap_rad(self.pose.heading_rad + turned_rad))
         left = (np.eye(3) - gain) @ self.covariance
+        # Made symmetric again: rounding takes that away bit by bit, and stop after stop builds on it.
         return Believed(pose, (left + left.T) / 2.0)
 
     def _off(self, pose: Pose2) -> NDArray[np.float64]:
@@ -158,6 +161,7 @@ def place(ground: Ground, readings: Readings, prior: Believed, settings: Placing
         nothing = np.zeros(len(readings), np.bool_)
         return Placed(Outcome.NEW_GROUND, _widened(prior, settings), Agreement(nothing, nothing))
     found, agreed = near
+    # The box first: only what it leaves unexplained is worth the search of a disk.
     if is_explained(agreed, settings):
         return Placed(Outcome.PLACED, prior.fused(found.pose, found.covariance), agreed)
     wide = _wide(ground, readings, prior, settings)
@@ -166,6 +170,7 @@ def place(ground: Ground, readings: Readings, prior: Believed, settings: Placing
         # Odometry was wrong by more than it errs: it has no say in where.
         return Placed(Outcome.WIDE, Believed(found.pose, found.covariance), agreed)
     told = agreed.explained_share + agreed.contradicted_share
+    # Asked after the wide search: new ground may be a known room that odometry has missed.
     if told < settings.told_share:
         return Placed(Outcome.NEW_GROUND, _widened(prior, settings), agreed)
     is_narrow = prior.deviation_m <= settings.weak_m and prior.deviation_rad <= settings.weak_rad
@@ -181,6 +186,8 @@ def near_prior(
     far = _within(ground, readings, prior, settings.box_sigmas, settings)
     if far is None or far[1].explained_share >= settings.sure_share:
         return far
+    # Asked as well: over a wide box some pose nearly always explains a little more, and that little is no
+    # reason to jump.
     near = _within(ground, readings, prior, settings.near_sigmas, settings)
     if near is None:
         return far

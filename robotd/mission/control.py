@@ -75,6 +75,8 @@ class Control:
         self._config_text = config_text
         self.keeping = Keeping(supervisor, archive, head, disk)
         self._maps = MapRequests(supervisor, archive, journal, head=head, disk=disk, keeping=self.keeping)
+        # A table and not a method per request: a new command is a row here, and what stops the robot is seen to
+        # be the same for `stop` and `disarm`.
         self._rows: dict[type[Request[Any]], Callable[[Any], Awaitable[object]]] = {
             GetStatus: self._status,
             GetConfig: self._config,
@@ -147,6 +149,8 @@ class Control:
 
     def watch(self, topics: frozenset[Topic]) -> None:
         """Take note of what somebody reads: what is costly is made for these topics alone."""
+        # Set again by each message of the front, so a front that dies leaves nothing switched on that its
+        # successor does not ask for.
         self._supervisor.ranks.are_wanted = Topic.RANK in topics
 
     async def stopped(self) -> None:
@@ -159,6 +163,7 @@ class Control:
         mission_id = self._supervisor.mission.start(
             mission, lease_s, client
         )  # which takes its first step later: nothing is noted yet
+        # With the lease that the server filled in: a replay has no settings of the server to take it from.
         self._note(with_lease(mission, lease_s), begun_ns)
         return mission_id
 
@@ -179,6 +184,7 @@ class Control:
         return Metrics.of(self._supervisor.counted)
 
     async def _arm(self, request: Arm) -> Done:
+        # What is refused is refused before it is noted: a replay would arm a robot that was not armed.
         self._supervisor.arming.require_armable()
         self._note(request, now_ns())
         await self._supervisor.arming.arm()
@@ -190,6 +196,7 @@ class Control:
         return Done()
 
     async def _clear(self, request: Clear) -> Done:
+        # As with arming: what is refused is not noted.
         self._supervisor.arming.require_clearable()
         self._note(request, now_ns())
         await self._supervisor.arming.clear()
@@ -203,8 +210,10 @@ class Control:
 
     async def _make_way(self, request: MapStart | Explore) -> None:
         halts = self._supervisor.halts
+        # An hour of exploring must not end at a disk that was full, or read-only, from the start.
         if isinstance(request, Explore):
             await self._disk.run("try the store", self._archive.require_writable)
+        # What is resumed goes on with the map in use, so no other one comes in its place.
         if not (isinstance(request, Explore) and request.resume):
             await self.keeping.make_way()
         # The disk takes its time: a stop that came meanwhile counts, even if the robot was armed again since.
@@ -221,10 +230,12 @@ class Control:
         Raises:
             RecordingError: the file is to lie elsewhere, or it cannot be done now.
         """
+        # Named by the wall clock, as people look for recordings; two of one boot never share a nanosecond.
         name = f"{now_ns() + wall_offset_ns()}.mcap" if request.path is None else request.path
         file = await self._disk.run("make directory", make_place, self._recordings_dir, name, self._archive.root)
         self._journal.start(file)
         log.info("recording to %s", file)
+        # The status names the file: who watches need not wait for its next turn in a second.
         self._supervisor.publish_status()
         return RecordingFile(str(file))
 

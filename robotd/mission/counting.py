@@ -23,8 +23,12 @@ def count_event(event: Event, counted: Counted) -> None:
     """Count what an event tells of."""
     match event:
         case SweepReadings():
+            # By kind, not by reading: a batch has a handful of kinds, and a labelled counter is dearer than
+            # counting bytes.
             for at in set(event.status_u8):
                 counted.count("readings_total", event.status_u8.count(at), status=_STATUSES[at])
+        # Predictions come with every odometry message, and an estimate of no readings tells of a new map:
+        # neither is a look round.
         case PoseEstimate() if event.final and event.state is not PoseState.PREDICTED and event.readings:
             counted.count("estimates_total", state=event.state)
         case MissionProgress() if event.is_last:

@@ -20,6 +20,7 @@ def entry_info(entry: MapEntry) -> MapEntryInfo:
         rows=rows,
         cols=cols,
         resolution_m=entry.spec.resolution_m if entry.spec else 0.0,
+        # It may quote a file that somebody else wrote.
         damage=None if entry.damage is None else printable(entry.damage),
         unsaved=entry.is_unsaved,
         stops=entry.stops,
@@ -34,5 +35,6 @@ def bumps_of(entry: MapEntry) -> tuple[Point, ...]:
     """Return where the robot bumped into something on a stored map; nothing where that was written by other hands."""
     try:
         return msgspec.convert(entry.metadata.get(BUMPS, ()), Stops)
+    # A map is worth more than its remarks: one with odd metadata still loads.
     except msgspec.ValidationError:
         return ()

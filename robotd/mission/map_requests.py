@@ -76,6 +76,7 @@ class MapRequests:
             place = self._place()
             ref = place.ref
             return whole(now_ns(), place.map_id, ref.generation, await self._head.ask(ShowMap(ref)))
+        # Held by the head for this answer alone: showing a stored map changes nothing about the one in use.
         async with self._read(request.name, request.version) as (entry, _, held):
             return whole(now_ns(), entry.digest, 0, held)
 
@@ -83,6 +84,8 @@ class MapRequests:
         """Return the way from where the robot is to a place on the map in use; MapError if there is none."""
         place = self._place()
         here, tie = self._supervisor.robot.drive.odometry.latest, self._supervisor.whereabouts.believed
+        # An answer and not an error: a client that asks where a click would lead wants to show why it leads
+        # nowhere.
         if here is None or tie is None:
             return Way((), 0.0, Hindrance.NOT_LOCALIZED, "the robot is not localized on this map")
         return await self._head.ask(
@@ -176,11 +179,15 @@ class MapRequests:
             MapError: it is missing or damaged.
         """
         entry, content = await self._disk.run("read map", self._archive.load, name, version)
+        # A number of its own, not that of the map in use: if reading fails, nothing has touched the one that
+        # the robot drives on.
         number = self._head.number()
         job = ReadMap(number, content)
         try:
             yield entry, job, await self._held(entry, job)
         finally:
+            # Only here is it known whether it was taken into use; the head keeps what nobody forgets, and maps
+            # are its largest things.
             in_use = self._supervisor.whereabouts.map_in_use
             if in_use is None or in_use.number != number:
                 self._head.forget(number)
@@ -206,6 +213,8 @@ class MapRequests:
             if here is None:
                 raise MissionError("there is no odometry yet to tie to the map")
             tie = Tie.between(msgspec.convert(arguments["robot_in_map"], Pose2), here.in_odom)
+        # Again, though callers asked before: there were waits for disk and head since, and a mission may have
+        # begun in one.
         self._supervisor.require_replaceable_map()
         # It was encoded long before, on the worker; its time is when it takes effect.
         self._journal.asked(replace(command, time_ns=now_ns()))

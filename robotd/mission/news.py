@@ -35,6 +35,8 @@ class News:
         to have less than the world.
         """
         entry = result_of(event) if made is None else made
+        # The journal before the world: a client that acts on an event must find it noted before what it asks
+        # for.
         if entry is not None:
             self._note(entry)
         self.events.publish(event)

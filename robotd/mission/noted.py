@@ -74,6 +74,8 @@ def request_of(name: str, arguments: dict[str, Any]) -> "Request[Any] | NotedMap
     Raises:
         RecordingError: there is no such request, or its arguments do not fit; says what was expected.
     """
+    # By a list of what was ever noted, not of all commands: a recording that asks for others was made by other
+    # hands.
     if name not in _NAMES:
         raise RecordingError(f"unknown request {name[:_QUOTED]!r}, expected one of {', '.join(_NAMES)}")
     _require_finite(name, arguments)

@@ -127,6 +127,7 @@ class Supervisor:
         except Exception:  # stopping, arming and watching go on, whatever keeps a status from being made
             if not self._is_untold:
                 log.exception("the status could not be told")
+            # Told of once, for a status that cannot be made is tried again each second.
             self._is_untold = True
         else:
             self._is_untold = False
@@ -134,6 +135,7 @@ class Supervisor:
     async def run(self) -> None:
         """Watch the devices until cancelled; whatever ends it stops the robot."""
         try:
+            # Who subscribes later hears it too: the last message of each event is kept for those who join.
             self._told.begin()
             async with asyncio.TaskGroup() as group:
                 for device in self.robot.devices:
@@ -148,6 +150,7 @@ class Supervisor:
 
     def halt(self, occasion: Occasion, reason: str) -> None:
         """Stop first, then everything else."""
+        # First of all: no count, log or cancellation may stand between a stop and the wires.
         self.robot.stop_now()
         self.halts += 1
         self.counted.count("stops_total", cause=occasion)
@@ -158,6 +161,8 @@ class Supervisor:
     async def stop(self, reason: str) -> None:
         """Stop everything and disarm; valid at any time."""
         self.halt(Occasion.STOP, reason)
+        # A client that was answered may start the next mission at once, and must not find this one still
+        # ending.
         await self.mission.ended()
 
     def use(self, place: MapInUse, tie: Tie | None = None) -> None:
@@ -183,6 +188,8 @@ class Supervisor:
         pressed: set[float] = set()
         with self.robot.drive.readouts.subscribe() as stream:
             async for readout in stream:
+                # The edge alone: a bumper stays pressed for as long as the robot leans there, and is one
+                # obstacle.
                 bumps_rad = [bumper_rad for bumper_rad in readout.bumpers_rad if bumper_rad not in pressed]
                 pressed = set(readout.bumpers_rad)
                 here = self.robot.drive.odometry.latest

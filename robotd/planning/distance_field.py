@@ -34,6 +34,7 @@ def distance_field(free: NDArray[np.bool_], goal: tuple[int, int]) -> NDArray[np
     distance[front] = 0.0
     ring, beyond = 0, np.empty(0, np.intp)
     while front.size or beyond.size:
+        # A whole ring in one array step: a heap would settle cells one by one, in Python.
         reached = _relax(distance, passable, front, steps)
         ring += 1
         # A step is shorter than 2, so what was reached lies in the next ring or the one after it.

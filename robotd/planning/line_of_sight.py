@@ -60,6 +60,7 @@ def pulled_straight(free: NDArray[np.bool_], way: Sequence[Position]) -> list[in
     for last, point in enumerate(way[1:]):
         # The very next point is in sight, as the caller promises: asking could stop the way for ever.
         if last > corners[-1] and not in_sight(free, way[corners[-1]], point):
+            # The last point in sight, not the first out of it: legs end where the way was known to be free.
             corners.append(last)
     return [*corners, len(way) - 1] if len(way) > 1 else corners
 

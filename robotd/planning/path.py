@@ -98,6 +98,8 @@ def plan(
     if not spec.contains(*spec.cell_at(start.x_m, start.y_m)):
         return Unreachable(Hindrance.START_OUTSIDE, None)
     hit = np.zeros(spec.shape, np.bool_) if hit is None else hit
+    # Without doubt first: what was hit once may be a table's leg, and only where nothing else leads on is it
+    # worth the risk.
     answer = _planned(grid, Terrain.of(grid, start, hit, None, settings), start, goal_m)
     lone = lone_hits(grid, hit)
     if isinstance(answer, Path) or not lone.any() or _is_at(lone, spec, goal_m):
@@ -115,6 +117,8 @@ def _is_at(lone: NDArray[np.bool_], spec: GridSpec, goal_m: Point) -> bool:
 def _planned(grid: OccupancyGrid, terrain: Terrain, start: Pose2, goal_m: Point) -> Path | Unreachable:
     spec = grid.spec
     here, there = spec.cell_at(start.x_m, start.y_m), spec.cell_at(*goal_m)
+    # From the goal and not from the robot: then one field also tells which way out of a tight place is the
+    # shortest.
     field = distance_field(terrain.allowed, there) if spec.contains(*there) else np.full(spec.shape, np.inf)
     exit_cell = terrain.way_out(here, field)
     if exit_cell is None:
@@ -141,6 +145,7 @@ def _descent(field: NDArray[np.float64], start: Cell) -> list[Cell]:
             for (i, j), step in zip(NEIGHBOURS, STEP_CELLS, strict=True)
             if 0 <= row + i < rows and 0 <= col + j < cols
         ]
+        # Of equal neighbours the first by row and column, so that a replay goes the same way round.
         way.append(min(onward)[1])
     return way
 
@@ -148,6 +153,7 @@ def _descent(field: NDArray[np.float64], start: Cell) -> list[Cell]:
 def _hindrance(grid: OccupancyGrid, terrain: Terrain, goal: Cell) -> Hindrance:
     if not grid.spec.contains(*goal):
         return Hindrance.OUTSIDE
+    # In this order from the outside inwards: the first that holds is what people can do something about.
     if terrain.allowed[goal]:
         return Hindrance.NO_WAY
     if terrain.free[goal]:

@@ -56,6 +56,8 @@ class Terrain:
         free = free_cells(grid, settings.gap_cells, doubted) & ~taken
         met = (grid.cells > NO_INFORMATION) | taken
         rows, cols = np.ogrid[: free.shape[0], : free.shape[1]]
+        # Where it stands it fits, whatever the map says: a wrong range under the robot must not keep it there
+        # for ever.
         free |= (rows - here[0]) ** 2 + (cols - here[1]) ** 2 <= robot_cells**2
         allowed = ~inflated(~free, robot_cells, clearance_cells)
         reach_cells = 2.0 * (robot_cells + max(clearance_cells, 1.0))
@@ -96,6 +98,7 @@ class Terrain:
             return False
         at_first = distances_of_leg(around, self.start, self.start)
         on_the_way = distances_of_leg(around, self.start, centre_of(to))
+        # No nearer than it is now: a leg that leads past the obstacle it stands at is no way out.
         return bool((on_the_way >= np.minimum(at_first, self.robot_cells) - 1e-9).all())
 
 

@@ -75,6 +75,7 @@ def best_leg(room: Room, walls: WallField, rivals: Sequence[Rival], cutoff_m: fl
     """
     free = [
         (direction_rad, length_m)
+        # In the robot's frame: the leg is the one thing that all rivals have in common.
         for direction_rad in (number * math.tau / _DIRECTIONS for number in range(_DIRECTIONS))
         for length_m in _free_lengths(room, rivals, direction_rad)
     ]
@@ -88,9 +89,12 @@ def best_leg(room: Room, walls: WallField, rivals: Sequence[Rival], cutoff_m: fl
         )
         for direction_rad, length_m in free
     ]
+    # Per second: a long leg tells more, and takes as long as two short ones with a sweep between.
     worth = [leg.told_apart / (_SWEEP_S + length_m / speed_mps) for leg, (_, length_m) in zip(legs, free, strict=True)]
     best = max(range(len(legs)), key=lambda number: worth[number])
     if legs[best].told_apart < _LEAST_SHARE:
+        # Nothing tells apart from any of these: the longest leads farthest from the view that all have in
+        # common.
         best = max(range(len(legs)), key=lambda number: free[number][1])
     return legs[best]
 
@@ -104,6 +108,7 @@ def _free_lengths(room: Room, rivals: Sequence[Rival], direction_rad: float) -> 
             for rival in rivals
             for spot_m in rival.spots_m
         ):
+            # What stands in the way of a leg stands in the way of each longer one.
             break
         lengths_m.append(length_m)
     return lengths_m
@@ -111,8 +116,11 @@ def _free_lengths(room: Room, rivals: Sequence[Rival], direction_rad: float) -> 
 
 def _told_apart(walls: WallField, rivals: Sequence[Rival], leg: tuple[float, float], cutoff_m: float) -> float:
     direction_rad, length_m = leg
+    # It arrives facing along the leg, and so the sweep there is predicted.
     step = Pose2(length_m * math.cos(direction_rad), length_m * math.sin(direction_rad), direction_rad)
     bearings_rad = np.linspace(0.0, math.tau, _BEAMS, endpoint=False)
     expected = Expected.at(walls, [rival.pose @ step for rival in rivals], bearings_rad, cutoff_m)
     shares = expected.differ().mean(axis=1)
+    # Cut off at enough: else two rivals that differ in everything would outweigh all those that are still
+    # alike.
     return float(np.minimum(shares, _ENOUGH_SHARE).mean())

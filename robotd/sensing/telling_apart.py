@@ -40,6 +40,7 @@ class Expected:
         rows = np.column_stack((bearings_rad, np.full(count, cutoff_m), np.zeros((count, 3))))
         at = np.array([(pose.x_m, pose.y_m, pose.heading_rad) for pose in poses]).reshape(-1, 3)
         ranges = expected_ranges(walls, Readings(np.ascontiguousarray(rows)), at, _BLOCKED_BY)
+        # Beyond the cut-off all is a miss: two rivals that differ only there would never be told apart.
         return cls(np.minimum(ranges.ranges_m, cutoff_m))
 
     def differ(self) -> NDArray[np.bool_]:
@@ -66,6 +67,7 @@ def telling_bearings(
         taken_rad: what was chosen so before: nothing is chosen near to it.
         count: how many.
     """
+    # The product: to tell two unlikely places apart is worth little, however different they look.
     weights = np.array([one * other for one, other in itertools.combinations(beliefs, 2)])
     worth = weights @ expected.differ()
     chosen: list[int] = []

@@ -41,6 +41,7 @@ class UntilSure:
         """Return how many more readings to take before the next answer is asked for."""
         if taken < FIRST:
             return FIRST - taken
+        # Once an answer was sure the next is asked for soon: it may be the one that ends it.
         return _BETWEEN if self._before is not None else max(_BETWEEN, round(_SHARE_BETWEEN * taken))
 
     def measured(self, bearing_rad: float) -> None:
@@ -50,10 +51,12 @@ class UntilSure:
     def answered(self, estimate: PoseEstimate) -> None:
         """Take the answer after the readings so far."""
         if estimate.state is not PoseState.LOCALIZED or estimate.best is None:
+            # One that is not sure breaks the row: two in a row must agree, not two of many.
             self._before = None
             self._new_rad.clear()
             return
         if self._before is None or not self._agrees(estimate):
+            # The newer one is what the next must agree with: it knows all that the older one knew.
             self._before = estimate
             self._new_rad.clear()
             return

@@ -52,6 +52,7 @@ class Structure:
             if one != other:
                 neighbours[one].add(other)
                 neighbours[other].add(one)
+        # Copied: elimination joins the neighbours of what is taken out.
         order = _minimum_degree([set(some) for some in neighbours])
         turn = {node: at for at, (node, _) in enumerate(order)}
         places: dict[tuple[int, int], int] = {}
@@ -82,6 +83,8 @@ def _minimum_degree(neighbours: list[set[int]]) -> list[tuple[int, set[int]]]:
         for other in some:
             neighbours[other] |= some
             neighbours[other] -= {other, node}
+            # With its number beside the degree: of equal ones the same is taken in every run, and the bits of
+            # the sums with it.
             heapq.heappush(waiting, (len(neighbours[other]), other))
     return order
 
@@ -139,6 +142,7 @@ def factored(structure: Structure, diagonal: Blocks, below: Blocks) -> Factor:
     inverse = np.empty_like(diagonal)
     count = structure.below
     for column in structure.columns:
+        # Blocks of 3 x 3 on the diagonal, inverted outright: pivoting within a pose would gain nothing.
         inverse[column.node] = np.linalg.inv(values[count + column.node])
         if len(column.rows):
             here = slice(column.first, column.first + len(column.rows))

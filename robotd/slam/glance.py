@@ -23,11 +23,13 @@ def glanced(survey: Survey, readings: Readings, since: Pose2, travel: Travel) ->
         travel: since then.
     """
     settings, graph = survey.settings, survey.graph
+    # Less the bias first: wheels that always pull to one side are then looked for where they really lead.
     expected = since @ survey.bias.corrected(travel)
     prior = Believed(expected, settings.motion.covariance(travel))
     about = graph.laid_about(expected, _WITHIN_M)
     nearest = np.sort(about[np.argsort(graph.off_m(expected, about), kind="stable")[:_STOPS]])
     found = near_prior(settings.maps.ground(graph, nearest, expected), readings, prior, settings.placing)
+    # A handful of readings finds some wall anywhere: believed only where the map explains them.
     if found is None or not is_explained(found[1], settings.placing):
         return expected, False
     return prior.fused(found[0].pose, np.array(found[0].covariance)).pose, True

@@ -28,6 +28,8 @@ class EdgeKind(enum.StrEnum):
     @property
     def is_robust(self) -> bool:
         """Whether it may be refused."""
+        # A step was placed on the very stops that it is tied to; wheels slip, and loops may be found in the
+        # wrong room.
         return self is not EdgeKind.STEP
 
 
@@ -64,6 +66,7 @@ class EdgeTable:
         return cls(
             np.array([(edge.earlier, edge.later) for edge in edges], np.intp).reshape(-1, 2),
             np.array(steps).reshape(-1, 3),
+            # Inverted once for a solve: every step of it needs them.
             np.linalg.inv(covariances) if len(edges) else covariances,
             np.array([edge.kind.is_robust for edge in edges], np.bool_),
         )
@@ -102,6 +105,7 @@ def _linear(table: EdgeTable, poses: NDArray[np.float64], *, derivatives: bool) 
     x, y = table.steps[:, 0], table.steps[:, 1]
     found[:, 0] = cosine * off[:, 0] + sine * off[:, 1] - (cosine_step * x + sine_step * y)
     found[:, 1] = -sine * off[:, 0] + cosine * off[:, 1] - (-sine_step * x + cosine_step * y)
+    # Wrapped: a difference just beyond half a turn is a small one the other way.
     found[:, 2] = np.mod(later[:, 2] - turn + math.pi, math.tau) - math.pi
     if not derivatives:
         return Linear(found, found[:0], found[:0])
@@ -109,6 +113,8 @@ def _linear(table: EdgeTable, poses: NDArray[np.float64], *, derivatives: bool) 
     by_later[:, 0, 0], by_later[:, 0, 1] = cosine, sine
     by_later[:, 1, 0], by_later[:, 1, 1] = -sine, cosine
     by_later[:, 2, 2] = 1.0
+    # In the frame of the edge the two poses pull alike, but for the heading of the earlier one, which turns
+    # that frame.
     by_earlier = -by_later
     by_earlier[:, 0, 2] = -sine * off[:, 0] + cosine * off[:, 1]
     by_earlier[:, 1, 2] = -cosine * off[:, 0] - sine * off[:, 1]

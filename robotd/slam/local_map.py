@@ -41,6 +41,7 @@ class LocalMaps:
         laid = [(graph.stops[stop].readings, graph.pose(stop)) for stop in which]
         here = np.array([(around.x_m, around.y_m)])
         heads = np.concatenate([here, *(readings.heads_at(pose) for readings, pose in laid)])
+        # One wrong range of 80 m would else make the map of fifteen stops as large as a building's.
         points = np.clip(heads, here - self.reach_m, here + self.reach_m)
         corners = [tuple(points.min(axis=0).tolist()), tuple(points.max(axis=0).tolist())]
         grid = OccupancyGrid(self.grid.spec_covering(corners, _MARGIN_M), settings=self.grid)

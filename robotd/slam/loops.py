@@ -70,6 +70,8 @@ class Loop:
 
     def agrees(self, other: "Loop", settings: LoopSettings) -> bool:
         """Whether another loop, found on the same poses, says the same of the way between."""
+        # What the first says of the second's place: two loops agree if they move the same stretch in the same
+        # way.
         expected = self.correction @ other.correction.inverse() @ other.found
         off_rad = abs(wrap_rad(expected.heading_rad - other.found.heading_rad))
         return expected.distance_m(other.found) <= settings.agree_m and off_rad <= settings.agree_rad
@@ -86,6 +88,7 @@ def seek(graph: StopGraph, way_since_m: float, maps: LocalMaps, settings: LoopSe
     """
     stop = len(graph.stops) - 1
     believed, laid = graph.pose(stop), graph.laid
+    # Only stops of long ago: on the last ones it was placed already, and would be found there again.
     old = laid[laid <= stop - settings.behind]
     if not len(old):
         return None
@@ -94,10 +97,12 @@ def seek(graph: StopGraph, way_since_m: float, maps: LocalMaps, settings: LoopSe
     # Working out how far it may have drifted costs more than anything before it.
     if off_m.min() > settings.near_m + max(drift_m, _DRIFT_MAX_M):
         return None
+    # Relative to the old stop, not to the map's origin: far from that every stop is unsure, and equally so.
     relative = system_at(graph).relative_covariance(stop, [int(old[off_m.argmin()])])[0]
     drift_m = max(drift_m, settings.drift_sigmas * math.sqrt(max(relative[0, 0], relative[1, 1])))
     if off_m.min() > settings.near_m + drift_m:
         return None
+    # A map of old stops alone: on one with the last ones in it every sweep would fit where it is believed.
     some = old[off_m <= settings.map_m + drift_m]
     area = Area(believed.x_m, believed.y_m, settings.within_m + 2.0 * drift_m)
     half_rad = settings.within_rad + settings.within_rad_per_m * way_since_m
@@ -116,6 +121,7 @@ def _loop(graph: StopGraph, some: NDArray[np.intp], found: Believed, settings: L
 
 def edge_to(graph: StopGraph, earlier: int, later: int, found: Believed, kind: EdgeKind) -> Edge:
     """Return what it says of two stops that the later one was found at a pose."""
+    # Along the axes of the later stop: the edge must mean the same after both have moved.
     covariance = turned(found.covariance, -found.pose.heading_rad)
     return Edge(earlier, later, graph.pose(earlier).inverse() @ found.pose, covariance, kind)
 

@@ -93,6 +93,7 @@ def solve(poses: Poses, edges: Sequence[Edge], fixed: Sequence[int] = (0,)) -> S
     # Two passes: what Cauchy has brought near to the truth, scaling may cut off.
     poses, _ = problem.settled(poses, _cauchy)
     poses, factor = problem.settled(poses, _scaled)
+    # Weighed at the poses as they are in the end: a step before, an edge may have looked better than it is.
     bent = chi2(residuals(problem.table, poses), problem.table)
     weights = np.where(problem.table.robust, _scaled(bent), 1.0)
     refused = tuple(np.flatnonzero(weights < _REFUSED).tolist())
@@ -143,11 +144,14 @@ class _Problem:
         for earlier, later in pairs.tolist():
             is_turned = (later, earlier) not in structure.places
             turned.append(is_turned)
+            # Only one of the two triangles is kept, so the block of a pair may be the transpose of what is
+            # stored.
             places.append(structure.places[(earlier, later) if is_turned else (later, earlier)])
         return cls(table, unknown_of, structure, between, np.array(places, np.intp), np.array(turned, np.bool_))
 
     def settled(self, poses: Poses, weigh: _Weigh) -> tuple[Poses, Factor]:
         """Return the poses after as many steps as it takes, and the equations of the last step."""
+        # Bounded, for a sweep waits for it; each of the steps so far is an improvement all the same.
         for _ in range(_STEPS_MAX):
             factor, right = self.equations(poses, weigh)
             moves = np.zeros((len(poses), 3))
@@ -167,6 +171,7 @@ class _Problem:
         for end, by in ((0, at.by_earlier), (1, at.by_later)):
             free = ends[:, end] >= 0
             weighted = by[free].transpose(0, 2, 1) @ information[free]
+            # Added one after the other: many edges end at one stop, and plain indexing would keep the last.
             np.add.at(diagonal, ends[free, end], weighted @ by[free])
             np.subtract.at(right, ends[free, end], (weighted @ at.residuals[free, :, None])[:, :, 0])
         below = np.zeros((self.structure.below, 3, 3))

@@ -31,6 +31,7 @@ class StopGraph:
 
     def with_stop(self, stop: PlacedStop, pose: Pose2, *edges: Edge) -> "StopGraph":
         """Return it with one more stop, and what ties it to others."""
+        # A new array: the survey before this one may be gone on with, if the mission is stopped now.
         poses = np.concatenate((self.poses, [(pose.x_m, pose.y_m, pose.heading_rad)]))
         return StopGraph((*self.stops, stop), poses, (*self.edges, *edges))
 

@@ -134,6 +134,8 @@ class Survey:
 
     def reconciled(self) -> tuple["Survey", Reconciled]:
         """Return the survey with all stops where they bend the edges least."""
+        # From where they are: Gauss-Newton needs a start near to the answer, and this one was built stop by
+        # stop.
         solution = solve(self.graph.poses, self.graph.edges)
         return self.moved_to(solution.poses, tuple(self.graph.edges[at] for at in solution.refused))
 
@@ -154,17 +156,21 @@ def _placed(survey: Survey, readings: Readings, travel: Travel) -> tuple[Survey,
     placed = place(ground, readings, prior, settings.placing)
     is_against = placed.outcome is Outcome.CONTRADICTS
     held = survey.held + 1 if is_against else 0
+    # One sweep against the map may be people in the way; three in a row, and it is the map, or the wheels, that
+    # are wrong.
     opens = held >= settings.held_max
     is_laid = opens or not is_against
     stop = PlacedStop(readings, travel, placed.outcome, graph.stops[-1].segment + opens, is_laid=is_laid)
     kind = EdgeKind.STEP if placed.outcome.is_found else EdgeKind.ODOMETRY
     found = placed.believed.no_surer(settings.floor_m, settings.floor_rad)
     edge = edge_to(graph, last, len(graph.stops), found, kind)
+    # Only from what the map fully explains: a place that odometry itself decided would teach it its own error.
     learns = placed.outcome is Outcome.PLACED
     after = replace(
         survey,
         graph=graph.with_stop(stop, placed.believed.pose, edge),
         bias=survey.bias.learned(since, edge.step) if learns else survey.bias,
+        # Summed over stops that were held back: the next is tied to the last one that is in the map.
         since_laid=Travel() if is_laid else since,
         held=0 if opens else held,
         way_m=survey.way_m + travel.way_m,
@@ -188,6 +194,7 @@ def _recent(survey: Survey, near: Pose2) -> list[int]:
 
 def _asks_for_loops(survey: Survey, outcome: Outcome, settings: LoopSettings) -> bool:
     is_turn = (len(survey.graph.stops) - 1) % settings.every == 0
+    # A loop that waits is asked again at once: what confirms it must come soon, or it is forgotten.
     return is_turn or bool(survey.waiting) or outcome is Outcome.CONTRADICTS
 
 
@@ -203,6 +210,7 @@ def _looped(survey: Survey, settings: LoopSettings) -> tuple[Survey, tuple[Decis
     agreeing = tuple(one for one in waiting if one.agrees(loop, settings))
     if not agreeing:
         return replace(survey, waiting=(*waiting, loop)), (LoopHeld(loop),)
+    # All that agree are taken, also those that waited: each is an edge of its own, found from another stop.
     return _closed(survey, (*agreeing, loop), large=True)
 
 

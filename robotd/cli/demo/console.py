@@ -88,7 +88,7 @@ def _settings(directory: Path, robot: str, port: int) -> GatewaySettings:
 
 @contextmanager
 def _gateway(directory: Path, settings: GatewaySettings) -> Iterator[str]:
-    """StartMission the gateway, and yield the address it serves at.
+    """Start the gateway, and yield the address it serves at.
 
     Raises:
         RobotdError: it ended, or did not come up.

@@ -38,7 +38,7 @@ class Command(msgspec.Struct, tag="command", tag_field="type", forbid_unknown_fi
 
 
 class StartMission(msgspec.Struct, tag="mission", tag_field="type", forbid_unknown_fields=True):
-    """StartMission a mission."""
+    """Start a mission, under a lease that the gateway renews for the page."""
 
     id: int
     cmd: str

@@ -51,7 +51,7 @@ class Missions:
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def start(self, driver: Driver, mission: MissionRequest, *, attended: bool) -> MissionStarted:
-        """StartMission a mission for a browser, and keep its lease.
+        """Start a mission for a browser, and keep its lease.
 
         Raises:
             ServerError: another one drives, or the daemon refused, or it is not known what came of it.

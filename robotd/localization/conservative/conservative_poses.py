@@ -130,6 +130,7 @@ def conservative_poses(
 
 def _passable(obstacles: SureObstacles, drawn: Drawn, error_cells: float, bounds: ErrorBounds) -> NDArray[np.bool_]:
     """Return from where a path of cells that may be free leads through the windows of the fan."""
+    # No beam crosses more lines than the grid has rows and columns together.
     reach = sum(obstacles.blocking.shape)
     directions, starts = direction_keys(drawn.bearings_rad), start_keys(drawn.starts)
     fans = draw_fans(directions, starts, bounds.heading_error_rad, reach)
@@ -146,6 +147,8 @@ def _passable(obstacles: SureObstacles, drawn: Drawn, error_cells: float, bounds
     for number, (low, high) in enumerate(fans.windows[:count].tolist()):
         before, paths, behind, line = paths, {}, line, forward * (first + number)
         for aside in range(low, high + 1):
+            # Starts that lie off the axis may be in any cell of the first line; only a beam from the axis is
+            # known to begin at p.
             arriving = everywhere if number == 0 and not at_home else ~everywhere
             for old, path in before.items():
                 if number == 0 or least <= aside - old <= greatest:
@@ -163,6 +166,7 @@ def head_radius_steps(
 ) -> NDArray[np.int64]:
     """Return the radius r of the proof for heads so far from the axis, in quarters of a cell, rounded up."""
     radii = error_cells + 2.0 * math.sin(heading_error_rad / 2.0) * heads_cells + SLACK_CELLS
+    # Up, never to the nearest: the promise holds for a radius that is too large, not for one too small.
     steps: NDArray[np.int64] = np.ceil(radii * _RADIUS_STEPS_PER_CELL).astype(np.int64)
     return steps
 

@@ -60,6 +60,8 @@ class ConservativeMap:
 
     def grown(self, radius_steps: int) -> Words:
         """Return what may end a beam, grown by a radius of this many quarter cells, packed."""
+        # Kept with the map, not with the stop: radii are rounded so coarsely that every stop asks for the same
+        # few.
         if radius_steps not in self._grown:
             plane = grown_ending(self.obstacles, radius_steps)
             self._grown[radius_steps] = pack(plane, self.prepared.packed.origin, outside=True)
@@ -128,6 +130,7 @@ class _FannedReadings:
         for first in range(0, len(directions), size):
             block = slice(first, first + size)
             fans = draw_fans(directions[block], starts[block], self.turn_rad, self.line_count)
+            # All beams of one fan are in one block, so no fan is drawn twice.
             mine = np.flatnonzero((fan >= first) & (fan < first + size))
             beams = self.beams[mine]
             beams[:, 0] = fans.lines_crossed(fan[mine] - first, self.lengths[mine])

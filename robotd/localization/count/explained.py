@@ -37,6 +37,7 @@ def _explained(
 ) -> NDArray[np.bool_]:
     """Return for each reading of one level whether it is feasible at a free cell, ``bool[n]``."""
     obstacles = the_map.obstacles
+    # Drawn as for the count: another rule of rounding would call a reading unexplained that the rank has in it.
     drawn = Drawn.of(readings, turned(np.array([heading_rad])), the_map.spec.resolution_m)
     body, beam = drawn.bodies(drawn.body_lengths(the_map.error_radius_cells, 2 * max(the_map.spec.shape)))
     at = np.array(cell) + obstacles.rim

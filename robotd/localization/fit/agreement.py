@@ -63,15 +63,18 @@ def agreement(walls: WallField, vacant: NDArray[np.bool_], readings: Readings, p
     spec = walls.spec
     at = np.array([[pose.x_m, pose.y_m, pose.heading_rad]])
     ways = ranges_along(walls, Heads.of(readings, spec.resolution_m).beams, at, _BLOCKED_BY)
+    # Only by a wall: where the map ends, or nobody has looked, nothing says that the beam could not go on.
     blocked = (ways.ranges_m[0] < readings.range_m - _FAR_M) & ways.ends[0]
     cells = spec.flat_at(readings.heads_at(pose))
     on_map = cells >= 0
     distance_m = np.full(len(readings), np.inf)
     codes = walls.codes.reshape(-1)[cells[on_map]].astype(np.intp)
     distance_m[on_map] = np.abs(DISTANCES[Walls.CENTRES][codes + 128]) * spec.resolution_m
+    # Off the map a head lies in no vacant cell, so it can neither be explained there nor contradicted.
     in_vacant = np.zeros(len(readings), np.bool_)
     in_vacant[on_map] = vacant.reshape(-1)[cells[on_map]]
     is_miss = readings.is_miss
     explained = ~blocked & np.where(is_miss, in_vacant, distance_m <= _NEAR_M)
+    # Between near and far lies nothing: a head 20 cm from a wall may be of that wall or of something before it.
     contradicted = blocked | ~is_miss & in_vacant & (distance_m > _FAR_M)
     return Agreement(explained, contradicted)

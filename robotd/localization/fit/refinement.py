@@ -67,12 +67,15 @@ class Heads:
     @classmethod
     def of(cls, readings: Readings, resolution_m: float) -> "Heads":
         """Take them from readings, in cells."""
+        # Columns, each in one piece: the rows are a few numbers wide, and every step below goes through one of
+        # them.
         bearing_rad, range_, x, y, is_miss = columns = np.ascontiguousarray(readings.rows.T)
         columns[1:4] /= resolution_m
         cosine, sine, is_hit = np.cos(bearing_rad), np.sin(bearing_rad), is_miss == 0.0
         beams, at_cells = np.empty((len(readings), 4)), np.empty((len(readings), 2))
         beams[:, 0], beams[:, 1], beams[:, 2], beams[:, 3] = x, y, cosine, sine
         at_cells[:, 0], at_cells[:, 1] = x + range_ * cosine, y + range_ * sine
+        # Most sweeps of a room have no miss, and then nothing is copied.
         return cls(at_cells if is_hit.all() else at_cells[is_hit], is_hit, beams)
 
 
@@ -129,6 +132,7 @@ def refine_heads(
 ) -> RefinedPoses:
     """Do as :func:`refine` with readings that are used more than once."""
     spec = field.spec
+    # In cells from the origin: the kernel then needs to know nothing of where the map lies.
     fits = kernels.in_use().fit.fit_poses(
         field.codes,
         DISTANCES[settings.walls],
@@ -213,6 +217,8 @@ def _in_metres(fits: Fits, heads: Heads, units: _Units) -> RefinedPoses:
         beyond_m[:, heads.is_hit] = of_hits
     return RefinedPoses(
         poses=fits.poses * units.scale + units.origin,
+        # Added after the fit, and not weighed in it: what the map has wrong all along a wall is not averaged
+        # away by more readings.
         covariances=fits.covariances * units.squared + units.map_error,
         residual_m=np.sqrt(fits.quality[:, 1]) * units.resolution_m,
         weight=fits.quality[:, 0],

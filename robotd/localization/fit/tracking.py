@@ -143,6 +143,7 @@ def track(
         return NotHere()
     search = _Search(field, readings, heads, prior, settings, refinement)
     starts = search.starts()
+    # One first: where it is settled that is all, in a third of the time.
     best = search.best_of([next(starts)])
     settled = best.share >= settings.settled_share and best.residual_m <= settings.settled_residual_m
     # Starts are drawn from the lattice one by one, so a pose that is settled at once never pays for rivals.
@@ -183,6 +184,7 @@ class _Search:
         """Return the best poses of the lattice, best first, each two steps or more from all before it."""
         start, lattice = self.prior.start, self._lattice()
         heads = self.heads.at_cells
+        # Evenly round, so that no wall decides alone; fifty tell the right hill, and all readings find its top.
         part = np.ascontiguousarray(heads[:: max(1, len(heads) // self.settings.heads)])
         costs, turns = kernels.in_use().fit.scan_poses(self.field.codes, _COSTS[self.refinement.walls], part, lattice)
         step_m, wide = lattice.step_cells * self.field.spec.resolution_m, costs.shape[1]
@@ -196,6 +198,7 @@ class _Search:
                 start.y_m + (row + int(lattice.steps[2])) * step_m,
                 start.heading_rad + int(turns[row, col]) * lattice.step_rad,
             )
+            # Its neighbours are the same hill, which refinement will climb from any side.
             costs[max(0, row - 1) : row + 2, max(0, col - 1) : col + 2] = _TAKEN
 
     def best_of(self, starts: Sequence[Pose2]) -> _Candidate:

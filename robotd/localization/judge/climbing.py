@@ -49,6 +49,8 @@ def climb(
     poses = poses.copy()
     heights = hill.heights(poses)
     for step_m, step_rad in steps:
+        # Along the axes of the map: the heights know of no better direction, and six neighbours are cheap to
+        # try at once.
         around = _NEIGHBOURS * np.array([step_m, step_m, step_rad])
         moving = np.arange(len(poses))
         for _ in range(moves_max):

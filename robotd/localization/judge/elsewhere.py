@@ -52,6 +52,7 @@ def elsewhere(readings: Readings, model: ErrorModel, going_on: GoingOn) -> NDArr
     """
     is_hit = readings.is_hit
     known = model.anywhere(readings.range_m, is_hit)
+    # Open space goes on as walls do: a hundred misses through one large door are not a hundred surprises.
     stays_open = np.flatnonzero(~is_hit[1:] & ~is_hit[:-1]) + 1
     known[stays_open] = _GOES_ON + (1.0 - _GOES_ON) * known[stays_open]
     return or_going_on(known, going_on.densities, _GOES_ON * going_on.is_wall)
@@ -76,6 +77,7 @@ def going_on(readings: Readings, model: ErrorModel) -> GoingOn:
     length = np.maximum(np.hypot(wall[:, 0], wall[:, 1]), 1e-9)
     way = np.stack((np.cos(ahead.bearing_rad), np.sin(ahead.bearing_rad)), axis=1)
     aslant = way[:, 0] * wall[:, 1] - way[:, 1] * wall[:, 0]
+    # Bounded and with its sign: a beam nearly along the wall meets it anywhere, but on the right side.
     aslant = np.where(np.abs(aslant) < _SINE_MIN * length, np.copysign(_SINE_MIN * length, aslant), aslant)
     starts = ahead.rows[:, 2:4]
     to_last = last - starts
@@ -86,6 +88,8 @@ def going_on(readings: Readings, model: ErrorModel) -> GoingOn:
     # The line through two heads errs by both of them, the more the farther it is drawn on.
     error_m = np.sqrt(model.range_sigma_m**2 * (1.0 + (1.0 + farther) ** 2 + farther**2) + _ROUGHNESS_M**2)
     spread_m = error_m * length / np.abs(aslant)
+    # Student's t and no normal curve: where a wall has a niche, one reading far off must not outweigh all
+    # others.
     tail = 1.0 + ((ahead.range_m - expected_m) / spread_m) ** 2 / 3.0
     found.densities[2:] = _PEAK / (tail * tail * spread_m)
     found.is_wall[2:] = is_hit[2:] & is_hit[1:-1] & is_hit[:-2] & (expected_m > 0.0) & (farther < _FARTHEST)

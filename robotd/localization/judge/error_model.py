@@ -49,5 +49,7 @@ class ErrorModel:
 
     def anywhere(self, range_m: NDArray[np.float64], is_hit: NDArray[np.bool_]) -> NDArray[np.float64]:
         """Return how likely readings are where nobody has looked: for hits the density [1/m], for misses the chance."""
+        # An exponential way to the first obstacle: where nobody has looked, each metre is as likely as the next
+        # to hold one.
         passed = np.exp(-np.minimum(self.unknown_per_m * range_m, _NEVER))
         return np.where(is_hit, self.unknown_per_m * passed, passed)

@@ -16,6 +16,7 @@ class Judgement:
     def no_surer(self, contrast_min: float) -> "Judgement":
         """Return the judgement of one who asks for this contrast, if that is more."""
         look = self.second_look
+        # Only ever stricter: who looks until it is sure asks more often, and chance has more tries.
         if contrast_min <= look.contrast_min:
             return self
         off_walls = max(contrast_min, look.contrast_off_walls_min)

@@ -37,6 +37,7 @@ def likeliest_look(
         settings: see there.
     """
     looks = [second_look(likelihood, readings, poses, ranks, settings) for likelihood in likelihoods]
+    # Of equal ones the first: walls as they are drawn.
     number = max(range(len(looks)), key=lambda number: _evidence(looks[number]))
     first = looks[number]
     doubt = any(_contradicts(other, first, settings) for other in looks)

@@ -73,6 +73,7 @@ class Likelihood:
     @classmethod
     def of(cls, spec: GridSpec, cells: NDArray[np.uint8], model: ErrorModel) -> "Likelihood":
         """Prepare a map: ``uint8[rows, cols]``, the evidence of the occupancy grid, which is copied. O(cells)."""
+        # Copied: the grid goes on changing, and what is prepared must stay of one moment.
         own = np.array(cells, np.uint8, order="C")
         chances = ChanceMap(own, skips_of(own), _stops(model, spec.resolution_m))
         on_walls = grown_by_disk(own > NO_INFORMATION, _on_wall_cells(spec))
@@ -155,6 +156,7 @@ class Likelihood:
         x_m = poses[:, 0, None] + cos * heads_m[:, 0] - sin * heads_m[:, 1]
         y_m = poses[:, 1, None] + sin * heads_m[:, 0] + cos * heads_m[:, 1]
         at = self.spec.flat_at(np.stack((x_m, y_m), axis=-1).reshape(-1, 2))
+        # Off the map the index would count from the end, so it is held at 0 and its answer is dropped.
         return ((at >= 0) & self.on_walls.ravel()[np.maximum(at, 0)]).reshape(x_m.shape)
 
     def _with_meaningless(self, sight: Sight, densities: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -182,8 +184,13 @@ def _vacant(cells: NDArray[np.uint8]) -> int:
 def _stops(model: ErrorModel, resolution_m: float) -> NDArray[np.float64]:
     """Return what each cell value means to a beam, ``float64[256]``, for the kernel."""
     values = np.arange(SURELY_OCCUPIED + 1)
+    # Never certain: a single chair that was moved would make its place impossible.
     obstacle = np.minimum(values / SURELY_OCCUPIED, 1.0 - model.removed_share)
     rate = np.where(
-        values == NO_INFORMATION, -np.expm1(-model.unknown_per_m * resolution_m), model.unmapped_per_m * resolution_m
+        # As a chance for the length of a cell; `expm1`, as that is small and one less its exponential would
+        # lose places.
+        values == NO_INFORMATION,
+        -np.expm1(-model.unknown_per_m * resolution_m),
+        model.unmapped_per_m * resolution_m,
     )
     return np.where(values > NO_INFORMATION, obstacle, rate)

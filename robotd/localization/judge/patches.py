@@ -25,11 +25,13 @@ def spots_of(readings: Readings) -> NDArray[np.float64]:
     if is_hit.all() or not is_hit.any():
         return readings.heads_m
     hits = readings[is_hit]
+    # Stable, here and below: readings at one bearing keep their order, and a replay chooses the same.
     hits = hits[np.argsort(hits.bearing_rad, kind="stable")]
     after = np.clip(np.searchsorted(hits.bearing_rad, readings.bearing_rad), 1, max(len(hits) - 1, 1))
     before, later = hits[after - 1], hits[np.minimum(after, len(hits) - 1)]
     is_after = np.abs(later.bearing_rad - readings.bearing_rad) < np.abs(before.bearing_rad - readings.bearing_rad)
     nearest_m = np.where(is_after, later.range_m, before.range_m)
+    # No farther than the cut-off: beyond it nothing was looked at.
     range_m = np.where(is_hit, readings.range_m, np.minimum(nearest_m, readings.range_m))
     return readings.with_ranges(range_m).heads_m
 

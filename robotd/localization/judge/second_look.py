@@ -96,15 +96,18 @@ def second_look(
     starts = _glance(likelihood, readings, poses[shortlist(poses, ranks, 0.2, 0.07, settings.starts_max)], settings)
     if len(starts) == 0 or len(readings) == 0:
         return SecondLook(PoseState.LOST, np.zeros((0, 3)), np.zeros(0), np.zeros(0), 0.0, 1.0, 0.0)
+    # Half a patch apart: nearer ones would share their weight nearly whole, and cost as much as any.
     kept = thinned(readings, settings.patch_m / 2.0, settings.readings_max)
     hill = Hill(likelihood, likelihood.sight(kept), weights(kept, settings.patch_m))
     found, scores = climb(hill, starts, _LOOK_STEPS)
+    # After the climb: starts from several sides end on one hill, which must not be its own rival.
     apart = shortlist(found, _in_order(scores), _TOGETHER_M, _TOGETHER_RAD, len(found))
     found, scores = found[apart], scores[apart]
     is_rival = ~near(found, found[0], settings.same_within_m, settings.same_within_rad)
     # The best place is near to itself, and must stay.
     is_rival[0] = True
     found, scores = found[is_rival], scores[is_rival]
+    # Climbed as well: a ring of fixed poses would miss the ridge of a corridor by a few centimetres.
     _, aside = climb(hill, _around(found[0], settings), _ASIDE_STEPS, _ASIDE_MOVES)
     to_beat = float((likelihood.elsewhere_logs(hill.sight) * hill.weights).sum())
     # Before any reading, each place has an equal share of the belief that the robot is on the map at all.
@@ -221,5 +224,6 @@ def _weigh(
     is_sure = float(shares[0]) >= 1.0 - settings.doubt_max and stands_out
     nowhere = float(shares[-1])
     on_map = PoseState.LOCALIZED if is_sure else PoseState.AMBIGUOUS
+    # More likely nowhere than anywhere: then no region is told, however good it looks beside the others.
     state = PoseState.LOST if nowhere > 0.5 else on_map
     return SecondLook(state, poses, evidence, shares[:-2], float(shares[-2]), nowhere, math.inf)

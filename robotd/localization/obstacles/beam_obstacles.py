@@ -72,6 +72,7 @@ class Obstacles:
         as wide as the error radius where nothing ends outside; elsewhere nothing is gained by one.
         """
         unseen_ends, unseen_blocks = unknown is UnknownCells.OCCUPIED, unknown is not UnknownCells.FREE
+        # What lies outside the grid was never seen: it is padded with what the unknown is taken for.
         ending = np.pad(_ending(ternary, unknown), rim, constant_values=unseen_ends)
         return cls(
             free=np.pad(ternary.vacant, rim),

@@ -46,6 +46,8 @@ class WallCores:
         """Return what :meth:`of` does for walls that differ in a window alone. O(cells within a wall's reach of it)."""
         thickest = len(self.thicknesses) - 1
         window = changed.grown(thickest, drawn.shape)
+        # What the window held before is taken off, and what it holds now is added: a histogram of all would be
+        # counted for each sweep.
         less, more = (_thicknesses(walls, thickest, window) for walls in (self.drawn, drawn))
         return replace(self, drawn=drawn, thicknesses=self.thicknesses + more - less)
 
@@ -55,6 +57,7 @@ class WallCores:
         if self.read is ThickWalls.AS_DRAWN:
             return 0
         summed = np.cumsum(self.thicknesses)
+        # The median and not the mean: a map has a few solid blocks, which say nothing of the pen.
         median = int(np.searchsorted(summed, (summed[-1] + 1) // 2)) if summed[-1] else 0
         more_m = median * self.resolution_m - max(_USUAL_M, self.resolution_m)
         # Rounded down, but for what binary fractions lack: as little as possible is taken for the pen's.
@@ -97,6 +100,7 @@ def _thicknesses(walls: NDArray[np.bool_], thickest: int, window: CellWindow) ->
     thick = _runs(rows * (width + 1) + cols)
     down = np.empty_like(thick)
     down[by_column] = _runs((cols * (height + 1) + rows)[by_column])
+    # The smaller of both: a wall is as long as it is one way and as thick as it is the other.
     np.minimum(thick, down, out=thick)
     rows, cols = rows + seen.first_row, cols + seen.first_col
     is_inside = (rows >= window.first_row) & (rows < window.end_row)

@@ -48,6 +48,7 @@ def pieces_of(
         np.minimum.at(urgency, labels[first], np.arange(len(first)))
     # The last key decides first. The label comes last of all, so that the order is the same in every replay.
     order = np.lexsort((np.arange(len(sizes)), -sizes, -best_ranks.astype(np.intp), urgency))
+    # One sort for all regions: a mask for each would be read once per region.
     members = np.argsort(labels, kind="stable")
     ends = np.cumsum(sizes)
     chosen = (members[ends[label] - sizes[label] : ends[label]] for label in order[:most])

@@ -33,6 +33,7 @@ def cover_of(cells: NDArray[np.intp], runs_max: int) -> Cover:
             last = np.append(first[1:], len(blocks)) - 1
             runs = np.stack((*blocks[first].T, blocks[last, 1]), axis=1).tolist()
             return Cover(block, tuple((row, first_col, last_col) for row, first_col, last_col in runs))
+        # Twice as coarse, not one cell more: few tries, however large the region is.
         block *= 2
 
 
@@ -58,6 +59,7 @@ def _headings_extent(used: NDArray[np.intp], headings_rad: tuple[float, ...]) ->
     angles = np.sort(np.mod(np.array(headings_rad)[used], math.tau))
     half_step_rad = float(np.diff(headings_rad).min()) / 2 if len(headings_rad) > 1 else 0.0
     gaps = np.diff(angles, append=angles[0] + math.tau)
+    # Headings go round, so the least and the greatest of them mean nothing: what is left out is the widest gap.
     widest = int(gaps.argmax())
     first = (widest + 1) % len(angles)
     width_rad = min(math.tau - float(gaps[widest]) + 2 * half_step_rad, math.tau)

@@ -61,7 +61,7 @@ def directional_flood(
         sources: ``bool[rows, cols]``.
         chain: ``intp[n, 2]``, a pixelized vector as ``(row, col)`` offsets, from (0, 0) on; every offset is one cell
             farther along the dominant axis than the one before and at most one cell sideways, as
-            :func:`robotd.grid.ray.ray_offsets` returns them.
+            :func:`.pixelized_vector.ray_offsets` returns them.
         outside: whether what lies beyond the grid is a source.
 
     Raises:

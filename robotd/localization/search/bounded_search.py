@@ -87,7 +87,10 @@ def best_poses(
     # The kernel is promised one reading, one heading and one row at least.
     if len(readings) == 0 or len(headings_rad) == 0 or len(spans) == 0:
         return PoseSet.nothing(max(1, least_rank - slack))
+    # The laser may sit well away from the robot's axis: beams begin as far beside the map as that.
     farthest_m = float(np.abs(readings.rows[:, 2:4]).max())
+    # In work, not in time: how far a search comes must not depend on how busy the machine is, or no recording
+    # would replay.
     budget = BUDGET_MAX if math.isinf(budget_s) else int(budget_s * _WORK_PER_S)
     question = Question(
         readings=readings.rows,

@@ -23,6 +23,7 @@ class CellDisk:
     def of(cls, area: Area, spec: GridSpec) -> "CellDisk":
         """Return an area in cells: those whose centres lie within."""
         scale = 1.0 / spec.resolution_m
+        # Less a half: whole numbers are then centres, as indices are.
         row, col = (area.y_m - spec.origin_y_m) * scale - 0.5, (area.x_m - spec.origin_x_m) * scale - 0.5
         return cls(row, col, area.radius_m * scale)
 

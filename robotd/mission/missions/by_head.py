@@ -23,6 +23,7 @@ async def run_look(context: MissionContext, mission: Look) -> str:
     _require("pan", pan_rad, reach.pan_min_rad, reach.pan_max_rad)
     _require("tilt", tilt_rad, reach.tilt_min_rad, reach.tilt_max_rad)
     timeout_s = context.settings.sweep.aim_timeout_s
+    # Through holds: a stop also stops the head, and what stopped half-way would be told as where it looks.
     aim = await context.hold.through(lambda: head.aim(pan_rad, tilt_rad, timeout_s=timeout_s))
     return f"looks to pan {math.degrees(aim.pan_rad):.2f} deg, tilt {math.degrees(aim.tilt_rad):.2f} deg"
 
@@ -38,6 +39,7 @@ async def run_measure(context: MissionContext, mission: Measure, report: Reporte
     report.at(MissionPhase.SWEEPING)
     laser, shots = context.robot.rangefinder, list[Shot]()
     await context.hold.through(lambda: laser.switch_laser(on=True))
+    # Counted from here, when the laser is on: only a hold after that has put it out.
     holds = context.hold.count
 
     async def shoot() -> Shot:
@@ -57,6 +59,7 @@ def _shots_in_words(shots: list[Shot]) -> str:
     ranges_m = [shot.range_m for shot in shots if shot.status is ReadingStatus.OK and shot.range_m is not None]
     if not ranges_m:
         return f"nothing measured: {shots[-1].status}"
+    # A deviation takes two.
     spread = f", give or take {statistics.stdev(ranges_m):.4f} m" if len(ranges_m) > 1 else ""
     return f"{statistics.fmean(ranges_m):.4f} m{spread}, {len(ranges_m)} of {len(shots)} measured"
 

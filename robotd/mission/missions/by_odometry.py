@@ -21,6 +21,8 @@ async def run_straight(context: MissionContext, mission: DriveStraight, report: 
     goal_m = start.transform(mission.distance_m, 0.0)  # once: after a hold the rest is driven, not all of it again
     is_back = mission.distance_m < 0.0
     await hold.through(lambda: translate_to(drive, *goal_m, driving, hold, backwards=is_back))
+    # Told in the frame of the start: who tries a new base holds it against a ruler laid there, not against
+    # odometry's origin.
     ahead_m, aside_m = start.inverse().transform(*_place_m(await _at_rest(context)))
     return f"drove {ahead_m:.3f} m ahead and {aside_m:.3f} m to the left, by odometry"
 

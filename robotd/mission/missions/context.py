@@ -61,12 +61,14 @@ class MissionContext:
 
     def __post_init__(self) -> None:
         """Let who looks on have pictures by the same head."""
+        # The one way to fill a field of a frozen object that is made of its other fields.
         object.__setattr__(self, "ranks", RanksTold(self.head, self.publish))
 
     @property
     def sweeper(self) -> Sweeper:
         """Takes sweeps with this robot."""
         settings = self.settings
+        # Made when asked for: it has no state of its own, so nothing of one sweep can leak into the next.
         return Sweeper(
             self.robot, settings.head_mount, settings.rangefinder, settings.sweep, settings.driving, self.hold
         )

@@ -66,6 +66,8 @@ class Journey:
         self.against = self.against + 1 if stop.outcome is Outcome.CONTRADICTS else 0
         # What stood in the way is on the map by now, or has gone.
         self.tried = Tried(self.tried.in_vain_m)
+        # A place that shows nothing new would be chosen again for ever: what hides behind it does not appear by
+        # looking twice.
         if stop.cells < _NEWS_CELLS:
             self.tried = self.tried.in_vain(at_m)
 
@@ -81,6 +83,8 @@ async def run_exploring(context: MissionContext, place: MapInUse, mission: Explo
     await exploring.look_round(found_again=mission.resume)
     for goal_m in mission.stops_m:
         await exploring.visit(goal_m, "asked for")
+    # One choice at a time, on the map as it is after the last stop: a tour planned ahead would be of a map that
+    # is no more.
     while (chosen := await exploring.choose()).goal_m is not None:
         await exploring.visit(chosen.goal_m, _reason(chosen), chosen.candidates)
     if mission.returns:
@@ -105,6 +109,7 @@ class Exploring:
 
     async def look_round(self, *, found_again: bool = False) -> None:
         """Make a stop where the robot stands; the first on a map that is gone on with is ``found_again``."""
+        # Before the sweep, so that everything it tells bears the number of this stop.
         self.report.stop = self.journey.stops
         stop = await survey_stop(self.context, self.place, self.report, found_again=found_again)
         _, here = await _here(self.context)
@@ -117,7 +122,10 @@ class Exploring:
         within = None if bounds is None else Rectangle(bounds.west_m, bounds.south_m, bounds.east_m, bounds.north_m)
         tried = replace(journey.tried, met_m=self._met_m)
         cut_off_m = self.context.settings.rangefinder.range_max_m
+        # Asked even if the journey is spent: the answer also says what is left to do, which the last word
+        # tells.
         chosen = await self.context.head.ask(Choose(self.place.ref, start, tried, within, cut_off_m, journey.pace))
+        # Before the budget: a map that contradicts what is seen is the reason that people must hear.
         if journey.against >= _AGAINST:
             return _ended_by(WhyEnded.LOST, chosen)
         if chosen.ending is None and journey.is_spent(self.mission):
@@ -132,6 +140,7 @@ class Exploring:
         self.context.publish(StopChosen(now_ns(), self.place.map_id, journey.stops, x_m, y_m, reason, candidates))
         self.report.at(MissionPhase.DRIVING, journey.stops, f"to ({x_m:.2f}, {y_m:.2f}) m: {reason}")
         hindrance = await self._reach(goal_m)
+        # Not reached is no failure of the mission: a chair in a doorway must not cost the rest of the house.
         if hindrance:
             journey.tried = journey.tried.in_vain(goal_m)
             self.report.at(MissionPhase.DRIVING, message=f"({x_m:.2f}, {y_m:.2f}) m not reached: {hindrance}")
@@ -168,11 +177,14 @@ class Exploring:
     async def _reach(self, goal_m: Point) -> str:
         """Drive to a place, round what stands in the way; return why it was not reached, empty if it was."""
         plan = PlanTold(self.report, self.place.map_id)
+        # Bounded: somebody who walks before the robot is met again and again, and each detour is a way it need
+        # not drive.
         for _ in range(1 + _DETOURS):
             try:
                 met_m = await drive_looking(self.context, self.place, plan, goal_m, self._met_m)
             # No way is an answer; a device that fails raises another error, which ends the mission.
             except NoWay as error:
+                # No other goal would be any better: a robot that does not know where it is cannot go anywhere.
                 if error.reason is Hindrance.NOT_LOCALIZED:
                     raise
                 return str(error)

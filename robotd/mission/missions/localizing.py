@@ -46,12 +46,17 @@ async def run_localizing(
 ) -> LookedRound:
     """Carry out a :class:`Localize`: sweep, estimate, and tie odometry to the map if the answer is unique."""
     settings = context.settings
+    # Before headings are chosen: the prior is of where it stands now, not of where it was still turning.
     here = await context.hold.through(lambda: standing(context.robot, settings.sweep.settle_s, settings.driving))
     headings_rad = _headings(context, mission, here)
+    # Before the sweep: a head that does not reach all round lets the base turn, and that way belongs to the
+    # next look.
     context.whereabouts.looks(here.in_odom)
     report.at(MissionPhase.SWEEPING)
+    # Drawn before the try, so that whatever fails, the head is told to forget what it may have begun.
     stop = context.head.number()
     try:
+        # A whole sweep is judged at its end and nowhere else; one that may end early must not end on a chance.
         contrast_min = CONTRAST_MIN if mission.adaptive else 0.0
         await context.head.ask(Prepare(stop, place.ref, place.map_id, headings_rad, mission.within, contrast_min))
         of = LookRound(report.mission_id, number)
@@ -67,6 +72,8 @@ async def run_localizing(
 
 async def _looked_round(context: MissionContext, report: Reporter, narrowing: "Narrowing", number: int) -> LookedRound:
     """Sweep, and narrow down meanwhile."""
+    # Beside the sweep: the head works while the laser turns, so the last word comes a batch after the last
+    # reading, not a whole sweep later.
     narrowed = asyncio.create_task(narrowing.run(), name="narrowing")
     try:
         sweep = await context.sweep(number, narrowing)
@@ -75,6 +82,8 @@ async def _looked_round(context: MissionContext, report: Reporter, narrowing: "N
         return LookedRound(await narrowed, sweep.in_odom)
     finally:
         # Whatever ended the sweep: a task is not left behind by its owner.
+        # Cancelled and waited for, in this order: a task that is only cancelled could still publish an estimate
+        # of a mission that has ended.
         narrowed.cancel()
         await asyncio.wait((narrowed,))
 
@@ -176,6 +185,7 @@ class Narrowing:
         self._batches.put_nowait(None)
 
     def _flush(self) -> None:
+        # Put and not awaited: reading goes on at the pace of the laser, however long an estimate takes.
         self._batches.put_nowait(tuple(self._batch))
         self._batch.clear()
 
@@ -199,6 +209,7 @@ class Narrowing:
         quarters = _ESTIMATES * self._taken // self._context.settings.sweep.readings
         if estimate.final or self._shown < quarters < _ESTIMATES:
             self._show()
+        # Also where nothing was shown: a quarter that came with the one before is not made up for.
         self._shown = quarters
 
     def _told(self, narrowed: Narrowed) -> PoseEstimate:

@@ -24,6 +24,7 @@ async def looking_again(context: MissionContext, report: Reporter, look: Callabl
         try:
             return await look()
         except DeviceError as error:
+            # Only lost steps are mended by a reset: what else a head reports would be reported again.
             if error.code != LOST_STEPS:
                 raise
             message = f"{error}; it is reset and the sweep taken again ({number} of {resets})"

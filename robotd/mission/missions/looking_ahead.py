@@ -67,6 +67,7 @@ async def _driven(
     for number, end_m in enumerate(_pieces(known.in_map, way.waypoints_m)):
         here = await _facing(context, end_m)
         length_m = _way_m(here.in_map, end_m)
+        # As a set: beams ahead and those all round share bearings, and none is worth two readings.
         along_rad = {*bearings_along(length_m, context.settings.planning.robot_radius_m)}
         # Round what it met it goes with open eyes: a corner between two beams is soon a bump.
         ahead_rad = {*along_rad, *bearings_about(0.0)} if met_m else along_rad
@@ -74,6 +75,8 @@ async def _driven(
         readings = await context.sweeper.glance(sorted({*ahead_rad, *_ALL_ROUND} if number else ahead_rad))
         if number:
             here = known = await _found_again(context, place, known, here, readings)
+        # After it was found again: what is met is told on the map from there, and by wheels alone it would lie
+        # beside itself.
         if met := await _met(context, readings, length_m):
             return tuple(here.in_map.transform(*place_m) for place_m in met)
         await _go(context, end_m)
@@ -95,6 +98,8 @@ async def _facing(context: MissionContext, end_m: Point) -> _At:
     if _way_m(here.in_map, end_m) <= context.settings.driving.position_tolerance_m:
         return here  # from so near it could lie anywhere
     bearing_rad = math.atan2(end_m[1] - here.in_map.y_m, end_m[0] - here.in_map.x_m)
+    # As a difference: the map's frame and that of odometry are turned against each other, and a turn is the
+    # same in both.
     turn_rad = bearing_rad - here.in_map.heading_rad
     await rotate_to(context.robot.drive, here.in_odom.heading_rad + turn_rad, context.settings.driving, context.hold)
     return await _here(context)
@@ -104,6 +109,7 @@ async def _found_again(
     context: MissionContext, place: MapInUse, known: _At, here: _At, readings: tuple[RangeReading, ...]
 ) -> _At:
     """Tie odometry to where the map explains readings that were taken here; return where that is."""
+    # A failed shot says nothing about the walls, and would count as a reading that the map does not explain.
     measured = tuple(reading for reading in readings if reading.is_measured)
     travel = Travel.through((known.in_odom, here.in_odom))
     found = await context.head.ask(Glance(place.ref, measured, known.in_map, travel))
@@ -134,6 +140,7 @@ def _pieces(start: Pose2, waypoints_m: tuple[Point, ...]) -> list[Point]:
     for corner_m in waypoints_m:
         count = max(1, math.ceil(math.dist(at_m, corner_m) / PIECE_M))
         across_m = (corner_m[0] - at_m[0], corner_m[1] - at_m[1])
+        # Equal pieces: the full length each time would leave a stub at the end, with a look of its own.
         shares = [number / count for number in range(1, count + 1)]
         pieces += [(at_m[0] + share * across_m[0], at_m[1] + share * across_m[1]) for share in shares]
         at_m = corner_m

@@ -60,10 +60,13 @@ class LookingUntilSure:
     async def wanted(self, parts: tuple[SweepPart, ...]) -> AsyncGenerator[Wanted, None]:
         """Want bearings until it is sure, or all of the sweep is taken."""
         bearings_rad = parts[0].bearings_rad
+        # In this order any beginning of the list goes about evenly all round, so stopping early leaves no blind
+        # side.
         left = list(spread_order(len(bearings_rad)))
         rivals: tuple[Region, ...] = ()
         while left:
             count = self._until.wanted(len(bearings_rad) - len(left))
+            # Half at most: rivals are what is known so far, and the true place may be none of them.
             telling = await self._telling(rivals, [bearings_rad[number] for number in left], count // 2)
             chosen = [left[at] for at in telling]
             chosen += [number for number in left if number not in chosen][: count - len(chosen)]

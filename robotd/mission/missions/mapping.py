@@ -36,6 +36,7 @@ async def run_mapping(context: MissionContext, place: MapInUse, mission: MapStar
     unreachable: list[str] = []
     faulty: list[str] = []
     stops_m = ((mission.start.x_m, mission.start.y_m), *mission.stops_m)
+    # With all stops from the beginning: a console draws the way ahead, not only what was done.
     plan = PlanTold(report, place.map_id, stops_m)
     for stop, stop_m in enumerate(stops_m):
         plan.stop_is(stop, StopState.UNDER_WAY)
@@ -47,6 +48,7 @@ async def run_mapping(context: MissionContext, place: MapInUse, mission: MapStar
             # No way is an answer; a base that fails raises another error, which ends the mission.
             except NoWay as error:
                 plan.stop_is(stop, StopState.UNREACHED, error.reason, error.nearest_m)
+                # In the order of the stops, and in the last word: who comes back after an hour reads one line.
                 unreachable.append(f"stop {stop}: {error}")
                 report.at(MissionPhase.DRIVING, message=unreachable[-1])
                 continue

@@ -27,6 +27,8 @@ class RanksTold:
         self._head = head
         self._publish = publish
         self._complaints = LogLimit()
+        # Room for one: a viewer wants the newest picture, and a queue of old ones would keep the head from the
+        # mission.
         self._wishes: Subscription[tuple[ShowRanks, str, int, int]] = Subscription(1)
         """The latest; one that was not begun yet is of no use any more."""
 
@@ -38,6 +40,8 @@ class RanksTold:
     async def run(self) -> NoReturn:
         """Make pictures until cancelled."""
         while True:
+            # Map and generation are those of the wish: by the time a picture is made, another map may be in
+            # use.
             job, map_id, generation, number = await self._wishes.get()
             try:
                 shown = await self._head.ask(job)

@@ -59,9 +59,11 @@ async def run_resolving(context: MissionContext, place: MapInUse, mission: Resol
         if leg is None:
             return Resolved(look.estimate, first, stops, way_m, why_not)
         report.at(MissionPhase.DRIVING, stops, _in_words(leg, len(look.estimate.regions)))
+        # From where that look began, in odometry: on the map the robot is in several places at once.
         await _drive(context, look.in_odom.transform(leg.x_m, leg.y_m))
         stops, way_m = stops + 1, way_m + math.hypot(leg.x_m, leg.y_m)
         look = await _look(context, place, mission, report, way_m)
+        # Against the fewest so far, not the last: places that come and go would count as progress for ever.
         in_vain = 0 if _places(look.estimate) < fewest else in_vain + 1
         fewest = min(fewest, _places(look.estimate))
     return Resolved(look.estimate, first, stops, way_m)
@@ -73,6 +75,8 @@ async def _look(
     """Look round, all headings tried; ``way_m`` is how far the robot has driven since the client knew where it is."""
     within = mission.within
     if within is not None:
+        # Grown and not dropped: what the client knew is still worth most of the search, and a disk that the
+        # robot has left would exclude the truth.
         within = Area(within.x_m, within.y_m, within.radius_m + _WAY_FACTOR * way_m)
     localize = Localize(heading=PriorHeading.UNKNOWN, within=within, adaptive=True)
     return await looking_again(
@@ -86,6 +90,7 @@ async def _next_leg(
     """Return a leg to drive; or None, and why there is none."""
     if in_vain == _IN_VAIN_MAX:
         return None, f"{_IN_VAIN_MAX} stops in a row left no fewer places"
+    # A leg is safe only if it is free from every place that is possible, so all of them must be known.
     if estimate.regions_left_out or not (estimate.complete and estimate.regions):
         return None, "more places are left than can be told, and no leg is known to be free from all of them"
     rivals = tuple(Rival.of(region, place.spec) for region in estimate.regions)

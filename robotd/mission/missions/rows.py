@@ -79,6 +79,7 @@ async def _explore(host: Host, context: MissionContext, mission: Explore, report
 
 
 async def _localize(_: Host, context: MissionContext, mission: Localize, report: Reporter) -> str:
+    # Taken once: a mission ends on the map that it began on, and looking again must not look on another.
     place = _place(context)
     look = await looking_again(
         context, report, lambda: run_localizing(context, place, mission, report, next(context.sweep_numbers))
@@ -151,6 +152,7 @@ def _corners_m(mission: Explore) -> tuple[tuple[float, float], ...]:
     (x_m, y_m), within = (mission.start.x_m, mission.start.y_m), mission.within
     if within is None:
         return ((x_m - _REACH_M, y_m - _REACH_M), (x_m + _REACH_M, y_m + _REACH_M), *mission.stops_m)
+    # Refused at once: the map is cut to the bounds, and the first stop might lie beside it.
     if not within.holds(x_m, y_m):
         raise MissionError(f"the robot stands at ({x_m:.2f}, {y_m:.2f}) m, outside of the bounds of what to explore")
     return ((within.west_m, within.south_m), (within.east_m, within.north_m), *mission.stops_m)
@@ -170,10 +172,14 @@ async def _begin_map(
     except ValueError as error:
         raise MissionError(f"this does not fit on one map: {error}") from error
     number = context.head.number()
+    # Before odometry is read: making a large map takes a while, and the tie must be of where the robot is after
+    # that.
     begun = await context.head.ask(BeginMap(number, spec, settings))
     silence_s = context.settings.driving.silence_s
     here = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
     place = MapInUse(f"new-{report.mission_id}", mission.name, number, begun)
+    # Tied from the first moment: a client said where it stands, and there is nothing on the map that could
+    # contradict.
     host.adopt(place, Tie.between(mission.start.pose, here.in_odom))
     return place
 

@@ -108,14 +108,19 @@ class MissionUnderWay:
                 f"cannot {mission.cmd}: the drive is not armed, and the robot can only look where it stands;"
                 " plug it in, then: robotctl arm"
             )
+        # Never used twice in a daemon's life: a renewal that comes late must not keep another mission alive.
         self._number += 1
         number = self._number
         report = Reporter(number, mission.kind, row.stops(mission), self._context.publish, self._advised)
+        # Bound to this number: the lease of a mission that has ended must not stop the next one.
         lease = self._lease = self._make_lease(lease_s, lambda: self.lease_expired(number))
         self._row = row
         self._commander = Commander(client, mission.kind, now_ns(), lease_s)
+        # Before the task takes its first step: who asks for the status at once is told that a mission is under
+        # way.
         self._current.start(mission.doing, f"mission {number}")
         self._task = asyncio.create_task(self._run(row, mission, report), name=f"mission {number}")
+        # A callback and not the end of `_run`: a task that is cancelled before its first step never gets there.
         self._task.add_done_callback(lambda task: self._ended(task, lease, report))
         return number
 
@@ -136,10 +141,12 @@ class MissionUnderWay:
 
     def cancel(self, reason: str) -> None:
         """End the mission because the robot was stopped; a mission that stops the robot itself ends by itself."""
+        # Cancelled from within, it could not tell its last word.
         if self._task is None or self._task is asyncio.current_task():
             return
         if not self._task.done() and not self._task.cancelling():
             self._stopped_by = reason  # what comes while it ends does not explain why it ends
+        # Said again even if it is ending already: a step that swallowed the first cancellation must not go on.
         self._task.cancel()
 
     async def ended(self) -> None:

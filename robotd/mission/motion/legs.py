@@ -58,6 +58,8 @@ class TurnedSoFar:
         """Take the next odometry, less than half a turn after the last."""
         heading_rad = now.in_odom.heading_rad
         if self._last_rad is not None:
+            # Summed step by step: the difference of two headings cannot tell a turn of 350 degrees from one of
+            # -10.
             self.rad += wrap_rad(heading_rad - self._last_rad)
         self._last_rad = heading_rad
 
@@ -99,6 +101,7 @@ async def translate_to(
         Interrupted: the mission was held meanwhile.
     """
 
+    # One law for both ways: a second one for going backwards would have signs of its own to get wrong.
     def facing(now: Odometry) -> Pose2:
         return now.in_odom @ _ABOUT_FACE if backwards else now.in_odom
 
@@ -122,6 +125,7 @@ async def drive_leg(
     drive: Drive, x_m: float, y_m: float, settings: DrivingSettings, hold: Hold | None = None
 ) -> Odometry:
     """Drive one leg: rotate towards its end in the ``odom`` frame, then translate to it."""
+    # The next and not the latest: what was told before a hold, or before the base was last pushed, is no start.
     here = await next_odometry(drive, settings.silence_s)
     # From so near the bearing to the end points anywhere, and the robot would turn for nothing.
     if math.hypot(x_m - here.in_odom.x_m, y_m - here.in_odom.y_m) <= settings.position_tolerance_m:
@@ -147,6 +151,7 @@ async def settle(drive: Drive, settle_s: float, settings: DrivingSettings) -> Od
                 if now.time_ns - since_ns >= settle_s * NS_PER_S:
                     return now
                 continue
+            # Standstill must be in one piece: a base that creeps stands still for moments.
             since_ns = None
             if now.time_ns - began_ns > settings.stall_s * NS_PER_S:
                 raise DeviceError(drive.name, "restless", f"it does not stand still within {settings.stall_s:g} s")
@@ -182,10 +187,14 @@ async def _approach(
                 raise Interrupted
             remaining = left(now)
             if remaining <= tolerance:
+                # Said, not left to the deadman: that would let it roll on for as long as the last set-point
+                # lives.
                 drive.set_velocity(STANDSTILL, settings.setpoint_ttl_s)
                 return now
             # Less than that is no progress: a base that creeps by ever smaller steps would put the stall off for ever.
             if remaining < nearest - tolerance / 4.0:
+                # Stalls are judged by odometry's own times, so a replay finds the same one, at the same
+                # message.
                 nearest, nearest_ns = remaining, now.time_ns
             elif now.time_ns - nearest_ns > settings.stall_s * NS_PER_S:
                 raise DeviceError(drive.name, "stalled", f"{what} is no nearer to its end for {settings.stall_s:g} s")
@@ -210,6 +219,7 @@ async def _within(stream: Subscription[Odometry], silence_s: float) -> AsyncIter
         try:
             async with within(silence_s, of="odometry"):
                 now = await stream.get()
+        # Silence of a kind of its own: a hold may wait for a base that fell silent, and for nothing else.
         except TimeoutError:
             raise FellSilent(f"drive: no odometry for {silence_s:g} s") from None
         yield now

@@ -67,6 +67,7 @@ def leg_twist(here: Pose2, goal_x_m: float, goal_y_m: float, settings: DrivingSe
         math.sqrt(2.0 * settings.deceleration_mps2 * left_m),
         settings.gain_hz * left_m,
     )
+    # Straight on for the last piece: a few millimetres beside the goal would be a right angle of bearing.
     if left_m < _STEER_WITHIN_M:
         return Twist2(speed_mps, 0.0)
     bearing_rad = math.atan2(goal_y_m - here.y_m, goal_x_m - here.x_m)

@@ -82,6 +82,8 @@ class Arming:
             # A stop came while this device answered: arming the next one would undo it.
             if self._stopper.halts != halts:
                 raise MissionError(f"stopped while arming: {self._current.reason}")
+        # Asked of the devices, not of their answers: one that was armed first may have been lost while the last
+        # one answered.
         if not all(device.status.armed for device in devices):
             raise MissionError("a device was lost while the others were arming")
 
@@ -98,8 +100,10 @@ class Arming:
         """
         self.require_clearable()
         for device in self._robot.devices:
+            # What is not there has nothing to acknowledge, and must not keep the others at fault.
             if device.status.link is LinkState.READY:
                 await device.clear_faults()
+        # Looked up after clearing: a bumper that is still pressed latches again at once, and that must be said.
         if faults := self._faults():
             raise MissionError(f"faults remain: {'; '.join(faults)}; mend that, then: robotctl clear")
         self._current.apply(Occasion.CLEAR, "faults cleared")

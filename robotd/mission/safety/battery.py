@@ -8,6 +8,7 @@ from robotd.mission.three_devices import Robot
 def low_battery(drive: Drive, least_v: float) -> str | None:
     """Say so if the base's battery is below ``least_v`` [V], None if it is not, or not known."""
     readout = drive.readouts.latest
+    # A readout from before the line was lost says nothing of the battery now.
     volts = None if readout is None or drive.status.link is not LinkState.READY else readout.battery_v
     if volts is None or volts >= least_v:
         return None

@@ -51,6 +51,7 @@ class Causes:
         self._holding = holding
         self._lease_expired = lease_expired
         self._journal = journal
+        # All timers of silence are one class, so one hook hears of each that falls.
         attention().fell = self._fell
 
     def _fell(self, of: str) -> None:
@@ -80,6 +81,7 @@ class Causes:
 
     def head_lost(self, why: str) -> None:
         """Take up that array work cannot be done: a robot that cannot think is not to move either."""
+        # Nothing moves, so nothing changes, and a replay need not know of it.
         if self._stopper.mode in {Mode.DISARMED, Mode.FAULT}:
             log.error("%s", why)
             return
@@ -118,6 +120,7 @@ def check_cause(name: str, arguments: dict[str, Any]) -> None:
     """
     key, kinds = _ARGUMENTS.get(name, ("", ()))
     value: Any = arguments.get(key)
+    # By exact type: to `isinstance` a true is a number.
     if kinds and (type(value) not in kinds or not 0 <= value < _MAX):
         raise RecordingError(f"cause {name!r}: expected a number {key!r}, got {str(arguments)[:80]}")
     if name == STALL:

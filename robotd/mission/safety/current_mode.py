@@ -77,9 +77,11 @@ class CurrentMode:
         if mode is self._mode is Mode.FAULT:
             reason = self._reason  # what comes after a fault does not explain it
         before, was = self.word, (self._mode, self._reason)
+        # Only where it changes: the age that is told is that of the mode, not of the last thing said about it.
         if mode is not self._mode:
             self.since_ns = now_ns()
         self._mode, self._reason = mode, reason
+        # A stop that is said ten times a second is one line.
         if (mode, reason) != was and (line := self._changes.line(f"{before} -> {self.word}: {reason}")):
             log.info("%s", line)
         self._tell()

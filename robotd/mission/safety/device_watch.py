@@ -53,6 +53,7 @@ class DeviceWatch:
         with self._robot.drive.readouts.subscribe() as readouts:
             async for _ in readouts:
                 low = low_battery(self._robot.drive, self._battery_min_v)
+                # Latched once: the battery stays low, and each readout would be a fault of its own.
                 if low is not None and self._stopper.mode is not Mode.FAULT:
                     self._stopper.halt(Occasion.FAULT, low)
 
@@ -71,8 +72,11 @@ class DeviceWatch:
             self._fail(f"{status.name}: {', '.join(status.faults)}{why}", Occasion.FAULT)
         elif mode in {Mode.DISARMED, Mode.FAULT}:
             self._stopper.publish_status()
+        # What arming left out may come and go: an absent base is no news to a robot that only looks.
         elif status.link is not LinkState.READY and not is_left_out:
             self._fail(f"{status.name} is gone: {status.detail}", Occasion.DEVICE_LOST)
+        # A board that was reset is there, and not armed: nothing more is known of it, so somebody must arm it
+        # again.
         elif status.link is LinkState.READY and not status.armed:
             why = "there again: arm again" if is_left_out else "no longer armed"
             self._stopper.halt(Occasion.STOP, f"{status.name} is {why}")

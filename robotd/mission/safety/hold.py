@@ -78,6 +78,7 @@ class Hold:
         """Begins a hold because odometry fell silent, or raises what ends the mission."""
         self._over = asyncio.Event()
         self._over.set()
+        # As long as the limit: then its first is the one that the next would have to be a minute from.
         self._begun_ns: deque[int] = deque(maxlen=HOLDS_A_MINUTE)
 
     def begin(self, cause: str, time_ns: int) -> bool:
@@ -88,6 +89,7 @@ class Hold:
         if self.cause is None:
             self._begun_ns.append(time_ns)
             self.count += 1
+        # The newest cause is the one that is told, and the wait for all being well begins with it.
         self.cause = cause
         self.unwell_ns = time_ns
         self._over.clear()
@@ -114,7 +116,9 @@ class Hold:
     async def through(self, step: Callable[[], Awaitable[T]]) -> T:
         """Return what came of a step, taken again from its beginning after each hold that broke into it."""
         while True:
+            # First: a mission may come to its next step while it is held.
             await self.over()
+            # Read just before the step: what is raised counts as interrupted only if a hold began during it.
             count = self.count
             try:
                 return await step()

@@ -43,6 +43,8 @@ class Holding:
         self._stall: Stall | None = None
         self._going_on: asyncio.Task[None] | None = None
         self._why_head_is_away: str | None = None
+        # Handed down and not imported: the hold stands below, and is known to motion, which must not see the
+        # supervisor.
         hold.wait_for_base = self._wait_for_base
 
     @property
@@ -63,6 +65,8 @@ class Holding:
 
     def stalled(self, stall: Stall) -> None:
         """Take note of a stall; if the base was stopped, hold the mission."""
+        # Before anything else: timers that are due now were due because of us, and what waited unread is read
+        # first.
         attention().miss(stall.stood_still_s)
         self._stall = stall
         self.hold.unwell_ns = stall.time_ns
@@ -82,6 +86,7 @@ class Holding:
         if (
             status.link is not LinkState.READY
             or self._stopper.mode is not Mode.UNDER_WAY
+            # Any fault beside the deadman is one of the base's own, which no stall of ours explains.
             or status.faults not in {(), _DEADMAN}
         ):
             return False
@@ -114,6 +119,7 @@ class Holding:
     def go_on(self) -> None:
         """Arm the devices again and let the mission go on; whatever comes between ends it as always."""
         if self.hold.cause is not None and not self.hold.is_ending:
+            # Arming takes a while: a second one beside it would race it for the same devices.
             self.hold.is_ending = True
             self._going_on = asyncio.create_task(self._go_on(), name="go on")
 
@@ -128,8 +134,12 @@ class Holding:
         try:
             async with within(_ARM_TIMEOUT_S, of="going on"):
                 for device in devices:
+                    # Cleared for it, because it was our silence that let the deadman run out; every other fault
+                    # waits for people.
                     if device.status.faults == _DEADMAN:
                         await device.clear_faults()
+                # Those that the client armed, and no other: a device that came back since was allowed nothing
+                # yet.
                 await self._arming.arm_these(devices)
         except (TimeoutError, RobotdError) as error:
             if self.hold.cause is not None:  # otherwise it was ended by a stop, which has said why

@@ -30,9 +30,12 @@ class Occasion(enum.StrEnum):
 
 TRANSITIONS: dict[tuple[Mode, Occasion], Mode] = {
     (Mode.DISARMED, Occasion.ARM): Mode.IDLE,
+    # Armed twice is armed: scripts say it before each mission.
     (Mode.IDLE, Occasion.ARM): Mode.IDLE,
     (Mode.IDLE, Occasion.START): Mode.UNDER_WAY,
     (Mode.UNDER_WAY, Occasion.FINISH): Mode.IDLE,
+    # Made for every mode, also those to come: a stop that a new mode had forgotten would be the worst row to
+    # miss.
     **{(mode, Occasion.STOP): Mode.DISARMED for mode in Mode if mode is not Mode.FAULT},
     (Mode.FAULT, Occasion.STOP): Mode.FAULT,
     **{(mode, Occasion.DEVICE_LOST): Mode.DISARMED for mode in Mode if mode is not Mode.FAULT},

@@ -75,13 +75,16 @@ class Carried:
             near_m: how far apart two poses are that are still one place.
         """
         history, travel = self._history, self._to_here
+        # A robot that was tied by hand or by a map's stop has no look to carry on from: it has that tie.
         if history.is_anywhere and believed is not None:
             # Where odometry has come to already; what it may be off by since the tie is in the sums.
             history = History.at(believed.in_map(in_odom), near_m, _TIED_RAD)
             travel = replace(travel, step=IDENTITY)
+        # Only where all places are told can the absence of one speak against it.
         is_complete = estimate.complete and estimate.regions_left_out == 0
         looked = history.looked(estimate.regions, travel, self._motion, is_complete=is_complete)
         told = self._told(estimate, history.moved(travel, self._motion), looked)
+        # Of the same readings the next estimate is made: to learn from each would count them several times.
         if not estimate.final:
             return told
         self._history, self._to_here = looked.history, Travel()
@@ -112,6 +115,7 @@ class Carried:
         """Whether the one region that is left is one place, and nothing but what cannot be spoke against it."""
         region = left.regions[0]
         reach_m = math.hypot(extent.x_max_m - extent.x_min_m, extent.y_max_m - extent.y_min_m)
+        # A corridor is one region as well, and no place.
         if reach_m > _UNIQUE_M or not extent.holds(region.pose):
             return False
         # What lies aside is told of the best place alone, and this may be another: do the walls hold it there?

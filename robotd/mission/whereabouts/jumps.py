@@ -66,6 +66,7 @@ class Jumps:
         turned_rad = abs(wrap_rad(there.heading_rad - estimate.best.heading_rad))
         if off_m <= near_m + _ERROR_SHARE * self._way_m and turned_rad <= _ERROR_RAD:
             return estimate
+        # Kept as a tie, so that the way driven until the next look is in it: they may be taken at two places.
         self._found = Tie.between(estimate.best, in_odom)
         self._way_m = 0.0  # the next look is held against this one
         return replace(estimate, state=PoseState.AMBIGUOUS, best=None, jumped_m=off_m)

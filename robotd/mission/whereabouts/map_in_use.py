@@ -99,6 +99,7 @@ class MapInUse:
     def bumped(self, place_m: Point) -> None:
         """Take note of a place where the robot bumped into something; what is kept does not know of it."""
         self.bumps_m = (*self.bumps_m, place_m)
+        # So it is written again at the next occasion, though no cell has changed.
         self.kept_generation = min(self.kept_generation, self.generation - 1)
 
     def take(self, inserted: Inserted) -> None:

@@ -46,7 +46,9 @@ class WhereaboutsTold:
         log.info("map %s (%s) is in use%s", place.name, place.map_id, in_place_of(before))
         if (advice := self._advise(place.spec)) is not None:
             log.warning("map %s: %s", place.name, advice)
+        # Before the old map is let go: what is asked from here on names the new one.
         self._whereabouts.adopt(place, tie)
+        # The same map may be adopted again, tied otherwise.
         if before is not None and before.number != place.number:
             self._let_go(before.number)
         whole = place.whole(now_ns())
@@ -64,6 +66,7 @@ class WhereaboutsTold:
 
     def moved(self, odometry: Odometry, *, predicts: bool) -> None:
         """Pass odometry on, and the pose that it leads to, unless something else has the better word on that now."""
+        # Odometry first: the pose is made of it, and a reader that draws both finds them in that order.
         self._publish(odometry)
         if predicts and (estimate := self._whereabouts.moved(odometry)) is not None:
             self._publish(estimate)

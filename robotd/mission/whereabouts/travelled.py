@@ -18,6 +18,8 @@ class Travelled:
         """Take what odometry tells next."""
         if self._last is not None:
             self._way_m += in_odom.distance_m(self._last)
+            # Sums, not differences: wheels err on all of the way there and back, though the robot ends where it
+            # began.
             self._turn_rad += abs(wrap_rad(in_odom.heading_rad - self._last.heading_rad))
         self._last = in_odom
 

@@ -162,6 +162,7 @@ class Whereabouts:
 
     def doubt(self) -> bool:
         """Believe odometry no longer: nobody saw what the wheels did, or they told nonsense; return whether it was."""
+        # Told even if nothing is tied: a robot that carries several places along loses those, too.
         self._weighing.doubted()
         believed = self.believed
         if believed is None:
