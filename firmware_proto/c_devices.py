@@ -80,6 +80,7 @@ def _dictionary(kind: BoardKind, before: str) -> bytes:
         is_same = old is not None and zlib.decompress(old) == zlib.decompress(fresh)
     except zlib.error:
         is_same = False
+    # What is checked in stays as it is where it says the same: else each machine would find the file stale.
     return old if old is not None and is_same else fresh
 
 

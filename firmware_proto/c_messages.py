@@ -106,6 +106,7 @@ def _functions(message: type[Message]) -> Iterator[str]:
     pack, unpack = _signatures(message)
     lines = {name: _lines(name, wire, offset) for name, wire, offset in _placed(fields)}
     yield f"{pack}\n{{\n" + "".join(f"    {put}\n" for put, _ in lines.values()) + "}\n"
+    # Exactly its size: a longer payload is of another version, whose first fields may mean something else.
     check = f"    if (size != {constant(message.__name__)}_SIZE)\n        return false;\n"
     yield f"{unpack}\n{{\n{check}" + "".join(f"    {get}\n" for _, get in lines.values()) + "    return true;\n}\n"
 
@@ -124,6 +125,7 @@ def _lines(name: str, wire: Wire, offset: int) -> tuple[str, str]:
         size = wire.code[:-1]
         return f"bp_copy({at}, message->{name}, {size});", f"bp_copy(message->{name}, {at}, {size});"
     bits, signed = _BITS[wire.code], wire.code.islower()
+    # Cast in the open: C's own conversion to unsigned is defined, but compilers warn, and readers wonder.
     value = f"(uint{bits}_t)message->{name}" if signed else f"message->{name}"
     read = f"bp_get_i{bits}({at})" if signed else f"bp_get_u{bits}({at})"
     return f"bp_put_u{bits}({at}, {value});", f"message->{name} = {read};"

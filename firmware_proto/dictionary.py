@@ -47,6 +47,7 @@ def requests_for(kind: BoardKind) -> dict[int, type[Message]]:
 
 def answers_for(kind: BoardKind) -> dict[int, type[Message]]:
     """Return what such a board may send, by type; a request without a reply of its own is answered by ``Ack``."""
+    # An answer of its own takes the place of the acknowledgement, hence the order of the two.
     acks: dict[int, type[Message]] = {request | REPLY: Ack for request in requests_for(kind)}
     own = {message.TYPE: message for message in messages_for(kind) if message.TYPE > REPLY}
     return acks | own
@@ -60,6 +61,7 @@ def dictionary_for(kind: BoardKind) -> bytes:
         "messages": {message.__name__: _described(message) for message in messages_for(kind)},
         "enums": {one.__name__: {member.name: member.value for member in one} for one in enums_of(messages_for(kind))},
     }
+    # As small as it goes: it lies in the flash of a microcontroller, and is read over its line.
     return zlib.compress(json.dumps(content, separators=(",", ":")).encode(), 9)
 
 
@@ -85,6 +87,7 @@ def parse_dictionary(data: bytes) -> dict[str, Any]:
     """
     unpacker = zlib.decompressobj()
     try:
+        # Bounded: a few bytes of zlib can ask for a gigabyte.
         text = unpacker.decompress(data, _SIZE_MAX)
         content = json.loads(text)
     except (zlib.error, ValueError, RecursionError) as error:
@@ -147,5 +150,6 @@ def _spelled(message: dict[str, Any]) -> str:
 def _enum_differences(theirs: dict[str, Any], ours: dict[str, Any]) -> Iterator[str]:
     for name, members in ours.items():
         for member, value in members.items():
+            # By value, member by member: what the board has beyond ours does no harm.
             if theirs.get(name, {}).get(member) != value:
                 yield f"{name}.{member} is {theirs.get(name, {}).get(member, 'missing')}, not {value}"

@@ -114,10 +114,12 @@ class Deframer:
         return self._checked(body)
 
     def _checked(self, body: bytes) -> RawFrame | None:
+        # Over the checksum as well, which then comes to 0: nothing has to be taken apart first.
         if crc16(body):
             self.crc_errors += 1
             return None
         kind, flags, seq = _HEADER.unpack_from(body)
+        # Reserved by version 1: a frame that sets one means something that we would miss.
         if flags:
             self.length_errors += 1
             return None

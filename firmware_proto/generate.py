@@ -48,6 +48,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m firmware_proto.generate", description="Generate from the schema.")
     parser.add_argument("--check", action="store_true", help="write nothing; fail when a file is stale")
     check = parser.parse_args(arguments).check
+    # All of them before any is written: the C is made of what its own file holds.
     stale = [(path, text) for path, text in outputs().items() if _text(path) != text]
     for path, text in stale:
         print(f"{path.name} {'is stale: run python -m firmware_proto.generate' if check else 'written'}")

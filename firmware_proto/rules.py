@@ -47,10 +47,13 @@ RULES: dict[type[Message], Rule] = {
     Hello: Rule(_ALWAYS, deduplicated=False),
     Ping: Rule(_ALWAYS, deduplicated=False),
     Identify: Rule(_IN_SESSION, deduplicated=False),
+    # Deduplicated is what would do something twice; what only tells, or may be done twice, needs no memory on
+    # the board.
     Configure: Rule(_IN_SESSION, deduplicated=True),
     Arm: Rule(_HEALTHY, deduplicated=True),
     Disarm: Rule(_CONFIGURED, deduplicated=True),
     Clear: Rule(_CONFIGURED, deduplicated=True),
+    # In every state, even before a session: a host that has just started may find the robot driving.
     Stop: Rule(_ALWAYS, deduplicated=False),
     Kill: Rule(_ALWAYS, deduplicated=False),
     SetVelocity: Rule(_ARMED, deduplicated=False),

@@ -56,6 +56,7 @@ def _wire_of(annotation: Any) -> Wire:
 
 @cache
 def _layout(message: type) -> struct.Struct:
+    # Little-endian and packed, whatever this machine is: microcontrollers read it in place.
     return struct.Struct("<" + "".join(wire.code for wire in wire_fields(message).values()))
 
 

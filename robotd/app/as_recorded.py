@@ -37,6 +37,8 @@ def recorded_config(text: str) -> Config:
         ConfigError: it is not one of this version.
     """
     config = loads(text, file="the recording's configuration")
+    # Read a second time, plainly: the frozen tree no longer tells which keys stood in the text and which are
+    # defaults.
     written = tomllib.loads(text)
     return replace(
         config,

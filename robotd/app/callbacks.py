@@ -24,6 +24,7 @@ def stopping_on_errors(halt: Callable[[str], None]) -> Iterator[None]:
         error = context.get("exception")
         if "handle" in context and isinstance(error, Exception):  # the rest is of what was forgotten long ago
             halt(f"internal error: {error!r}")
+        # After the stop: it writes a traceback, and a disk may take its time.
         loop.default_exception_handler(context)
 
     loop.set_exception_handler(handle)

@@ -79,6 +79,7 @@ def compose(
         rangefinder(config.rangefinder, wirings["rangefinder"]),
     )
     counted = Counted()
+    # One for all who ask: jobs are counted by name, and a replay counts them in the same order.
     noted = NotedHead(head, lambda name, index: journal.computed(now_ns(), name, index), counted)
 
     def note_cause(name: str, arguments: dict[str, int]) -> None:

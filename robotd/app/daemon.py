@@ -57,12 +57,14 @@ def main(argv: list[str] | None = None) -> int:
     try:
         config = load(arguments.config or default_path())
     except ConfigError as error:
+        # All of them: who mends a configuration line by line should not have to start the daemon for each.
         for problem in error.problems:
             print(printable(str(problem), LONGEST_LINE), file=sys.stderr)
         return EXIT_CONFIG
     configure(arguments.log_level)
     exit_code = 0
     try:
+        # On a loop that counts its turns, for the journal notes how close together inputs came (decision 26).
         exit_code = run_counting(run(config))
     except* RobotdError as errors:  # foreseen, so they need no traceback; others end the program with theirs
         for one in _one_by_one(errors):
@@ -115,17 +117,23 @@ async def run(config: Config) -> int:
         give_back_what_is_large()
         journal = new_journal(config)
         disk = ThreadCompute()
+        # Closed last of all but the lock: what ends after this may still have something for the disk.
         stack.callback(disk.close)
         head = FarHead.spawned(head_settings(config), logging.getLevelName(logging.root.level))
         daemon = compose(config, serial_connectors(config), head, disk, journal)
+        # Only now: the head is told of before there is anybody who could be told that it is away.
         head.host = daemon.causes
         _show_gauges(daemon.supervisor.counted, head)
+        # From here on a signal has something to stop; before, the default ends the program, which has opened
+        # nothing yet.
         ending = Ending(daemon.robot.stop_now)
         # Longer than all the rest: the last map must be made into files.
         thinking = asyncio.create_task(head.run(), name="head")
         try:
             stalls = Stalls(daemon)
             with stopping_on_errors(partial(_halt, daemon)):
+                # Round everything that moves the robot, and inside what keeps the last map, which may hold up
+                # the loop at will.
                 async with guarded(stalls.stop_past_loop, stalls.stalled):
                     await _serve(config, daemon, thinking, ending)
         except asyncio.CancelledError:
@@ -167,6 +175,7 @@ async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoRetur
     async with asyncio.TaskGroup() as group:
         serving = group.create_task(front.run(), name="front")
         if config.recording.from_start:
+            # Before the devices run: a recording that began later would lack their handshakes.
             await daemon.control.perform(RecordStart())
         parts = {name: group.create_task(part, name=name) for name, part in daemon.parts().items()}
         keeping = group.create_task(daemon.control.keeping.run(), name="keep maps")
@@ -178,6 +187,8 @@ async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoRetur
         counting = group.create_task(count_events(daemon.control.events, counted), name="count events")
         tasks = [serving, following, *parts.values(), keeping, going_on, headed, lag, counting]
         for task in tasks:
+            # A callback of the task itself: the group cancels the others first and looks at the error when they
+            # have ended.
             task.add_done_callback(partial(_stop_if_failed, daemon))
         within_s = watchdog_s()
         if within_s is not None:
@@ -188,6 +199,8 @@ async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoRetur
         await ending.asked.wait()
         log.info("stopping: %s", ending.reason)
         notifier.stopping()
+        # First the mission, then the clients, then the lines: who is served last could otherwise ask for motion
+        # in between.
         await daemon.control.perform(Stop("the daemon is ending"))
         if not daemon.control.keeping.is_needed:  # nobody waits for what is computed
             thinking.cancel()
@@ -234,6 +247,8 @@ def new_journal(config: Config) -> PrerollJournal:
     header = RecordingHeader(
         robotd_version=__version__,
         config_text=effective_text(config),
+        # Written into the header, so that a replay draws the same nonces; 63 bits, as JSON readers elsewhere
+        # have signed numbers.
         session_seed=secrets.randbits(63),
         wall_offset_ns=wall_offset_ns(),
         started_ns=now_ns(),

@@ -42,6 +42,7 @@ class Ending:
                 asyncio.get_running_loop().add_signal_handler(number, self._told, number)
 
     def _told(self, number: signal.Signals) -> None:
+        # Before it is even looked at which signal it is, and again for each that follows.
         self._stop_now()
         if self.asked.is_set():
             self.is_hastened = True
@@ -49,5 +50,7 @@ class Ending:
                 self._main.cancel()
             return
         self.reason = number.name
+        # Who sent SIGQUIT or SIGABRT wants to see that it was not a regular end; the service manager then
+        # starts it again.
         self.exit_code = 0 if number in _ON_REQUEST else _SIGNALLED + number
         self.asked.set()

@@ -27,6 +27,7 @@ async def load_first_map(daemon: Daemon, wanted: str) -> None:
         if name is None:
             log.warning("maps.load = %r: no map was saved yet", LAST)
             return
+        # As a client would ask: it is noted in the journal, so a replay has it, too.
         await daemon.control.perform(MapLoad(name))
     except RobotdError as error:
         log.error("maps.load = %r: %s", wanted, error)  # noqa: TRY400  # foreseen

@@ -152,6 +152,7 @@ def _check_device(device: str) -> None:
 
 async def _play(recording: Recording, config: Config, hear: Callable[[Event], None] | None) -> tuple[Entry, ...]:
     """Let the daemon live through the recording and return what its journal noted until it ended."""
+    # With the header of the recording: the seed in it is what nonces are drawn from.
     journal = PrerollJournal(recording.header, _NO_LIMIT)
     requests: set[asyncio.Task[None]] = set()
 
@@ -172,12 +173,14 @@ async def _play(recording: Recording, config: Config, hear: Callable[[Event], No
     daemon = compose(config, connects, head, playback.compute, journal, leases_end_by_causes=recording.notes_causes)
     async with asyncio.TaskGroup() as group:
         parts = [group.create_task(part, name=name) for name, part in daemon.parts().items()]
+        # A listener more changes no turn of the others: each has a queue of its own.
         if hear is not None:
             parts.append(group.create_task(_hear(daemon.control.events, hear), name="hear"))
         await playback.run()
         replayed = tuple(journal.remembered)  # before it is stopped, which the recorded one may not have been
         for task in (*parts, *requests):
             task.cancel()
+        # Else the mission that the recording was cut in would keep the group from ending.
         await daemon.supervisor.stop("the recording ended")
     return replayed
 

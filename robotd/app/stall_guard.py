@@ -46,6 +46,7 @@ async def guarded(stop_past_loop: Callable[[int], bool], stalled: Stalled) -> As
             and where the loop was.
     """
     guard = _Guard(stop_past_loop, stalled)
+    # A daemon thread: an interpreter that ends must not wait for one that waits for the loop.
     thread = threading.Thread(target=guard.watch, name="stall guard", daemon=True)
     switch_s = sys.getswitchinterval()
     sys.setswitchinterval(_SWITCH_S)
@@ -105,6 +106,8 @@ class _Guard:
     def watch(self) -> None:
         """Wait for one beat after the other; stop the robot when one is late."""
         while not self._is_ending:
+            # A wait with a bound, not a sleep: the thread is woken by each beat, and computes nothing in
+            # between.
             if not self._beaten.wait(STALL_S):
                 has_stopped = self._stop(0)
                 # After the stop: to walk the stack takes time that a stop has not.
@@ -129,6 +132,7 @@ class _Guard:
             return self._stop_past_loop(before)
         except Exception:
             log.exception("the robot could not be stopped past the loop")
+            # Taken for stopped: it is told on the loop as if it had been, and stopped there in any case.
             return True
 
     def _where(self) -> str:

@@ -50,6 +50,8 @@ async def keep_going(daemon: Daemon, silence_s: float) -> NoReturn:
     holding = daemon.supervisor.holding
     hold = holding.hold
     while True:
+        # Asked and not awaited as an event: what ends a hold is that nothing happened, and nothing tells of
+        # that.
         await asyncio.sleep(_LOOK_EVERY_S)
         if hold.cause is None or hold.is_ending:
             continue

@@ -52,6 +52,7 @@ class Notifier:
         if not self._address:
             return
         try:
+            # A socket for each: the service manager may be restarted, and then its old one leads nowhere.
             with socket.socket(socket.AF_UNIX, _KIND) as sender:
                 sender.sendto(state.encode(), self._address)
         except OSError as error:  # no descriptor left, for one: the watchdog will tell, if it matters
@@ -81,6 +82,7 @@ async def feed_watchdog(notifier: Notifier, within_s: float, is_healthy: Callabl
     """
     period_s = within_s / 2
     while True:
+        # Half of the time, so that one feeding may be missed by bad luck and the next still comes in time.
         worst_s = await _worst_lag_s(period_s)
         while worst_s > within_s * _TOLERATED_LAG or not is_healthy():
             worst_s = await _worst_lag_s(period_s / 4)

@@ -30,9 +30,11 @@ def between(readings: Readings, resolution_m: float) -> Readings:
         readings: in any order.
         resolution_m: side of a cell; beams are filled in until two lie in each cell where they end.
     """
+    # By bearing: a head that sweeps to and fro brings them in another order, and neighbours are what counts.
     order = np.argsort(readings.bearing_rad, kind="stable")
     one = readings.rows[order]
     other = np.concatenate((one[1:], one[:1]))
+    # The last is beside the first: a sweep goes round.
     apart_rad = np.mod(other[:, 0] - one[:, 0], 2 * math.pi)
     # Nearer than where they are a cell apart, the beams themselves have crossed every cell between them.
     begin_m = resolution_m / np.maximum(apart_rad, 1e-9)

@@ -81,6 +81,8 @@ class Drawn:
             error_radius_cells: by how much bodies are shorter than readings, all or each ``float64[n]``.
             reach_cells: where they end at the latest; more than the grid is wide and high changes nothing.
         """
+        # Not below nothing: a reading nearer than the error radius is of something that may be anywhere round
+        # the robot.
         free_cells = np.clip(self.range_cells - error_radius_cells, 0.0, reach_cells)
         lengths = np.ceil(free_cells * np.abs(self.ahead).max(axis=1))
         at_least_one: NDArray[np.int64] = np.maximum(lengths, 1.0).astype(np.int64)

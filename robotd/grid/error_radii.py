@@ -48,6 +48,8 @@ class ErrorRadii:
             begin = math.sqrt(radius * radius / _STEP - cells[0] * cells[0]) / angle_rad
             if begin > reach_cells:
                 break
+            # Rounded, as roots differ in the last place between machines, and a radius decides which cells a
+            # disk holds.
             cells.append(round(radius, 9))
             begins.append(begin)
         return cls(tuple(cells), tuple(begins))

@@ -79,6 +79,7 @@ def draw_fans(directions: NDArray[np.int64], starts: NDArray[np.int64], turn_rad
     bearings_rad, starts_cells = directions * (math.tau / DIRECTIONS), starts / STARTS_PER_CELL
     which = np.arange(len(bearings_rad))
     ahead = np.stack((np.sin(bearings_rad), np.cos(bearings_rad)), axis=1)
+    # Across the lines that the fan is nearest to cross at a right angle: there its windows are the narrowest.
     axis = np.abs(ahead).argmax(axis=1)
     forward = np.where(ahead[which, axis] > 0.0, 1.0, -1.0)
     along, aside = starts_cells[which, axis] * forward, starts_cells[which, 1 - axis]
@@ -121,6 +122,7 @@ class FanBeams:
     @classmethod
     def of(cls, fans: Fans, fan: NDArray[np.intp], beams: NDArray[np.int32]) -> "FanBeams":
         """List beams in any order; ``fan`` says which fan each belongs to."""
+        # Ascending within a fan: the kernel walks its lines once, and each beam leaves where it ends.
         order = np.lexsort((beams[:, 0], fan))
         lists = np.searchsorted(fan[order], np.arange(len(fans.lines) + 1)).astype(np.int32)
         return cls(fans, lists, np.ascontiguousarray(beams[order]))

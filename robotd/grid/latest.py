@@ -24,6 +24,7 @@ def latest_with(
     latest: NDArray[np.uint8], readings: tuple[RangeReading, ...], map_from_robot: Pose2, spec: GridSpec
 ) -> NDArray[np.uint8]:
     """Return what was said last with one more sweep, ``uint8[rows, cols]``; what went in is left as it is."""
+    # A copy: a mission that is stopped goes on with the generation before, and with what was seen last by then.
     found = latest.copy()
     # At once: where a beam ends and its neighbours graze by, the hit counts, whatever their order.
     kernels.in_use().insert.insert_sweep(found, Readings.of(readings).rows, map_from_robot, spec, _TABLES, at_once=True)

@@ -37,6 +37,7 @@ class MapStops:
     def grid_on(self, spec: GridSpec) -> OccupancyGrid:
         """Return the grid that they make on these cells. O(stops x readings x cells a beam)."""
         grid = OccupancyGrid(spec, settings=self.settings)
+        # One by one and in order: cells saturate and decay, so their order is part of what they say.
         for stop in self.stops:
             grid.lay_in(stop)
         return grid

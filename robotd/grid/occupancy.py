@@ -63,6 +63,8 @@ class OccupancyGrid:
             self.spec,
             tables,
             at_once=at_once,
+            # Handed to the kernel with the sweep, not laid in after it: whether a cell was never seen is asked
+            # before this sweep has met it.
             between=between(readings, self.spec.resolution_m).rows if is_filled else None,
         )
 

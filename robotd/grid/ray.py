@@ -43,6 +43,7 @@ def ray_cells(
     ray = np.repeat(np.arange(len(counts)), counts)
     k = np.arange(len(ray)) - np.repeat(np.cumsum(counts) - counts - first, counts)
     cells = np.floor(starts[ray] + k[:, None] * steps[ray]).astype(np.intp)
+    # Looked at again: the bounds above have a sample to spare, and say nothing of the other axis.
     inside = ((cells >= 0) & (cells < shape)).all(axis=1)
     return ray[inside], cells[inside] @ np.array([shape[1], 1])
 

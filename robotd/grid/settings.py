@@ -76,6 +76,7 @@ class GridSettings:
         rows = max(self.rows, math.ceil((max(ys_m) - min(ys_m) + 2 * margin_m) / self.resolution_m))
         if max(rows, cols) > MAX_SIDE_CELLS:
             raise ValueError(f"a map of {rows} x {cols} cells is too large; at most {MAX_SIDE_CELLS} along a side")
+        # Round their middle: whatever the map has in excess is then the same to all sides.
         origin_x_m = (min(xs_m) + max(xs_m)) / 2 - cols * self.resolution_m / 2
         origin_y_m = (min(ys_m) + max(ys_m)) / 2 - rows * self.resolution_m / 2
         return GridSpec(self.resolution_m, origin_x_m, origin_y_m, (rows, cols))

@@ -201,6 +201,7 @@ class Archive(Generic[T]):
 
     def _save(self, new: NewVersion) -> MapEntry:
         name = new.name
+        # Under the lock: two writers could each find the name free.
         check_new_name(name, self._names())
         make_directory(self._root / name)
         self._remove_leftovers()

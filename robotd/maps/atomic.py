@@ -23,6 +23,7 @@ def write_synced(path: Path, blocks: Blocks) -> None:
     Raises:
         OSError: it exists already, or the disk refused a part of it.
     """
+    # Only a new one: to write into a file that is there would change it before its successor is whole.
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, _READABLE_BY_ALL)
     try:
         for block in blocks:

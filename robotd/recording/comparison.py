@@ -63,6 +63,7 @@ def compare(recording: Recording, replayed: Sequence[Entry], words: Mapping[str,
     expected_results, actual_results = _results(recording.entries), _results(replayed)
     differences = [
         _first_difference(RESULTS, iter(expected_results[kind]), iter(actual_results[kind]), recording.end_ns)
+        # Kind by kind: across them no order was promised, see :func:`_results`.
         for kind in sorted(expected_results.keys() | actual_results.keys())
     ]
     for device in recording.devices:
@@ -98,6 +99,8 @@ def _requests(entries: Sequence[Entry], device: str, words: Words) -> Iterator[_
         if not isinstance(entry, BytesEntry) or entry.device != device:
             continue
         if entry.direction is Direction.FROM_BOARD:
+            # Any bytes: what the board said is the same in both, and only whether it said something matters
+            # here.
             said.is_answered = True
             continue
         for word in words(entry.data):
@@ -132,6 +135,7 @@ def _first_difference(
 ) -> Difference | None:
     for wanted, found in zip_longest(expected, actual):
         if wanted is None:
+            # A recording may be cut in the middle of what its last input led to.
             surely_missing = found.time_ns < end_ns - REACTION_NS
             return Difference(found.time_ns, device, NOTHING, found.text) if surely_missing else None
         if found is None or wanted.text != found.text:

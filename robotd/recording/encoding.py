@@ -73,6 +73,7 @@ def encode(entry: Entry) -> tuple[str, bytes]:
         TypeError: a command or a result holds something that JSON cannot.
     """
     if isinstance(entry, BytesEntry):
+        # Raw, without JSON around it: a damaged recording can still be read with any MCAP tool.
         return f"{_SERIAL}/{entry.device}/{entry.direction}", bytes(entry.data)
     if isinstance(entry, LineEntry):
         return f"{_LINE}/{entry.device}", _dumps({"up": entry.up})
@@ -142,6 +143,7 @@ def _loaded(data: bytes) -> Any:
     """
     text = data.decode()
     content = json.loads(text)
+    # Looked for first: to encode every document once more would double the time of reading.
     if "\\ud" in text or "\\uD" in text:
         json.dumps(content, ensure_ascii=False).encode()
     return content
@@ -158,6 +160,7 @@ def _strictly(kind: type[K], content: object) -> K:
     names = {field.name for field in fields(kind)} - {"encoded"}
     if isinstance(content, dict) and not content.keys() <= names:
         raise TypeError(f"expected {', '.join(sorted(names))}, got {str(sorted(content.keys() - names))[:80]}")
+    # Strict: a number that stands as text, or a true that stands for 1, was not written by us.
     return msgspec.convert(content, kind)
 
 

@@ -77,6 +77,7 @@ class Journal(ABC):
         if isinstance(loop, TurnCountingLoop):
             if is_input(entry):
                 self._note_turns(entry.time_ns, loop)
+            # Only the first: how the answer comes depends on when it was asked, not on what was asked after it.
             elif isinstance(entry, BytesEntry) and self._asked_turn is None:
                 self._asked_turn = loop.turn
         self.note(entry)
@@ -89,6 +90,7 @@ class Journal(ABC):
         """
         before, self._input_turn = self._input_turn, loop.turn
         asked, self._asked_turn = self._asked_turn, None
+        # A loop that rested since had nothing left to do: all effects were over, and the next input met none.
         if before is None or loop.rested_at > before or asked not in {None, loop.turn}:
             return
         if loop.turn - before <= TURNS_MAX:

@@ -50,11 +50,14 @@ class RecordedTimeLoop(VirtualClockLoop):
     ) -> asyncio.TimerHandle:
         """Call a function at a time; those of the same time in the order in which they were asked for."""
         timer = asyncio.TimerHandle(when, callback, args, self, context)
+        # With a number: handles cannot be compared, and of equal times the first asked for comes first.
         heapq.heappush(self._timers, (when, next(self._numbers), timer))
         return timer
 
     def _jump(self, by_s: float) -> None:
         """Do the one thing that comes next; called whenever nothing is ready."""
+        # Passed over here and not taken out when they are cancelled: most are, and a heap is not searched for
+        # each.
         while self._timers and self._timers[0][2].cancelled():
             heapq.heappop(self._timers)
         due_ns = round(self._timers[0][0] * NS_PER_S) if self._timers else None

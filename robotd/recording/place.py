@@ -20,6 +20,7 @@ def make_place(directory: Path, name: str, kept_out: Path) -> Path:
     # `..` is refused even where it stays below: behind a link it leads elsewhere than it reads.
     if "\0" in name or ".." in Path(name).parts:
         raise _elsewhere(directory, name)
+    # Compared as they really lie: a link among the recordings could lead anywhere.
     root, file = _real(directory), _real(directory / name)
     if root not in file.parents or file.is_relative_to(_real(kept_out)):
         raise _elsewhere(directory, name)

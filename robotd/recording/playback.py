@@ -111,6 +111,7 @@ class Playback:
     def _play_after(self, turns: int, last: int) -> None:
         """Play up to an entry, this many turns of the loop from now."""
         if turns > 0:
+            # Turn by turn, as the living loop did: what runs in each of them may ask for things of its own.
             asyncio.get_running_loop().call_soon(self._play_after, turns - 1, last)
             return
         while self._at <= last:
@@ -279,6 +280,8 @@ class RecordedCompute:
         # In that recording it was done where it stood, so its end is noted nowhere.
         if self._is_first_format and name in _ADDED_JOBS:
             return
+        # Jobs of one name wait for each other: which of them is the third must not depend on which was computed
+        # first.
         async with self._turns[name]:
             job = name, self._done[name]
             await self._released.get(job, self._ended).wait()

@@ -53,6 +53,7 @@ class PrerollJournal(Journal):
 
     def note(self, entry: Entry) -> None:
         """Remember an entry, and record it; it is encoded once, unless it was before."""
+        # Encoded before it is remembered: an object that changed since would be recorded as what it is by then.
         entry = encoded(entry)
         if self._recorder is not None:
             self._recorder.note(entry)
@@ -80,6 +81,7 @@ class PrerollJournal(Journal):
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise RecordingError(f"cannot record to {path}: {error.strerror}") from error
+        # A copy of the list: the recorder's thread writes it while this one goes on.
         self._recorder = Recorder(path, self.header, tuple(self._remembered))
 
     def _why_not(self) -> str:

@@ -95,6 +95,7 @@ class Connection:
         self._is_known = False
         self._is_writing = False
         self._loop.add_reader(end, self._read)
+        # Who never greets would keep a place that others wait for.
         self._too_late = self._loop.call_later(_GREETS_WITHIN_S, self._greeted_too_late)
         self._put(GREETING + ready(manners.socket_type))
 
@@ -105,6 +106,7 @@ class Connection:
 
     def send(self, data: bytes) -> bool:
         """Let a message wait to be taken; False if too much waits already, so that this client misses it."""
+        # One message alone always has room: a map may be larger than all that may wait.
         is_full = self.waiting_bytes > 0 and (
             len(self._outgoing) >= self._manners.queue or self.waiting_bytes + len(data) > self._manners.queue_bytes
         )
@@ -158,6 +160,7 @@ class Connection:
         if not data:
             self.close()
             return
+        # An iterator and not a list: a client that is not wanted now is left in the middle of what it said.
         self._says = self._reader.feed(data)
         self._hear()
 
@@ -173,6 +176,7 @@ class Connection:
             self._says = None
             self.listen(to_it=True)
         except Violation as violation:
+            # What came before the fault is looked at all the same: it may have been a stop.
             if violation.frames:
                 self._owner.overheard(self, violation.frames)
             self.close(str(violation))

@@ -81,6 +81,7 @@ class Commands:
         """Serve until cancelled; requests under way are cancelled with it."""
         async with asyncio.TaskGroup() as group:
             while True:
+                # Several at a turn as long as they are only refused: a flood is then over sooner than it came.
                 for _ in range(_AT_A_TURN):
                     if self._take(await self._letters.receive(), group):
                         break
@@ -127,6 +128,7 @@ class Commands:
         given = None if is_stop else self._replies.given(asker)
         if given is not None:
             return given
+        # After the memory of answers: a repeat costs nothing, and is not counted as asking.
         no_room = self._no_room(letter.identity, numbered.request, is_stop=is_stop)
         if no_room is None:
             return None
@@ -156,6 +158,8 @@ class Commands:
         finally:
             # What was seen then is not what is now, so a repeat looks again; and a stop is never answered from memory.
             is_worth_it = not (numbered.request.only_looks or isinstance(numbered.request, STOPPING))
+            # In any case, a cancellation included: a request that stayed under way for ever would never be
+            # answered again.
             self._replies.end(asker, reply if is_worth_it else None)
         self._letters.answer(letter.route, reply)
 
@@ -164,6 +168,7 @@ class Commands:
             result = await self._handlers.carry_out(
                 numbered.request, numbered.client or printable(letter.sender, LONGEST_CLIENT)
             )
+            # Off the loop, for a stop waits behind what is encoded on it.
             if isinstance(result, MapChanged):
                 reply = await asyncio.to_thread(encode_result, numbered.id, result)  # megabytes
             else:

@@ -58,6 +58,8 @@ class Door:
             _remove(path)
             listening.setblocking(False)
             listening.bind(str(path))
+            # Between binding and listening: nobody can connect while the mode is still what the process's mask
+            # made it.
             path.chmod(_SOCKET_MODE)
             listening.listen(_BACKLOG)
         except OSError as error:
@@ -110,6 +112,8 @@ class Door:
             self._oldest_of(newest.process).close(f"its process has more than {self._most_of_a_process} connections")
         elif len(self._inside) > self._most:
             process, count = of_processes.most_common(1)[0]
+            # The oldest of the largest, not the newest of all: a program that leaks connections must not keep
+            # others out.
             victim = newest if count == 1 else self._oldest_of(process)
             victim.close(f"there are more than {self._most} connections")
 

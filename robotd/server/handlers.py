@@ -40,7 +40,9 @@ class Handlers:
                 await self._control.stopped()
                 return Done()
             case GetMetrics():
+                # Two processes count, and a client wants one answer.
                 return (await self._control.perform(request, client)).joined(Metrics.of(self._counted))
+        # Filled in here, where the setting is: the journal then has the lease that counted.
         if isinstance(request, Mission) and request.lease_s is None:
             request = with_lease(request, self._lease_s)
         return await self._control.perform(request, client)

@@ -62,6 +62,7 @@ class Letters:
 
     def joined(self, connection: Connection) -> None:
         """Know a client by its name; one that comes again by the same name takes the place of the one before."""
+        # As libzmq names them: a zero first, which no client may choose.
         connection.identity = connection.identity or b"\0" + next(self._nameless).to_bytes(8, "big")
         before = self._connections.get(connection.identity)
         self._connections[connection.identity] = connection
@@ -74,6 +75,7 @@ class Letters:
         asked.append(_letter(connection, frames))
         if _URGENT.search(frames[-1], 0, _LOOKED_AT_BYTES):
             self._urgent[connection] = None
+        # What it sends further waits in the kernel, which stops it by itself when that is full.
         connection.listen(to_it=False)
         self._news.set()
 
@@ -94,6 +96,7 @@ class Letters:
         while not (self._left or self._asked):
             self._news.clear()
             await self._news.wait()
+        # Those who have gone first: they are few, and nothing else will ever remind anybody of them.
         if self._left:
             letter = self._left.popleft()
             self._left_bytes -= _size(letter)

@@ -22,6 +22,8 @@ class MapQueue:
         """Queue an event; a whole map, or too many changes, make all changes that wait superfluous."""
         if isinstance(event, MapChanged) and event.whole:
             self._drop_changes()
+        # Changes and other events each have their depth: a map that changes fast must not push out what became
+        # of a stop.
         alike = [
             waiting for waiting in self._events if isinstance(waiting, MapChanged) == isinstance(event, MapChanged)
         ]

@@ -86,6 +86,7 @@ class Outlet:
         """Leave it: what subscribes to too much says nothing that matters."""
 
     def _welcome(self, connection: Connection, topics: set[Topic]) -> None:
+        # One call for all who come within the moment: a program that subscribes to ten topics is greeted once.
         if not self._new:
             self._loop.call_later(GREETED_AFTER_S, self._greet)
         self._new.setdefault(connection, set()).update(topics)
@@ -115,6 +116,7 @@ class Outlet:
 
     def _send(self, topic: Topic, frame: bytes) -> bytes:
         data = message(frame)  # made once: what waits for many readers is one and the same
+        # A copy: who cannot be sent to may be cut off meanwhile, and leaves the table.
         for connection, prefixes in tuple(self._readers.items()):
             if any(frame.startswith(prefix) for prefix in prefixes) and not connection.send(data):
                 self._counted.count("dropped_messages_total", topic=topic)

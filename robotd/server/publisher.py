@@ -57,6 +57,8 @@ class Publisher:
             self._complain("the first status", error)
         while True:
             event = await self._events.get()
+            # With the status, which comes each second by itself: no clock more, and a word that was lost is
+            # said again.
             if isinstance(event, Status):
                 self._watch()
             if EVENTS[type(event)][0] is Topic.MAP:
@@ -85,6 +87,7 @@ class Publisher:
     async def _follow_maps(self) -> NoReturn:
         while True:
             event = await self._map_queue.get()
+            # Asked for when its turn comes: the map of then has in it all that waited.
             event = await self._whole() if event is None else event
             if event is not None:
                 await self._publish_map(event)

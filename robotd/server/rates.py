@@ -66,6 +66,7 @@ class Rates:
             self._clients.popitem(last=False)
         if not own.take():
             return Often.TOO_OFTEN
+        # Renewals are bounded by their own client alone: a mission must not end because others ask much.
         if only_its_own:
             return Often.OFTEN
         if seldom.take():

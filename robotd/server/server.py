@@ -44,6 +44,7 @@ class Server:
         self._settings = settings
         self._control = control
         self._endpoints = Endpoints(Path(settings.runtime_dir))
+        # Not a counter, which would begin again with each start, nor a time, which may be set back.
         self.session = secrets.token_hex(8)
         """Changes with every start, so that clients notice one."""
         self._counted = Counted()
@@ -57,6 +58,7 @@ class Server:
             TransportError: the sockets cannot be had.
         """
         letters = Letters()
+        # Before anything is opened: no event is told between the first client and the first listener.
         with self._control.events.subscribe(DEPTH) as events:
             publisher = Publisher(self._control, events, self.session, self._counted)
             commands = self._commands(letters)
@@ -68,6 +70,7 @@ class Server:
                         self.serving.set()
                 finally:
                     self.serving.clear()
+                    # Else the one who asked the daemon to end would be the one that hears nothing of it.
                     await asyncio.sleep(_LAST_REPLIES_S)
 
     def _commands(self, letters: Letters) -> Commands:

@@ -108,6 +108,7 @@ class Reader:
             self._greet()
         if not self._is_greeted:
             return
+        # What is whole is cut off once for all of it: a deletion for each message would move the rest as often.
         at = 0
         try:
             while (found := self._frame(at)) is not None:

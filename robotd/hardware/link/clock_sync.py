@@ -135,6 +135,7 @@ class ClockSync:
         """
         sent_ns = sent_us * _NS_PER_US
         round_trip_ns = received_ns - sent_ns
+        # Negative is an answer to what was not asked yet: an echo of another session.
         if not 0 <= round_trip_ns <= _ROUND_TRIP_MAX_NS:
             return True
         sample = ClockSample(board_us * _NS_PER_US, sent_ns + round_trip_ns // 2, round_trip_ns)
@@ -161,6 +162,7 @@ class ClockSync:
         host_ns = self._fit.at(board_us)
         if self._last is not None:
             last_board_us, last_host_ns = self._last
+            # Held, not corrected: two events that change places would be a map drawn the wrong way round.
             host_ns = max(host_ns, last_host_ns) if board_us >= last_board_us else min(host_ns, last_host_ns)
         self._last = (board_us, host_ns)
         return host_ns

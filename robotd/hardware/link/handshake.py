@@ -53,6 +53,8 @@ async def shake_hands(session: Session, terms: Terms, nonce: int, dictionaries: 
     # Before Configure: a layout that has drifted is what no checksum notices, and reading alone is safe.
     _check_dictionary(session.device, terms.kind, await _dictionary(session, hello, dictionaries))
     await _configure(session, Configure(terms.telemetry_ms, terms.ttl_max_ms))
+    # Before anything is asked of the board in earnest: telemetry would have no time of ours until the clock is
+    # known.
     for _ in range(_QUICK_PINGS):
         await session.ping()
     if session.clock.best is None:
@@ -107,5 +109,7 @@ def _check_dictionary(device: str, kind: BoardKind, theirs: bytes) -> None:
 
 async def _configure(session: Session, configure: Configure) -> None:
     reply = await session.ask(configure, ConfigureReply)
+    # Told back as a checksum: a board that has taken over another ``ttl_max_ms`` would let motions live too
+    # long.
     if reply.config_crc32 != zlib.crc32(configure.to_payload()):
         raise RemoteProtocolError(f"{session.device}: took over another configuration than ours")

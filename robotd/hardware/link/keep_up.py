@@ -41,6 +41,7 @@ async def keep_up(device: str, connect: Connect, tap: Tap, talker: Talker) -> No
     while True:
         sessions = talker.sessions
         try:
+            # Tapped from its first byte: what a board says as the port is opened belongs to the recording.
             line = TappedLine(device, await connect(), tap)
             try:
                 await talker.talk(line)

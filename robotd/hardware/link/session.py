@@ -185,6 +185,7 @@ class Session:
                 reply = await self._repeat_until_answered(request, takes_s)
             finally:
                 self._request = None
+            # By the kind of request: a board reads its dictionary from flash, and answers a ping from memory.
             self._round_trip(message).add((now_ns() - began_ns) / NS_PER_S)
             return reply
 

@@ -64,6 +64,7 @@ class DescriptorTransport:
     def write_urgent(self, data: bytes) -> None:
         """Queue bytes in place of everything not yet written; TransportError when the line is gone."""
         self._check()
+        # In place of what waits, not before it: set-points that follow a stop would undo it.
         self._outbox.put_urgent(data)
         self._flush()
         self._check()
