@@ -34,8 +34,10 @@ demo-busy: .venv/.dev  ## Whether make demo finishes beside busy programs: N="2 
 	@$(BIN)/python -m tests.studies.busy.run --world $(WORLD) $(if $(N),--busy $(N)) $(if $(RUNS),--runs $(RUNS)) \
 		$(if $(NICE),--nice $(NICE)) $(if $(HARSH),--harsh) $(if $(LOG),--log "$(LOG)")
 
+# Tests start some hundred programs of ours: none compiles again what the one before did, whatever the caller exports.
+test: export PYTHONDONTWRITEBYTECODE :=
 test: .venv/.dev  ## Run all tests
-	@echo "robotd: running all tests (about six minutes on two cores)"
+	@echo "robotd: running all tests (about five minutes on two cores)"
 	@$(BIN)/python -m pytest -n 3 --dist worksteal -q $(PYTEST_ARGS)  # three on two cores: the slowest wait for real time
 
 bench: .venv/.dev  ## Measure the engine: all of it into docs/benchmarks, or a part: make bench ONLY=counting
