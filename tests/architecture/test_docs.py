@@ -8,6 +8,7 @@ import re
 import shlex
 import subprocess
 import sys
+from collections.abc import Callable, Collection
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
@@ -43,7 +44,15 @@ MADE = {
 }
 """What is not in a clone, and who makes it."""
 
-pages = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+
+def of_every_page(wrong_on: Callable[[Path], Collection[object]]) -> Callable[[], None]:
+    """Make a test of what finds all that is wrong with a page: it names every page that has something."""
+
+    def test() -> None:
+        found = {str(page.relative_to(ROOT)): wrong for page in PAGES if (wrong := wrong_on(page))}
+        assert found == {}
+
+    return test
 
 
 def prose(page: Path) -> str:
@@ -60,6 +69,13 @@ def can_be_made(target: str) -> bool:
     """Whether make knows what to do; it does nothing of it."""
     tried = subprocess.run(["make", "-n", target, "LOG=a.log"], check=False, cwd=ROOT, capture_output=True)
     return tried.returncode == 0
+
+
+@cache
+def sources() -> str:
+    """Return the text of all that may read a variable of the environment."""
+    files = [*ROOT.glob("robotd/**/*.py"), ROOT / "tests/conftest.py"]
+    return "".join(file.read_text(encoding="utf-8") for file in files)
 
 
 @cache
@@ -87,36 +103,37 @@ def exists(named: str) -> bool:
     return any((ROOT / room / named).exists() for room in ROOMS) or any(named.startswith(made) for made in MADE)
 
 
-@pages
-def test_every_command_in_a_block_is_made_by_make_or_executed_by_the_test_of_the_quick_start(page: Path) -> None:
+@of_every_page
+def test_every_command_in_a_block_is_made_by_make_or_executed_by_the_test_of_the_quick_start(
+    page: Path,
+) -> Collection[object]:
     executed = commands(QUICK_START)
     assert len(executed) > 15, "the quick start is read"
     made = {command for command in commands(page) if command.startswith("make ")}
-    assert [command for command in made if not can_be_made(command.split()[1])] == []
-    assert [command for command in commands(page) if command not in made and command not in executed] == []
+    cannot_be_made = [command for command in made if not can_be_made(command.split()[1])]
+    return cannot_be_made + [command for command in commands(page) if command not in made and command not in executed]
 
 
-@pages
-def test_every_block_of_commands_says_that_it_is_one(page: Path) -> None:
+@of_every_page
+def test_every_block_of_commands_says_that_it_is_one(page: Path) -> Collection[object]:
     blocks = re.findall(r"^ *```(\w*)\n(.*?)^ *```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
-    silent = [block for language, block in blocks if not language and re.search(r"^\s*(\$ )?(make|robot\w+) \w", block)]
-    assert silent == []
+    return [block for language, block in blocks if not language and re.search(r"^\s*(\$ )?(make|robot\w+) \w", block)]
 
 
-@pages
-def test_every_target_of_make_that_is_named_exists(page: Path) -> None:
+@of_every_page
+def test_every_target_of_make_that_is_named_exists(page: Path) -> Collection[object]:
     named = [text.split()[1] for text in in_backticks(page) if re.match(r"make [a-z]", text)]
-    assert [target for target in named if not can_be_made(target)] == []
+    return [target for target in named if not can_be_made(target)]
 
 
-@pages
-def test_every_command_line_of_robotctl_that_is_named_is_one(page: Path) -> None:
+@of_every_page
+def test_every_command_line_of_robotctl_that_is_named_is_one(page: Path) -> Collection[object]:
     named = [text for text in [*in_backticks(page), *commands(page)] if text.startswith("robotctl ")]
-    assert [text for text in named if not robotctl_accepts(text)] == []
+    return [text for text in named if not robotctl_accepts(text)]
 
 
-@pages
-def test_every_link_leads_somewhere(page: Path) -> None:
+@of_every_page
+def test_every_link_leads_somewhere(page: Path) -> Collection[object]:
     lost = []
     for link in re.findall(r"\]\(([^)\s]+)\)", prose(page)):
         if re.match(r"[a-z]+:", link):
@@ -125,46 +142,43 @@ def test_every_link_leads_somewhere(page: Path) -> None:
         target = (page.parent / path).resolve() if path else page
         if not target.exists() or (anchor and anchor not in anchors(target)):
             lost.append(link)
-    assert lost == []
+    return lost
 
 
-@pages
-def test_every_file_that_is_named_exists(page: Path) -> None:
+@of_every_page
+def test_every_file_that_is_named_exists(page: Path) -> Collection[object]:
     named = [text for text in in_backticks(page) if FILE.fullmatch(text)]
-    assert [text for text in named if not exists(text)] == []
+    return [text for text in named if not exists(text)]
 
 
-@pages
-def test_every_key_of_the_configuration_that_is_named_exists(page: Path) -> None:
+@of_every_page
+def test_every_key_of_the_configuration_that_is_named_exists(page: Path) -> Collection[object]:
     config = Config()
     sections = {field.name: getattr(config, field.name) for field in fields(config)}
     named = [text.split(".") for text in in_backticks(page) if re.fullmatch(r"[a-z]+\.[a-z0-9_]+", text)]
     keys = [(section, key) for section, key in named if section in sections and key not in ENDINGS]
-    assert [(section, key) for section, key in keys if not hasattr(sections[section], key)] == []
+    return [(section, key) for section, key in keys if not hasattr(sections[section], key)]
 
 
-@pages
-def test_every_variable_of_the_environment_that_is_named_is_read(page: Path) -> None:
-    sources = "".join(
-        file.read_text(encoding="utf-8") for file in [*ROOT.glob("robotd/**/*.py"), ROOT / "tests/conftest.py"]
-    )
+@of_every_page
+def test_every_variable_of_the_environment_that_is_named_is_read(page: Path) -> Collection[object]:
     named = set(re.findall(r"\bROBOTD_[A-Z_]+", page.read_text(encoding="utf-8")))
-    assert {variable for variable in named if f'"{variable}"' not in sources} == set()
+    return {variable for variable in named if f'"{variable}"' not in sources()}
 
 
-@pages
-def test_every_run_of_pytest_that_is_named_finds_tests(page: Path) -> None:
-    for typed in [text for text in in_backticks(page) if text.startswith("python -m pytest")]:
-        words = [
-            sys.executable,
-            *shlex.split(typed.replace("=N", "=1"))[1:],
-            "--collect-only",
-            "-q",
-            "-p",
-            "no:cacheprovider",
-        ]
-        found = subprocess.run(words, check=False, cwd=ROOT, capture_output=True, text=True)
-        assert found.returncode == 0, found.stdout + found.stderr
+@of_every_page
+def test_every_run_of_pytest_that_is_named_finds_tests(page: Path) -> Collection[object]:
+    named = {text for text in in_backticks(page) if text.startswith("python -m pytest")}
+    return [f"{typed}\n{said}" for typed in named if (said := complaint_of_pytest(typed))]
+
+
+@cache
+def complaint_of_pytest(typed: str) -> str:
+    """Return what pytest says if it finds no tests, or not only such as it can collect."""
+    words = shlex.split(typed.replace("=N", "=1"))[1:]
+    options = ("--collect-only", "-q", "-p", "no:cacheprovider")
+    found = subprocess.run([sys.executable, *words, *options], check=False, cwd=ROOT, capture_output=True, text=True)
+    return "" if found.returncode == 0 else found.stdout + found.stderr
 
 
 def test_the_example_of_every_verb_is_a_command_line_that_it_takes() -> None:
