@@ -13,10 +13,11 @@ from tests.studies.sanitized.compiling import ROOT, build, runtime
 ALL = ("tests/unit/grid", "tests/unit/localization", "tests/unit/planning", "tests/agreement")
 
 
-def run_tests(module: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    """Run tests in a process of their own, on the kernels of this module."""
+def run_tests(module: Path, *words: str, cases: int | None = None) -> subprocess.CompletedProcess[str]:
+    """Run tests in a process of their own, on the kernels of this module; ``cases`` of each property at most."""
     environment = {
         **os.environ,
+        **({} if cases is None else {plugin.CASES: str(cases)}),
         plugin.FILE: str(module),
         "LD_PRELOAD": str(runtime()),
         "ASAN_OPTIONS": "detect_leaks=0",  # Python ends without giving everything back

@@ -1,4 +1,7 @@
-"""The kernels' own tests once more, with the kernels under the sanitizers: nothing they do is left undefined by C."""
+"""The kernels' own tests once more, with the kernels under the sanitizers: nothing they do is left undefined by C.
+
+A few cases of each property: all of them, and the tests of all that calls a kernel, are for ``make kernels-sanitized``.
+"""
 
 from pathlib import Path
 
@@ -7,24 +10,7 @@ import pytest
 from tests.studies.sanitized.compiling import build, runtime
 from tests.studies.sanitized.run import run_tests
 
-needs_sanitizers = pytest.mark.skipif(runtime() is None, reason="there is no C compiler with sanitizers")
-
-
-@pytest.fixture(scope="module")
-def module(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The kernels, compiled."""
-    return build(tmp_path_factory.mktemp("sanitized"))
-
-
-@needs_sanitizers
-@pytest.mark.slow
-@pytest.mark.timeout(400)
-def test_the_kernels_tests_pass_under_the_sanitizers(module: Path) -> None:
-    done = run_tests(module, "tests/unit/grid/kernels", "-k", "not [numpy]")
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-    assert " passed" in done.stdout
-
-
+CASES = 10
 _ASKED = """
 import numpy as np
 from robotd.grid.kernels._native import ffi, lib
@@ -34,10 +20,17 @@ def test_past_the_end():
 """
 
 
-@needs_sanitizers
-def test_a_kernel_that_reads_past_the_end_is_caught(module: Path, tmp_path: Path) -> None:
-    """Else the test above would show nothing."""
+@pytest.mark.slow
+@pytest.mark.timeout(400)
+def test_the_kernels_tests_pass_under_sanitizers_that_catch_one_that_reads_past_the_end(tmp_path: Path) -> None:
+    if runtime() is None:
+        pytest.skip("there is no C compiler with sanitizers")
+    module = build(tmp_path)
+    done = run_tests(module, "tests/unit/grid/kernels", "-k", "not [numpy]", cases=CASES)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    assert " passed" in done.stdout
+
     (tmp_path / "test_asked.py").write_text(_ASKED)
-    done = run_tests(module, str(tmp_path), "--rootdir", str(tmp_path))
-    assert done.returncode != 0
-    assert "AddressSanitizer: heap-buffer-overflow" in done.stderr
+    caught = run_tests(module, str(tmp_path), "--rootdir", str(tmp_path))
+    assert caught.returncode != 0
+    assert "AddressSanitizer: heap-buffer-overflow" in caught.stderr
