@@ -33,7 +33,7 @@ from robotd.sim.robot import DEVICES, SimulatedRobot
 
 pytestmark = pytest.mark.slow
 
-SAMPLED = 60
+SAMPLED = 12
 """About this many requests to each device are changed, from the first to the last."""
 ROBOTS = (
     Dialects("rwi-ascii", "ptu", "dimetix"),

@@ -257,11 +257,17 @@ class _Session:
 
 @contextlib.asynccontextmanager
 async def _cancelled() -> AsyncIterator["set[asyncio.Task[None]]"]:
-    """Yield a set of tasks that are cancelled in the end."""
+    """Yield a set of tasks that are cancelled in the end.
+
+    Each says stop as it leaves its mission, and would wait for an answer for as long as its client has patience: a
+    daemon that has ended gives none.
+    """
     tasks: set[asyncio.Task[None]] = set()
     try:
         yield tasks
     finally:
-        for task in tasks:
-            task.cancel()
+        for _ in range(2):
+            for task in tasks:
+                task.cancel()
+            await asyncio.sleep(0)
         await asyncio.gather(*tasks, return_exceptions=True)

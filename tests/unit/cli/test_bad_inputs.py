@@ -13,6 +13,7 @@ from robotd.cli.main import WORDS, main, verbs_of
 from robotd.cli.outputs import OutputPath
 from tests.support.carmen_room import flaser
 
+LOG = "\n".join(flaser())
 NOBODY = 65534
 LINES_MAX = 3
 
@@ -52,7 +53,7 @@ BAD: dict[str, Callable[[Path], object]] = {
     "MCAP and no more": lambda path: path.write_bytes(b"\x89MCAP0\r\n\x01\xff\xff\xff\xff\xff\xff\xff\x7f"),
     "a link to nowhere": broken_link,
     "a link to itself": endless_link,
-    "a damaged log": lambda path: path.write_text("\n".join(line[:-60] for line in flaser())),
+    "a damaged log": lambda path: path.write_text("\n".join(line[:-60] for line in LOG.splitlines())),
 }
 OTHERS = {
     "exact map": ["READINGS"],
@@ -139,7 +140,7 @@ def command(name: str, bad: Path, directory: Path) -> list[str]:
     }
     made["READINGS"].write_text("bearing_deg,range_m\n0,1\n")
     made["MAP"].write_text("POLYGON ((0 0, 1 0, 1 1, 0 0))")
-    made["LOG"].write_text("\n".join(flaser()))
+    made["LOG"].write_text(LOG)
     made["MAPYAML"].write_bytes(MAP_YAML)
     (directory / "in.pgm").write_bytes(b"P5 2 1 255\n\0\xfe")
     others = [str(made.get(word, word)) for word in OTHERS.get(name, [])]

@@ -74,7 +74,7 @@ def test_the_true_place_is_always_among_the_answers(first: int) -> None:
 
 def test_so_many_readings_may_break_their_bounds_as_was_said() -> None:
     lost = 0
-    for case in CASES[:20]:
+    for case in CASES[:10]:
         wrong = [RangeReading(0, 0.1 * k, ReadingStatus.OK, 0.01) for k in range(max(1, len(case.readings) // 8))]
         assert names_the_truth(case, allowed := estimate_of(case, *wrong, outlier_share=0.25)) or not allowed.regions
         lost += not names_the_truth(case, estimate_of(case, *wrong))
