@@ -19,6 +19,7 @@ from robotd.core.angles import wrap_rad
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
@@ -28,6 +29,9 @@ from tests.support.own_boards import own_board
 from tests.support.places import cells_in_use
 
 pytestmark = pytest.mark.slow
+
+QUICK = Config(sweep=SweepSettings(readings=150))
+"""Where it does not matter how well the map is seen; the first tests look as often as a user's robot does."""
 
 
 def place(it: Living) -> MapInUse:
@@ -95,7 +99,7 @@ async def test_estimates_are_published_while_the_sweep_is_under_way(live: Live) 
 async def test_in_one_of_two_equal_rooms_it_is_not_sure_of_the_wrong_one(live: Live) -> None:
     """One of the two is on the map a little better than the other, by luck: that is no reason to believe in it."""
     robot = SimulatedRobot(load_world("symmetric"), seed=0)
-    by_looks_alone = Config(localization=replace(Config().localization, history=False))
+    by_looks_alone = replace(QUICK, localization=replace(QUICK.localization, history=False))
     states = []
     async with live(robot, by_looks_alone) as it:
         await it.done(MapStart.of("twins", robot.stops_m, robot.start))
@@ -127,10 +131,10 @@ async def test_which_of_two_equal_rooms_it_is_history_knows(live: Live) -> None:
 
 async def test_a_robot_taken_off_its_map_is_lost(live: Live) -> None:
     lab, office = (SimulatedRobot(load_world(name), seed=1) for name in ("laboratory", "office"))
-    async with live(office) as it:
+    async with live(office, QUICK) as it:
         await it.done(MapStart.of("office", office.stops_m, office.start))
         await it.daemon.control.perform(MapSave())
-    async with live(lab) as it:
+    async with live(lab, QUICK) as it:
         await it.daemon.control.perform(MapLoad.of("office", None, None))
         found = final_estimates(await it.done(Localize(0.0)))[-1]
     assert found.state is PoseState.LOST
@@ -158,7 +162,7 @@ async def test_a_beam_slanted_to_the_floor_maps_and_localizes_as_lily_did(live: 
 
 async def test_a_robot_that_is_lost_does_not_drive_until_it_is_found(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         await it.done(MapStart.of("office", robot.stops_m, robot.start))
         here = robot.truth
         lost = final_estimates(await it.done(Localize(here.heading_rad + 0.5)))[-1]
@@ -174,7 +178,7 @@ async def test_a_robot_that_is_lost_does_not_drive_until_it_is_found(live: Live)
 
 async def test_a_base_that_was_out_of_sight_is_not_believed(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         await it.done(MapStart.of("office", robot.stops_m[:2], robot.start))
         own_board(robot, "drive").reboot(4711)
         async with asyncio.timeout(10.0):
@@ -192,7 +196,7 @@ async def test_a_base_that_was_out_of_sight_is_not_believed(live: Live) -> None:
 
 async def test_an_unreachable_place_is_said_at_once_and_nothing_moves(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         await it.done(MapStart.of("office", robot.stops_m, robot.start))
         before = robot.truth
         said, end = await it.do(DriveTo(50.0, 50.0))
@@ -205,14 +209,14 @@ async def test_an_unreachable_place_is_said_at_once_and_nothing_moves(live: Live
 
 async def test_a_saved_map_comes_back_exactly_and_the_robot_is_found_in_it(live: Live) -> None:
     robot = SimulatedRobot(load_world("office"), seed=1)
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         said = await it.done(MapStart.of("office", robot.stops_m, robot.start))
         cells = await cells_in_use(it.daemon)
         entry = await it.daemon.control.perform(MapSave())
     changes = [event for event in said if isinstance(event, MapChanged) and not event.whole]
     assert [event.generation for event in changes] == list(range(1, len(robot.stops_m) + 2))
     again = SimulatedRobot(load_world("office"), seed=9)
-    async with live(again) as it:
+    async with live(again, QUICK) as it:
         loaded = await it.daemon.control.perform(MapLoad.of("office", None, None))
         assert loaded.digest == entry.digest
         assert np.array_equal(await cells_in_use(it.daemon), cells)
@@ -232,7 +236,7 @@ async def test_a_robot_that_nobody_knows_the_heading_of_is_found_and_drives_on(l
         await it.daemon.control.perform(MapSave())
     turned = replace(office, start=replace(office.start, heading_deg=office.start.heading_deg + 137.0))
     robot = SimulatedRobot(turned, seed=5)
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         await it.daemon.control.perform(MapLoad.of("office", None, None))
         said = await it.done(Localize(heading=PriorHeading.UNKNOWN))
         estimates = final_estimates(said)
