@@ -39,5 +39,7 @@ def test_without_the_gate_it_would_be_seen(monkeypatch: pytest.MonkeyPatch, stat
     monkeypatch.setattr(board_pantilt, "check_readback", lambda *_: None)
     monkeypatch.setattr(board_drive, "check_twist", lambda *_: None)
     monkeypatch.setattr(ClockSync, "ahead_ns", lambda *_: 0)
-    ends = {outcome.end for outcome in run_block("own boards", state, range(1, 40))}
-    assert ends & {"died", "internal", "froze"}
+    outcomes = (
+        outcome for seed in range(1, 40, 3) for outcome in run_block("own boards", state, range(seed, seed + 3))
+    )
+    assert any(outcome.end in {"died", "internal", "froze"} for outcome in outcomes)
