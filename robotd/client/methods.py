@@ -14,6 +14,7 @@ from robotd.contract.missions import (
     Explore,
     Localize,
     Look,
+    MapContinue,
     MapStart,
     Measure,
     Mission,
@@ -134,6 +135,7 @@ class Methods:
     start = asks(with_lease, _all)
     renew = asks(Renew, _all)
     make_map = carries_out(MapStart.of, _all)
+    continue_map = carries_out(MapContinue.of, _all)
     explore = carries_out(Explore.of, _all)
     localize = carries_out(Localize, final_estimate)
     resolve = carries_out(Resolve, final_estimate)

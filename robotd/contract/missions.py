@@ -77,6 +77,31 @@ class MapStart(MissionRequest, frozen=True):
         return cls(name, stops_m, PoseArgument.of(start), legs)
 
 
+class MapContinue(MissionRequest, frozen=True):
+    """Go on with the map in use: where the robot stands, then stop by stop. It is mapping, as what began it was."""
+
+    cmd, kind, doing, noted = "map_continue", MapStart.kind, MapStart.doing, "MapContinue"
+    name: MapName
+    """Of the map in use: nobody goes on with another one by mistake."""
+    stops_m: Stops = ()
+    """Where to stop after the place where the robot stands, which is always the first stop."""
+    start: PoseArgument | None = None
+    """Where the robot stands now; without it, where it is localized, and without that the mission fails."""
+    legs: Legs = Legs.PLANNED
+    lease_s: LeaseTime | None = None
+
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        stops_m: tuple[tuple[float, float], ...] = (),
+        start: Pose2 | None = None,
+        legs: Legs = Legs.PLANNED,
+    ) -> "MapContinue":
+        """Return the request of a robot that stands at ``start``, or that is localized."""
+        return cls(name, stops_m, None if start is None else PoseArgument.of(start), legs)
+
+
 class Explore(MissionRequest, frozen=True):
     """Make a new map without being told where to stop, or go on with the one in use."""
 
@@ -191,7 +216,7 @@ class Measure(MissionRequest, frozen=True):
     lease_s: LeaseTime | None = None
 
 
-Mission = MapStart | Explore | Localize | Resolve | DriveTo | DriveStraight | Turn | Look | Scan | Measure
+Mission = MapStart | MapContinue | Explore | Localize | Resolve | DriveTo | DriveStraight | Turn | Look | Scan | Measure
 
 
 def with_lease(mission: Mission, lease_s: float | None = None) -> Mission:

@@ -15,5 +15,5 @@ class Mode(enum.StrEnum):
     FAULT = "fault"
 
 
-MODE_WORDS = (Mode.DISARMED.value, Mode.IDLE.value, *(kind.doing for kind in MISSIONS), Mode.FAULT.value)
+MODE_WORDS = (Mode.DISARMED.value, Mode.IDLE.value, *dict.fromkeys(kind.doing for kind in MISSIONS), Mode.FAULT.value)
 """What a status may say."""

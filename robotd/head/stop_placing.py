@@ -81,7 +81,7 @@ def _settings(held: Held, localization: LocalizationSettings) -> SurveySettings:
 def _resumed(held: Held, localization: LocalizationSettings) -> Survey | None:
     """Return the survey of a map that was stored; None of one that has just begun."""
     if held.stops is None:
-        raise MissionError("this map was stored without its stops, and cannot be gone on with: explore a new one")
+        raise MissionError("this map was stored without its stops, and cannot be gone on with: make a new one")
     # With the misses: what a stop saw to be empty speaks against a wrong loop as well.
     stops = [(Readings(stop.beams(misses=True)), stop.map_from_robot) for stop in held.stops.stops]
     return Survey.resumed(stops, _settings(held, localization)) if stops else None

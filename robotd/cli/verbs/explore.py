@@ -2,30 +2,22 @@
 
 import argparse
 
-from robotd.cli.connection import connect
 from robotd.cli.exit_codes import AMBIGUOUS, LOST, OK
 from robotd.cli.motion import MissionOutcome, carry_out, mission_verb
 from robotd.cli.quantities import number, positive, whole
-from robotd.cli.show.terminal import err
 from robotd.cli.show.wording import as_json, ending_in_words
-from robotd.cli.verbs.maps import map_name, pose_argument, stops_argument
-from robotd.cli.verbs.where import found_in_words
+from robotd.cli.verbs.map_making import map_name, pose_argument, stops_argument, taken_up
 from robotd.client.mission_run import MissionEvent
 from robotd.contract.area import Bounds
-from robotd.contract.estimate import PoseEstimate
 from robotd.contract.explored import ExploringEnded
-from robotd.contract.missions import Explore, Localize, PriorHeading
-from robotd.contract.topics import Topic
-from robotd.core.errors import MapError
+from robotd.contract.missions import Explore
 from robotd.core.pose import IDENTITY
 
 _S_PER_MINUTE = 60.0
-_PATIENCE_S = 3.0
-"""How long to wait for the pose, which is told on joining."""
 
 
 def _explore(arguments: argparse.Namespace) -> int:
-    if arguments.resume and (code := _taken_up(arguments)) != OK:
+    if arguments.resume and (code := taken_up(arguments)) != OK:
         return code
     mission = Explore.of(
         arguments.name,
@@ -39,30 +31,6 @@ def _explore(arguments: argparse.Namespace) -> int:
         returns=arguments.back,
     )
     return carry_out(arguments, mission, _explored)
-
-
-def _taken_up(arguments: argparse.Namespace) -> int:
-    """Take up what nobody finished: load the map if it is not in use, and find the robot on it; return the exit code.
-
-    Raises:
-        MapError: there is no such map.
-        MissionError: another mission is under way.
-    """
-    name = arguments.name
-    with connect(arguments) as client:
-        if client.status().map_name != name:
-            kept = [entry.version for entry in client.map_list() if entry.name == name and entry.damage is None]
-            if not kept:
-                raise MapError(f"no map {name} is in use or in the store, so none can be gone on with")
-            # The newest, saved or not: it is what the last stop left.
-            entry = client.map_load(name, max(kept), None)
-            err().print(f"loaded {name} version {entry.version}, made of {entry.stops} stops")
-        with client.subscribe(Topic.POSE) as events:
-            pose = events.next(_PATIENCE_S)
-    if isinstance(pose, PoseEstimate) and pose.best is not None:
-        return OK
-    err().print("it is not known where the robot is on it: it looks round first")
-    return carry_out(arguments, Localize(heading=PriorHeading.UNKNOWN), found_in_words)
 
 
 def _explored(events: list[MissionEvent]) -> MissionOutcome:

@@ -1,4 +1,4 @@
-"""``map start``, ``map save``, ``map load``, ``map discard``, ``map list`` and ``map show``."""
+"""``map save``, ``map load``, ``map discard``, ``map list`` and ``map show``."""
 
 import argparse
 import shutil
@@ -7,31 +7,26 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from robotd.cli.connection import connect
 from robotd.cli.exit_codes import OK
-from robotd.cli.motion import carry_out, legs_argument, mission_verb
 from robotd.cli.outputs import PNG, output_argument
 from robotd.cli.pictures.plots_extra import require_plots
-from robotd.cli.quantities import heading_of_deg, number, whole
+from robotd.cli.quantities import whole
 from robotd.cli.show.half_blocks import Ink, can_draw_blocks, draw, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import Verb
-from robotd.cli.verbs import map_files, map_store, stored_stops
-from robotd.cli.wheels import odometry_argument
-from robotd.contract.answers import ErrorCode, MapEntryInfo
-from robotd.contract.arguments import MapName
+from robotd.cli.verbs import map_files, map_making, map_store, stored_stops
+from robotd.cli.verbs.map_making import map_name, pose_argument
+from robotd.contract.answers import MapEntryInfo
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.events import MapChanged
-from robotd.contract.missions import Legs, MapStart
 from robotd.contract.topics import Topic
 from robotd.core.clock import NS_PER_S
-from robotd.core.errors import ServerError
 from robotd.core.grid_bytes import grid_digest
-from robotd.core.pose import IDENTITY, Pose2
+from robotd.core.pose import Pose2
 from robotd.grid.tables import NO_INFORMATION
 
 if TYPE_CHECKING:
@@ -39,63 +34,6 @@ if TYPE_CHECKING:
 
 
 _PATIENCE_S = 0.5
-
-
-def _start(arguments: argparse.Namespace) -> int:
-    if arguments.discard:
-        _give_up(arguments)
-    start, stops_m = arguments.start, tuple(map(tuple, arguments.stop))
-    if arguments.world is not None:
-        from robotd.sim.load import load_robot  # noqa: PLC0415  # no other verb here needs a simulation
-        from robotd.sim.recorded_robot import OdometrySource  # noqa: PLC0415  # as above
-
-        robot = load_robot(arguments.world, odometry=OdometrySource(arguments.odometry))
-        start, stops_m = start or robot.start, stops_m or robot.stops_m
-    return carry_out(arguments, MapStart.of(arguments.name, stops_m, start or IDENTITY, Legs(arguments.legs)))
-
-
-def _start_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", type=map_name, help="what to call the map")
-    stops_argument(
-        parser, "where to stop and sweep [m], once for each; the robot's place at the start comes first by itself"
-    )
-    pose_argument(parser, "--start", "where the robot stands now, which fixes the map's axes (default: 0 0 0)")
-    parser.add_argument("--world", metavar="WORLD", help="take start and stops from a world of robotctl sim")
-    odometry_argument(parser)
-    legs_argument(parser)
-    parser.add_argument(
-        "--discard",
-        action="store_true",
-        help="give up what nobody saved of the map in use, which else is kept first, and in the way if it cannot be",
-    )
-
-
-def map_name(text: str) -> str:
-    """Return the name of a map, as it may be."""
-    try:
-        return msgspec.convert(text, MapName)
-    except msgspec.ValidationError:
-        allowed = "1 to 64 letters, digits, '.', '-' and '_', the first a letter or a digit"
-        raise argparse.ArgumentTypeError(f"{text!r} is no name for a map, which has {allowed}") from None
-
-
-class _PoseAction(argparse.Action):
-    """Turns ``X Y DEG`` into a pose."""
-
-    def __call__(self, parser: object, namespace: argparse.Namespace, values: object, _: object = None) -> None:
-        assert isinstance(values, list)
-        x_m, y_m, heading_deg = values
-        setattr(namespace, self.dest, Pose2(x_m, y_m, heading_of_deg(heading_deg)))
-
-
-def pose_argument(parser: argparse.ArgumentParser, name: str, summary: str) -> None:
-    """Let the command line name a pose, ``X Y DEG``."""
-    parser.add_argument(name, action=_PoseAction, nargs=3, type=number, metavar=("X", "Y", "DEG"), help=summary)
-
-
-def stops_argument(parser: argparse.ArgumentParser, summary: str) -> None:
-    """Let the command line name stops, ``--stop X Y`` once for each."""
-    parser.add_argument("--stop", action="append", nargs=2, type=number, default=[], metavar=("X", "Y"), help=summary)
 
 
 def _save(arguments: argparse.Namespace) -> int:
@@ -106,15 +44,6 @@ def _save(arguments: argparse.Namespace) -> int:
 def _load(arguments: argparse.Namespace) -> int:
     with connect(arguments) as client:
         return _tell(arguments, "loaded", client.map_load(arguments.name, arguments.version, arguments.robot))
-
-
-def _give_up(arguments: argparse.Namespace) -> None:
-    with connect(arguments) as client:
-        try:
-            client.map_discard()
-        except ServerError as error:
-            if error.code != ErrorCode.NOT_FOUND:
-                raise  # where no map is in use, there is nothing to give up
 
 
 def _discard(arguments: argparse.Namespace) -> int:
@@ -237,13 +166,7 @@ def _show_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 VERBS = (
-    mission_verb(
-        "map start",
-        "make a new map, stop by stop",
-        "robotctl map start kitchen --stop 1.5 0 --stop 1.5 2",
-        _start,
-        _start_arguments,
-    ),
+    *map_making.VERBS,
     Verb("map save", "store the map in use", "robotctl map save", _save, _save_arguments, asks_daemon=True),
     Verb(
         "map load", "take a stored map into use", "robotctl map load kitchen", _load, _load_arguments, asks_daemon=True

@@ -9,8 +9,6 @@ from robotd.contract.explored import CandidateStop, ExploringEnded, StopChosen
 from robotd.contract.missions import Explore
 from robotd.contract.ways import Hindrance, Point
 from robotd.core.clock import NS_PER_S, now_ns
-from robotd.core.errors import MissionError
-from robotd.core.pose import Pose2
 from robotd.core.rectangle import Rectangle
 from robotd.exploring.reasons import WhyEnded, WhyLeft
 from robotd.exploring.settings import Pace
@@ -21,8 +19,7 @@ from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.driving import NoWay
 from robotd.mission.missions.looking_ahead import drive_looking
 from robotd.mission.missions.plan_told import PlanTold
-from robotd.mission.missions.surveying import Surveyed, survey_stop
-from robotd.mission.motion.legs import next_odometry
+from robotd.mission.missions.surveying import Surveyed, here_on, survey_stop
 from robotd.mission.whereabouts.map_in_use import MapInUse
 
 _NEWS_CELLS = 20
@@ -93,7 +90,7 @@ async def run_exploring(context: MissionContext, place: MapInUse, mission: Explo
 
 
 async def _begun(context: MissionContext) -> Journey:
-    time_ns, here = await _here(context)
+    time_ns, here = await here_on(context, "explore --resume")
     return Journey((here.x_m, here.y_m), time_ns, time_ns)
 
 
@@ -112,12 +109,12 @@ class Exploring:
         # Before the sweep, so that everything it tells bears the number of this stop.
         self.report.stop = self.journey.stops
         stop = await survey_stop(self.context, self.place, self.report, found_again=found_again)
-        _, here = await _here(self.context)
+        _, here = await here_on(self.context, "explore --resume")
         self.journey.stopped(stop, (here.x_m, here.y_m))
 
     async def choose(self) -> Chosen:
         """Return where to stop next, or why to end; a journey that is spent, or lost, ends whatever is left."""
-        _, start = await _here(self.context)
+        _, start = await here_on(self.context, "explore --resume")
         journey, bounds = self.journey, self.mission.within
         within = None if bounds is None else Rectangle(bounds.west_m, bounds.south_m, bounds.east_m, bounds.north_m)
         tried = replace(journey.tried, met_m=self._met_m)
@@ -194,20 +191,6 @@ class Exploring:
             words = f"at ({met_m[0][0]:.2f}, {met_m[0][1]:.2f}) m stands what is not on the map"
             self.report.at(MissionPhase.DRIVING, message=words)
         return "there is always something in the way"
-
-
-async def _here(context: MissionContext) -> tuple[int, Pose2]:
-    """Return the time, and where the robot is on the map by then.
-
-    Raises:
-        MissionError: it is not localized on it.
-    """
-    silence_s = context.settings.driving.silence_s
-    now = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
-    pose = context.whereabouts.pose_of(now)
-    if pose is None:
-        raise MissionError("the robot is not localized on this map; first: robotctl localize, then explore --resume")
-    return now.time_ns, pose
 
 
 def _ended_by(ending: WhyEnded, chosen: Chosen) -> Chosen:

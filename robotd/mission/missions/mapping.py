@@ -1,10 +1,11 @@
 """Make a map: at each stop sweep and insert, then go on."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robotd.contract.events import MissionPhase
-from robotd.contract.missions import MapStart
-from robotd.contract.ways import StopState
+from robotd.contract.missions import Legs
+from robotd.contract.ways import Point, StopState
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.driving import NoWay, drive_to
 from robotd.mission.missions.plan_told import PlanTold
@@ -28,23 +29,32 @@ class MappingResult:
         return f"{self.swept} stops swept{missed}{failed}"
 
 
-async def run_mapping(context: MissionContext, place: MapInUse, mission: MapStart, report: Reporter) -> MappingResult:
-    """Carry out a :class:`MapStart` on a fresh map that odometry is already tied to.
+async def run_mapping(
+    context: MissionContext,
+    place: MapInUse,
+    stops_m: Sequence[Point],
+    legs: Legs,
+    report: Reporter,
+    *,
+    goes_on: bool = False,
+) -> MappingResult:
+    """Lay sweeps at some stops, of which the first is where the robot stands, into a map that odometry is tied to.
+
+    With ``goes_on`` the map has stops of before, and the robot was found on it by other means than its wheels.
 
     A stop that cannot be reached is said at once, left out, and named in the result.
     """
     unreachable: list[str] = []
     faulty: list[str] = []
-    stops_m = ((mission.start.x_m, mission.start.y_m), *mission.stops_m)
     # With all stops from the beginning: a console draws the way ahead, not only what was done.
-    plan = PlanTold(report, place.map_id, stops_m)
+    plan = PlanTold(report, place.map_id, tuple(stops_m))
     for stop, stop_m in enumerate(stops_m):
         plan.stop_is(stop, StopState.UNDER_WAY)
-        # At stop 0 the robot stands already: the map begins there.
+        # At stop 0 the robot stands already.
         if stop:
             report.at(MissionPhase.DRIVING, stop)
             try:
-                await drive_to(context, place, plan, stop_m, mission.legs)
+                await drive_to(context, place, plan, stop_m, legs)
             # No way is an answer; a base that fails raises another error, which ends the mission.
             except NoWay as error:
                 plan.stop_is(stop, StopState.UNREACHED, error.reason, error.nearest_m)
@@ -53,7 +63,7 @@ async def run_mapping(context: MissionContext, place: MapInUse, mission: MapStar
                 report.at(MissionPhase.DRIVING, message=unreachable[-1])
                 continue
         report.stop = stop
-        surveyed = await survey_stop(context, place, report)
+        surveyed = await survey_stop(context, place, report, found_again=goes_on and not stop)
         faulty += [f"stop {stop}: {text}" for text in [surveyed.faults] if text]
         plan.stop_is(stop, StopState.SWEPT)
     return MappingResult(len(stops_m) - len(unreachable), tuple(unreachable), tuple(faulty))

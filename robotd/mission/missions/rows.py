@@ -11,6 +11,7 @@ from robotd.contract.missions import (
     Explore,
     Localize,
     Look,
+    MapContinue,
     MapStart,
     Measure,
     Mission,
@@ -29,6 +30,7 @@ from robotd.mission.missions.localizing import pose_text, run_localizing
 from robotd.mission.missions.looking_again import looking_again
 from robotd.mission.missions.mapping import run_mapping
 from robotd.mission.missions.resolving import run_resolving
+from robotd.mission.missions.surveying import here_on
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
@@ -67,7 +69,18 @@ class MissionRow:
 async def _make_map(host: Host, context: MissionContext, mission: MapStart, report: Reporter) -> str:
     points_m = ((mission.start.x_m, mission.start.y_m), *mission.stops_m)
     place = await _begin_map(host, context, mission, points_m, report)
-    return str(await run_mapping(context, place, mission, report))
+    return str(await run_mapping(context, place, points_m, mission.legs, report))
+
+
+async def _continue_map(_: Host, context: MissionContext, mission: MapContinue, report: Reporter) -> str:
+    place = _place_named(context, mission.name)
+    if mission.start is not None:
+        silence_s = context.settings.driving.silence_s
+        now = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
+        context.whereabouts.placed(mission.start.pose, now.in_odom, is_found=True)
+    _, here = await here_on(context, "map continue")
+    points_m = ((here.x_m, here.y_m), *mission.stops_m)
+    return str(await run_mapping(context, place, points_m, mission.legs, report, goes_on=True))
 
 
 async def _explore(host: Host, context: MissionContext, mission: Explore, report: Reporter) -> str:
@@ -118,6 +131,7 @@ async def _measure(_: Host, context: MissionContext, mission: Measure, report: R
 
 _ROWS = (
     MissionRow(MapStart, _make_map, stops=lambda mission: 1 + len(mission.stops_m)),
+    MissionRow(MapContinue, _continue_map, stops=lambda mission: 1 + len(mission.stops_m)),
     MissionRow(Explore, _explore, stops=lambda mission: mission.stops_max),
     MissionRow(Localize, _localize, needs_base=False, pauses_prediction=True),
     MissionRow(Resolve, _resolve, pauses_prediction=True),

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from robotd.contract.events import MissionPhase
 from robotd.core.clock import now_ns
+from robotd.core.errors import MissionError
 from robotd.core.motion_error import Travel
 from robotd.core.pose import Pose2
 from robotd.core.reading import Sweep
@@ -13,6 +14,7 @@ from robotd.localization.stop_poses import StopPoses
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.looking_again import looking_again
 from robotd.mission.missions.stop_and_sweep import faults_text
+from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.results import map_result
 
@@ -30,6 +32,20 @@ class Surveyed:
     """How many cells of the map it changed."""
     way_m: float
     """From the stop before, as the wheels tell it."""
+
+
+async def here_on(context: MissionContext, then: str) -> tuple[int, Pose2]:
+    """Return the time, and where the robot is by then on the map in use.
+
+    Raises:
+        MissionError: it is not localized on it; names the verb that may come ``then``.
+    """
+    silence_s = context.settings.driving.silence_s
+    now = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
+    pose = context.whereabouts.pose_of(now)
+    if pose is None:
+        raise MissionError(f"the robot is not localized on this map; first: robotctl localize, then {then}")
+    return now.time_ns, pose
 
 
 async def survey_stop(

@@ -194,7 +194,7 @@ def client(monkeypatch: pytest.MonkeyPatch) -> FakeClient:
         "motion",
         "verbs.recordings",
         "verbs.where",
-        "verbs.explore",
+        "verbs.map_making",
         "live",
     ):
         monkeypatch.setattr(f"robotd.cli.{user}.connect", lambda arguments: fake)
