@@ -12,7 +12,7 @@ ONLY ?=
 ROOT ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help console ui-test demo demo-real demo-busy test bench bench-peers paper conservative exact docs deb faults interop replay-many liars fuzz safety stops heads heart lag worlds senses truth firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help console ui-test demo demo-real demo-busy test bench bench-peers paper conservative exact docs deb arm lowest supply faults interop replay-many liars fuzz safety stops heads heart lag worlds senses truth firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -108,6 +108,15 @@ deb: .venv/.dev  ## A Debian package in build/deb, with lintian's word on it; ma
 	@if command -v lintian >/dev/null; then lintian --tag-display-limit 0 build/deb/robotd_*-1.deb; else echo "lintian is not installed: not asked"; fi
 	@if test -n "$(ROOT)"; then $(BIN)/python systemd/debian/build.py --revision 2 build/deb/robotd-*.whl build/deb && \
 		$(BIN)/python systemd/debian/try.py $(ROOT) build/deb/robotd_*-1.deb build/deb/robotd_*-2.deb; fi
+
+arm: .venv/.dev  ## The wheel for aarch64 by Debian's cross compiler, and the tests of kernels and engine on it, played by qemu (an hour)
+	@$(BIN)/python -m tests.studies.arm.run $(ONLY)
+
+lowest: .venv/.dev  ## The tests with the lowest version of every dependency that is allowed, in an environment of their own (minutes)
+	@$(BIN)/python -m tests.studies.lowest.run $(ONLY)
+
+supply: .venv/.dev  ## What an installed wheel consists of: a bill of materials (CycloneDX), licences, known vulnerabilities (a minute)
+	@$(BIN)/python -m tests.studies.supply.run
 
 interop: .venv/.dev  ## Each form of other programs, written and read, a line each: sizes, counts, how far what comes back is (a minute)
 	@$(BIN)/python -m tests.studies.interop.run

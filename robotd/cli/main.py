@@ -86,8 +86,8 @@ def verbs_of(word: str) -> "tuple[Verb, ...]":
     return tuple(verb for verb in verbs if verb.name.split()[0] == word)
 
 
-def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
-    """Return a parser that knows every first word, and all about the one on this command line."""
+def build_parser(argv: Sequence[str], *, knows_all: bool = False) -> argparse.ArgumentParser:
+    """Return a parser that knows every first word, and all about the one on this command line, or about every one."""
     parser = argparse.ArgumentParser(
         prog="robotctl",
         description="Talk to robotd: missions, maps, poses, recordings, and simulated robots.",
@@ -101,13 +101,13 @@ def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
     _refuse_unknown(parser, wanted, WORDS)
     for word, (_, summary) in WORDS.items():
         helped = words.add_parser(word, help=summary, formatter_class=parser.formatter_class)
-        if word == wanted:
+        if knows_all or word == wanted:
             _add_verbs(helped, verbs_of(word), typed)
     return parser
 
 
 def whole_parser() -> Iterator[tuple[str, argparse.ArgumentParser]]:
-    """Yield every verb with its own parser, the program itself first: for manuals and completions, which know all."""
+    """Yield every verb with its own parser, the program itself first: for manuals, which know all."""
     yield "robotctl", build_parser(())
     for word in WORDS:
         for verb in verbs_of(word):

@@ -4,21 +4,22 @@ import argparse
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
-from typing import Any
-
-from rich.text import Text
+from typing import TYPE_CHECKING, Any
 
 from robotd.cli.connection import connect
 from robotd.cli.exit_codes import INTERRUPTED, OK
-from robotd.cli.show.progress import MissionBars
 from robotd.cli.show.terminal import complain, out, print_json
 from robotd.cli.show.wording import as_json
 from robotd.cli.verb import Verb
-from robotd.client import Client
 from robotd.client.mission_run import MissionEvent
 from robotd.contract.events import MissionProgress, SweepProgress
 from robotd.contract.missions import Legs, Mission
 from robotd.core.errors import RobotdError
+
+if TYPE_CHECKING:
+    from rich.text import Text
+
+    from robotd.client import Client
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +31,7 @@ class MissionOutcome:
     words: str
     """For people; with line breaks where it is more than a line."""
     code: int = OK
-    picture: Text | None = None
+    picture: "Text | None" = None
     """For people, too, if it was asked for."""
 
 
@@ -58,8 +59,10 @@ def carry_out(arguments: argparse.Namespace, mission: Mission, conclude: Conclud
 
 
 @contextmanager
-def shown(client: Client, mission: Mission) -> Iterator[Iterator[MissionEvent]]:
+def shown(client: "Client", mission: Mission) -> Iterator[Iterator[MissionEvent]]:
     """Start a mission and yield what happens, with bars that show it."""
+    from robotd.cli.show.progress import MissionBars  # noqa: PLC0415  # where no mission begins, nobody waits for bars
+
     with closing(client.run_mission(mission)) as events, MissionBars() as bars:
 
         def each() -> Iterator[MissionEvent]:
@@ -70,7 +73,7 @@ def shown(client: Client, mission: Mission) -> Iterator[Iterator[MissionEvent]]:
         yield each()
 
 
-def _follow(client: Client, mission: Mission, conclude: Conclude, arguments: argparse.Namespace) -> int:
+def _follow(client: "Client", mission: Mission, conclude: Conclude, arguments: argparse.Namespace) -> int:
     if arguments.events:
         with closing(client.run_mission(mission)) as events:
             kept = [event for event in events if _tell(event)]
@@ -94,7 +97,7 @@ def _tell(event: MissionEvent) -> bool:
     return not isinstance(event, SweepProgress)
 
 
-def stopped(client: Client) -> int:
+def stopped(client: "Client") -> int:
     """Stop the robot, then say so; if it cannot be told, its lease will stop it, and that is said too."""
     try:
         client.stop("interrupted at the command line")

@@ -12,16 +12,20 @@ Values = Mapping[str, Mapping[str, object]]
 """By section and key."""
 
 
-def starter_text(head: str, values: Values) -> str:
+def starter_text(head: str, values: Values, remarks: Mapping[str, str] | None = None) -> str:
     """Return a configuration with these values; each device's section lists its dialects, and the options of its own.
 
     Args:
         head: the first line, a comment.
-        values: what to set; a section ``drive``, ``pantilt`` or ``rangefinder`` may choose its ``dialect``.
+        values: what to set; a section ``drive``, ``pantilt`` or ``rangefinder`` may choose its ``dialect``. Of a
+            device without values there is no section.
+        remarks: on devices, a comment each: above its section, or in its place.
     """
+    remarks = remarks or {}
     lines = [head, "# What is not here has its default; robotctl config show prints all of it."]
     for device in DIALECTS:
-        lines += ["", *_device(device, dict(values.get(device, {})))]
+        remark = [f"# {remarks[device]}"] if device in remarks else []
+        lines += ["", *remark, *(_device(device, dict(values[device])) if device in values else ())]
     for section, keys in values.items():
         if section not in DIALECTS:
             lines += ["", f"[{section}]", *(f"{key} = {write_value(value)}" for key, value in keys.items())]

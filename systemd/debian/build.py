@@ -76,12 +76,12 @@ def services(root: Path, python: Path) -> None:
 
 
 def documents(root: Path, python: Path, version: str) -> None:
-    """Make completions, the manual, the list of parts, and what Debian wants to be told."""
+    """Make completions, the manual, and what Debian wants to be told; shtab, which makes the former, is not packed."""
     made = root / "usr/share"
     run(python, HERE / "manual.py", made / "man/man1/robotctl.1.gz", version)
     for shell, name in (("bash", "bash-completion/completions/robotctl"), ("zsh", "zsh/vendor-completions/_robotctl")):
         (made / name).parent.mkdir(parents=True)
-        (made / name).write_text(run(python, HERE / "completions.py", shell))
+        (made / name).write_text(run(sys.executable, HERE / "completions.py", shell))
     doc = made / "doc/robotd"
     doc.mkdir(parents=True)
     (doc / "copyright").write_text((HERE / "copyright").read_text())

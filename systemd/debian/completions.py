@@ -1,45 +1,33 @@
-"""What a shell completes of robotctl's first and second words and options: ``completions.py bash|zsh``."""
+"""What a shell completes of robotctl's words, options, choices and files: ``completions.py bash|zsh``, by shtab."""
 
+import argparse
 import sys
+from collections.abc import Iterator
+from pathlib import Path
 
-from robotd.cli.main import WORDS, whole_parser
+import shtab
 
-_BASH = """# Made from the parser of robotctl.
-_robotctl() {{
-    local word="${{COMP_WORDS[COMP_CWORD]}}" key="${{COMP_WORDS[1]}}"
-    [ "$COMP_CWORD" -gt 2 ] && case "${{COMP_WORDS[2]}}" in -*) ;; *) key="$key ${{COMP_WORDS[2]}}" ;; esac
-    local words
-    case "$COMP_CWORD:$key" in
-        1:*) words="{first}" ;;
-{cases}
-    esac
-    COMPREPLY=($(compgen -W "$words" -- "$word") $(compgen -f -- "$word"))
-}}
-complete -o filenames -F _robotctl robotctl
-"""
-_ZSH = """#compdef robotctl
-autoload -U +X bashcompinit && bashcompinit
-"""
+from robotd.cli.main import build_parser
 
 
-def cases() -> list[str]:
-    """Return for each first word what may follow it, and for each verb its options."""
-    seconds: dict[str, list[str]] = {}
-    lines = []
-    for name, parser in whole_parser():
-        options = [option for action in parser._actions for option in action.option_strings]  # noqa: SLF001  # no other way
-        first, _, second = name.partition(" ")
-        if second:
-            seconds.setdefault(first, []).append(second)
-        lines.append(f'        *:"{name}") words="{" ".join(options)}" ;;')
-    return [f'        2:"{first}") words="{" ".join(words)}" ;;' for first, words in seconds.items()] + lines
+def parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """Yield a parser and all those within it."""
+    yield parser
+    for action in parser._actions:  # noqa: SLF001  # no other way
+        if isinstance(action, argparse._SubParsersAction):  # noqa: SLF001  # no other way
+            for inner in action.choices.values():
+                yield from parsers(inner)
 
 
-def main(shell: str) -> None:
-    """Print the script for a shell."""
-    script = _BASH.format(first=" ".join(WORDS), cases="\n".join(cases()))
-    print(script if shell == "bash" else _ZSH + script, end="")
+def script(shell: str) -> str:
+    """Return the script for a shell."""
+    whole = build_parser((), knows_all=True)
+    for parser in parsers(whole):
+        for action in parser._actions:  # noqa: SLF001  # no other way
+            if action.type is Path or action.metavar == "FILE":
+                action.complete = shtab.FILE  # type: ignore[attr-defined]  # shtab reads it, argparse lets it be
+    return shtab.complete(whole, shell=shell)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    print(script(sys.argv[1]))

@@ -73,7 +73,10 @@ def test_the_gateway_loads_nothing_of_the_engine_and_robotctl_no_web_server() ->
 
 @pytest.mark.parametrize(
     ("module", "rooms"),
-    [("robotd.client", ROOMS_OF_CLIENTS), ("robotd.front.program", ROOMS_OF_FRONT)],
+    [
+        ("robotd.client.async_client, robotd.client.sync_client", ROOMS_OF_CLIENTS),
+        ("robotd.front.program", ROOMS_OF_FRONT),
+    ],
 )
 def test_clients_and_the_server_load_nothing_of_the_engine(module: str, rooms: set[str]) -> None:
     """No grid, maps, hardware, localization, kernels; and it says what the import costs (``pytest -s``)."""

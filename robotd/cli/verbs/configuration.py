@@ -4,6 +4,7 @@ import argparse
 import dataclasses
 import sys
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 
 from robotd import config
@@ -12,9 +13,10 @@ from robotd.cli.outputs import CONFIG_MARK, MADE_CONFIG, output_argument, write
 from robotd.cli.plugged_in import Port, plugged_in
 from robotd.cli.show.terminal import command_line, complain, err, out, print_json
 from robotd.cli.verb import Verb
+from robotd.cli.who_answers import not_asked, who_answers
 from robotd.config.starter import starter_text
 from robotd.core.errors import ConfigError, RobotdError
-from robotd.hardware.devices.catalogue import DIALECTS
+from robotd.hardware.devices.catalogue import DIALECTS, MOTORLESS, SCANNERS
 
 
 def _file_argument(parser: argparse.ArgumentParser) -> None:
@@ -62,13 +64,15 @@ def _init(arguments: argparse.Namespace) -> int:
     chosen: dict[str, dict[str, object]] = {}
     for device in DIALECTS:
         said = getattr(arguments, device)
-        if said is None:
+        if said is None and arguments.probe is None:
             said = _asked(device, ports)
-        port, _, dialect = said.partition(",")
-        chosen[device] = {"port": port, "dialect": dialect or "board"}
+        if said is not None:
+            port, _, dialect = said.partition(",")
+            chosen[device] = {"port": port, "dialect": dialect or "board"}
+    remarks = {} if arguments.probe is None else _probed(arguments.probe or [port.path for port in ports], chosen)
     for section, key, value in arguments.set:
         chosen.setdefault(section, {})[key] = value
-    text = starter_text(f"{CONFIG_MARK} config init.", chosen)
+    text = starter_text(f"{CONFIG_MARK} config init.", chosen, remarks)
     config.loads(text, str(arguments.file))
     write(arguments.file, text.encode())
     if arguments.json:
@@ -76,6 +80,39 @@ def _init(arguments: argparse.Namespace) -> int:
     else:
         out().print(f"{arguments.file}: written; next: {command_line('robotctl', 'doctor', arguments.file)}")
     return OK
+
+
+def _probed(ports: Sequence[str], chosen: dict[str, dict[str, object]]) -> dict[str, str]:
+    """Ask on ports who is there, tell it, and choose who answered; return what to remark on devices.
+
+    Raises:
+        RobotdError: nobody answered.
+    """
+    answers = who_answers([port for port in ports if port not in {one["port"] for one in chosen.values()}])
+    remarks: dict[str, str] = {}
+    for port, found in answers.items():
+        if isinstance(found, str):
+            err().print(f"{port}: {found}")
+            continue
+        words = f"{found.device}, {' or '.join(found.dialects)}: {found.said}"
+        if found.device in chosen:
+            err().print(f"{port}: {words}; left out, for there is one at {chosen[found.device]['port']}")
+            continue
+        err().print(f"{port}: {words}")
+        chosen[found.device] = {"port": port, "dialect": found.dialects[0]}
+        if len(found.dialects) > 1:
+            remarks[found.device] = f"It answers as {', '.join(found.dialects)} all do: say which it is."
+    if chosen.get("rangefinder", {}).get("dialect") in SCANNERS:
+        chosen.setdefault("pantilt", {"dialect": MOTORLESS})
+    if not chosen:
+        said = " ".join(f"--{device} PORT,DIALECT" for device in DIALECTS)
+        raise RobotdError(f"no device answered; say where they are, with {said}")
+    for device in DIALECTS:
+        if device not in chosen:
+            why = f" ({said})" if (said := not_asked(device)) else ""
+            remarks[device] = f"No {device} answered{why}. Until there is a section [{device}], its defaults hold."
+            err().print(f"{device}: none answered{why}; if there is one, name it: --{device} PORT,DIALECT")
+    return remarks
 
 
 def _asked(device: str, ports: tuple[Port, ...]) -> str:
@@ -114,6 +151,13 @@ def _init_arguments(parser: argparse.ArgumentParser) -> None:
             f"--{device}", metavar="PORT[,DIALECT]", help=f"where the {device} is, and what it speaks (default: asked)"
         )
     parser.add_argument(
+        "--probe",
+        nargs="*",
+        metavar="PORT",
+        help="ask on these ports (default: all that are plugged in) which device is there, and write down those that"
+        " answer. The question is written to the port whatever is there: first unplug what is no part of the robot",
+    )
+    parser.add_argument(
         "--set", action="append", type=_setting, default=[], metavar="SECTION.KEY=VALUE", help="set something else, too"
     )
 
@@ -121,8 +165,8 @@ def _init_arguments(parser: argparse.ArgumentParser) -> None:
 VERBS = (
     Verb(
         "config init",
-        "make a first configuration: ask for the devices, list what is plugged in, write a commented file",
-        "robotctl config init robotd.toml --drive /dev/ttyUSB0 --pantilt /dev/ttyUSB1,ptu --set maps.keep=3",
+        "make a first configuration: ask for the devices or on their ports, write a commented file for those found",
+        "robotctl config init robotd.toml --probe --drive /dev/ttyUSB0 --pantilt /dev/ttyUSB1,ptu --set maps.keep=3",
         _init,
         _init_arguments,
     ),

@@ -13,11 +13,11 @@ from robotd.cli.show.terminal import complain, out, print_json
 from robotd.cli.verb import Verb
 from robotd.cli.verbs.map_store import store_arguments, store_of
 from robotd.core.errors import MapError, RobotdError
-from robotd.maps.entry import MapEntry
 from robotd.maps.manifest import is_name
 
 if TYPE_CHECKING:
     from robotd.interop.map_server import ImportedMap
+    from robotd.maps.entry import MapEntry
 
 _MODES = ("trinary", "scale", "raw")
 _EXPORT = Kind("a directory for a map of map_server")
@@ -60,7 +60,7 @@ def _export(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _tell(arguments: argparse.Namespace, what: str, entry: MapEntry, place: str, notes: tuple[str, ...]) -> None:
+def _tell(arguments: argparse.Namespace, what: str, entry: "MapEntry", place: str, notes: tuple[str, ...]) -> None:
     if entry.spec is None:
         raise MapError(f"map {entry.name}: {entry.damage}")
     rows, cols = entry.spec.shape

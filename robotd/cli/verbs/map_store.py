@@ -1,10 +1,10 @@
 """``map copy``, ``rename``, ``delete`` and ``compare``: stored maps rearranged and looked at. They need no daemon."""
 
 import argparse
+import math
 import sys
 from pathlib import Path
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from robotd.cli.exit_codes import FAILED, OK
 from robotd.cli.outputs import PNG, output_argument
@@ -13,16 +13,21 @@ from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import complain, out, print_json, print_table
 from robotd.cli.verb import Verb
 from robotd.core.errors import ConfigError
-from robotd.grid.map_comparison import MapComparison, compare_maps
-from robotd.maps.entry import MapEntry
-from robotd.maps.store import MapStore
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from robotd.grid.map_comparison import MapComparison
+    from robotd.maps.entry import MapEntry
+    from robotd.maps.store import MapStore
 
 _KINDS = ("free", "unknown", "occupied")
 
 
-def store_of(arguments: argparse.Namespace) -> MapStore:
+def store_of(arguments: argparse.Namespace) -> "MapStore":
     """Return the store that ``--maps`` or the configuration names."""
     from robotd import config  # noqa: PLC0415  # it knows every dialect, and most verbs of maps ask a daemon
+    from robotd.maps.store import MapStore  # noqa: PLC0415  # it knows the engine, and as above
 
     if arguments.maps is not None:
         return MapStore(arguments.maps)
@@ -52,7 +57,7 @@ def _rename(arguments: argparse.Namespace) -> int:
     return _tell(arguments, f"renamed {arguments.name}", entries)
 
 
-def _tell(arguments: argparse.Namespace, what: str, entries: tuple[MapEntry, ...]) -> int:
+def _tell(arguments: argparse.Namespace, what: str, entries: "tuple[MapEntry, ...]") -> int:
     if arguments.json:
         print_json([{"name": entry.name, "version": entry.version, "digest": entry.digest} for entry in entries])
         return OK
@@ -84,6 +89,8 @@ def _compare(arguments: argparse.Namespace) -> int:
         require_plots("--png")
     store = store_of(arguments)
     first, second = (store.load(*_version_of(text)) for text in (arguments.first, arguments.second))
+    from robotd.grid.map_comparison import compare_maps  # noqa: PLC0415  # the engine, for this verb alone
+
     found = compare_maps(first.grid, second.grid)
     if arguments.png is not None:
         from robotd.cli.pictures.compared_maps import draw_comparison  # noqa: PLC0415  # only here is the extra needed
@@ -108,7 +115,7 @@ def _version_of(text: str) -> tuple[str, int | None]:
     return name, int(version) if at else None
 
 
-def _figures(found: MapComparison) -> dict[str, float | None]:
+def _figures(found: "MapComparison") -> dict[str, float | None]:
     return {
         "agreement_where_both_have_seen": found.agreement,
         "median_way_to_the_other_wall_m": _middle(found.first_walls_off_m),
@@ -118,8 +125,8 @@ def _figures(found: MapComparison) -> dict[str, float | None]:
     }
 
 
-def _middle(off_m: np.ndarray[tuple[int], np.dtype[np.float64]], share: float = 0.5) -> float | None:
-    if not len(off_m) or not np.isfinite(off_m[int(share * (len(off_m) - 1))]):
+def _middle(off_m: "np.ndarray[tuple[int], np.dtype[np.float64]]", share: float = 0.5) -> float | None:
+    if not len(off_m) or not math.isfinite(off_m[int(share * (len(off_m) - 1))]):
         return None
     return float(off_m[int(share * (len(off_m) - 1))])
 

@@ -29,7 +29,8 @@ from robotd.hardware.devices.tfmini_rangefinder import TfminiRangefinder, Tfmini
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.wire import dimetix, disto, dynamixel, lw20, lwnx, ptu, rflex, rwi_ascii, scip, tfmini
-from robotd.hardware.wire.board import BoardWire, requests_to
+from robotd.hardware.wire.board import BoardWire, enquiry_to, requests_to
+from robotd.hardware.wire.enquiry import NotAsked
 from robotd.hardware.wire.word import Words
 
 S = TypeVar("S", bound=PortSettings)
@@ -37,60 +38,77 @@ D = TypeVar("D")
 
 _OURS = LineFormat(115_200)
 """As PROTOCOL.md has it: it carries all telemetry with room, and USB ports ignore it."""
+_MOVES = NotAsked("what is written to such a device may move it, for nothing arms it")
 
 DRIVES: Mapping[str, Dialect[DriveSettings, Drive]] = {
-    "board": Dialect(BoardDriveSettings, BoardDrive, Line(_OURS, BoardWire, requests_to(BoardKind.DRIVE))),
+    "board": Dialect(
+        BoardDriveSettings,
+        BoardDrive,
+        Line(_OURS, BoardWire, requests_to(BoardKind.DRIVE), enquiry_to(BoardKind.DRIVE)),
+    ),
     "rwi-ascii": Dialect(
         DriveSettings,
         RwiDrive,
-        Line(LineFormat(9_600), rwi_ascii.RwiWire, rwi_ascii.requests),
+        Line(LineFormat(9_600), rwi_ascii.RwiWire, rwi_ascii.requests, _MOVES),
         ("Which way round the bumpers of an RWI base are numbered is not documented.",),
     ),
     "rflex": Dialect(
         RflexSettings,
         RflexDrive,
-        Line(LineFormat(115_200), rflex.RflexWire, rflex.requests),
+        Line(LineFormat(115_200), rflex.RflexWire, rflex.requests, _MOVES),
         ("An rFLEX base has no watchdog: if the computer dies while it drives, it goes on driving.",),
     ),
 }
 PANTILTS: Mapping[str, Dialect[PanTiltSettings, PanTilt]] = {
-    "board": Dialect(BoardPanTiltSettings, BoardPanTilt, Line(_OURS, BoardWire, requests_to(BoardKind.PANTILT))),
+    "board": Dialect(
+        BoardPanTiltSettings,
+        BoardPanTilt,
+        Line(_OURS, BoardWire, requests_to(BoardKind.PANTILT), enquiry_to(BoardKind.PANTILT)),
+    ),
     "ptu": Dialect(
         PanTiltSettings,
         PtuPanTilt,
-        Line(LineFormat(9_600), ptu.PtuWire, ptu.requests),
+        Line(LineFormat(9_600), ptu.PtuWire, ptu.requests, _MOVES),
         ("A reset turns both axes of a PTU to their stops, for up to half a minute.",),
     ),
     "fixed": Dialect(FixedHeadSettings, FixedPanTilt, line=None),
     "dynamixel": Dialect(
         DynamixelSettings,
         DynamixelPanTilt,
-        Line(LineFormat(57_600), dynamixel.DynamixelWire, dynamixel.requests),
+        Line(LineFormat(57_600), dynamixel.DynamixelWire, dynamixel.requests, dynamixel.ENQUIRY),
         ("A Dynamixel head goes limp when it is stopped, and a heavy one may drop.",),
     ),
 }
 RANGEFINDERS: Mapping[str, Dialect[RangefinderSettings, Rangefinder]] = {
     "board": Dialect(
-        BoardRangefinderSettings, BoardRangefinder, Line(_OURS, BoardWire, requests_to(BoardKind.RANGEFINDER))
+        BoardRangefinderSettings,
+        BoardRangefinder,
+        Line(_OURS, BoardWire, requests_to(BoardKind.RANGEFINDER), enquiry_to(BoardKind.RANGEFINDER)),
     ),
     "dimetix": Dialect(
         DimetixSettings,
         DimetixRangefinder,
-        Line(LineFormat(19_200, 7, "E", 1), dimetix.DimetixWire, dimetix.requests),
+        Line(LineFormat(19_200, 7, "E", 1), dimetix.DimetixWire, dimetix.requests, dimetix.ENQUIRY),
     ),
     "disto": Dialect(
         RangefinderSettings,
         DimetixRangefinder,
-        Line(LineFormat(9_600, 7, "E", 1), dimetix.DimetixWire, disto.requests),
+        Line(LineFormat(9_600, 7, "E", 1), dimetix.DimetixWire, disto.requests, disto.ENQUIRY),
     ),
-    "lw20": Dialect(RangefinderSettings, Lw20Rangefinder, Line(LineFormat(115_200), lw20.Lw20Wire, lw20.requests)),
-    "lwnx": Dialect(RangefinderSettings, LwnxRangefinder, Line(LineFormat(115_200), lwnx.LwnxWire, lwnx.requests)),
-    "scip": Dialect(RangefinderSettings, ScipRangefinder, Line(LineFormat(115_200), scip.ScipWire, scip.requests)),
+    "lw20": Dialect(
+        RangefinderSettings, Lw20Rangefinder, Line(LineFormat(115_200), lw20.Lw20Wire, lw20.requests, lw20.ENQUIRY)
+    ),
+    "lwnx": Dialect(
+        RangefinderSettings, LwnxRangefinder, Line(LineFormat(115_200), lwnx.LwnxWire, lwnx.requests, lwnx.ENQUIRY)
+    ),
+    "scip": Dialect(
+        RangefinderSettings, ScipRangefinder, Line(LineFormat(115_200), scip.ScipWire, scip.requests, scip.ENQUIRY)
+    ),
     **{
         model.value: Dialect(
             TfminiSettings,
             TfminiRangefinder,
-            Line(LineFormat(115_200), tfmini.TfminiWire, tfmini.requests),
+            Line(LineFormat(115_200), tfmini.TfminiWire, tfmini.requests, tfmini.enquiry_to(model)),
             ("A TFmini cannot switch its light off.",),
         )
         for model in tfmini.Model

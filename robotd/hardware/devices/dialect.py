@@ -7,6 +7,7 @@ from typing import Any, Generic, TypeVar
 from robotd.hardware.devices.settings import PortSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.line_format import LineFormat
+from robotd.hardware.wire.enquiry import Enquiry, NotAsked
 from robotd.hardware.wire.word import Words
 
 S_co = TypeVar("S_co", bound=PortSettings, covariant=True)
@@ -23,6 +24,8 @@ class Line:
     """Reads what comes from it."""
     words: Words
     """Say what is written to it."""
+    enquiry: Enquiry | NotAsked
+    """How it is found where nobody said what is plugged in."""
 
 
 @dataclass(frozen=True, slots=True)

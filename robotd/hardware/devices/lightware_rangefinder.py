@@ -19,6 +19,7 @@ from robotd.hardware.devices.settings import RangefinderSettings
 from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard, Wire
+from robotd.hardware.wire.lw20 import PRODUCTS
 
 _REACH_M = 100.0
 M = TypeVar("M")
@@ -28,7 +29,6 @@ TRIES = 3
 _LOST_SIGNAL_M = frozenset({130.0, 160.0, 230.0, 250.0})
 """All beyond its reach: not named here, a lost signal would count as a broken device instead of a weak reading."""
 _IDLE_POLL_S = 1.0
-_KNOWN = ("LW20", "SF20")
 
 
 class LightwareRangefinder(VendorDevice[M]):
@@ -69,8 +69,8 @@ class LightwareRangefinder(VendorDevice[M]):
 
     async def _check_product(self, dialogue: Dialogue[M]) -> None:
         product = await self._product(dialogue)
-        if not product.startswith(_KNOWN):
-            raise RemoteProtocolError(f"{self.name}: expected one of {', '.join(_KNOWN)}, got {product!r}")
+        if not product.startswith(PRODUCTS):
+            raise RemoteProtocolError(f"{self.name}: expected one of {', '.join(PRODUCTS)}, got {product!r}")
 
     def _shot(self, time_ns: int, distance_m: float | None, strength: int | None) -> Shot:
         if distance_m is None:

@@ -30,6 +30,7 @@ from robotd.hardware.wire.tfmini import (
     RATE_0,
     TRIGGER,
     VERSION,
+    VERSION_NUMBER,
     Data,
     Message,
     Model,
@@ -51,7 +52,6 @@ _STREAMS_S = 0.3
 _STALE = 2
 """Frames of a stream that may have been measured before they were asked for: the one under way, and one in a buffer."""
 _IDLE_POLL_S = 1.0
-_VERSION_NUMBER = 0x01
 _STATUS = {
     TfminiVerdict.WEAK: ReadingStatus.WEAK,
     TfminiVerdict.SATURATED: ReadingStatus.SATURATED,
@@ -173,4 +173,4 @@ def _is_data(message: Message) -> bool:
 
 
 def _is_version(message: Message) -> bool:
-    return isinstance(message, TfminiReply) and message.number == _VERSION_NUMBER
+    return isinstance(message, TfminiReply) and message.number == VERSION_NUMBER

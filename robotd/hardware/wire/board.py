@@ -4,15 +4,17 @@ Normative: ``firmware_proto/PROTOCOL.md``.
 """
 
 import struct
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from firmware_proto.common import BoardKind, HelloReply, Ping, Stop
-from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START, answers_for, requests_for
+from firmware_proto.common import PROTOCOL_MAJOR, PROTOCOL_MINOR, BoardKind, Hello, HelloReply, Ping, Stop
+from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START, answers_for, dictionary_for, requests_for
 from firmware_proto.drive_messages import SetVelocity
 from firmware_proto.framing import Deframer, RawFrame, encode_frame
 from firmware_proto.schema import Message, payload_size
 from robotd.core.errors import LocalProtocolError
+from robotd.hardware.wire.enquiry import Enquiry
 from robotd.hardware.wire.word import Repeat, Word, Words, whole
 
 EMERGENCY_SEQ = 0xFFFF
@@ -21,6 +23,8 @@ EMERGENCY_SEQ = 0xFFFF
 STOP_BYTES = encode_frame(RawFrame(Stop.TYPE, EMERGENCY_SEQ, b""))
 
 _SEQ_SPAN = 1 << 16
+_BOOTS_TRIES = 10
+"""Opening the port resets some boards, and their boot loader must end first: about three seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +114,20 @@ class BoardWire:
         if gap < _SEQ_SPAN // 2:  # otherwise the counter went back: a repeat or a restart, nothing is lost
             self._gaps += gap
         self._expected[frame.type] = frame.seq + 1
+
+
+def enquiry_to(kind: BoardKind) -> Enquiry:
+    """Return how a board of this kind is found: by a HELLO, which leaves it disarmed; its dictionary tells the kind."""
+    hello = Hello(PROTOCOL_MAJOR, PROTOCOL_MINOR, 0).to_payload()
+    ours = zlib.crc32(dictionary_for(kind))
+
+    def told(received: Received) -> str | None:
+        message = received.message
+        if not isinstance(message, HelloReply) or message.dictionary_crc32 != ours:
+            return None
+        return f"our {kind.name.lower()} board, protocol {message.major}.{message.minor}"
+
+    return Enquiry(encode_frame(RawFrame(Hello.TYPE, 0, hello)), lambda: BoardWire(kind), told, _BOOTS_TRIES)
 
 
 def requests_to(kind: BoardKind) -> Words:

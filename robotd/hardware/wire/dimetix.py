@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from robotd.hardware.wire.enquiry import Enquiry
 from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, typed
 
@@ -117,6 +118,14 @@ def parsed(text: str) -> Message | None:
     if found := _OTHER.fullmatch(text):
         return Value(int(found[1]), found[2], int(found[3]))
     return None
+
+
+ENQUIRY = Enquiry(
+    command(0, "t"),
+    DimetixWire,
+    lambda message: f"at {message.number / 10:g} degrees Celsius" if isinstance(message, Value) else None,
+)
+"""How hot it is: the light stays off. One whose switch is not at 0 does not hear it."""
 
 
 def requests(data: bytes) -> list[Word]:

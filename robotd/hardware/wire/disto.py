@@ -12,7 +12,8 @@ believed.
 
 import re
 
-from robotd.hardware.wire.dimetix import Distance, ErrorCode, Failed, Message, Ready, Value
+from robotd.hardware.wire.dimetix import DimetixWire, Distance, ErrorCode, Failed, Message, Ready, Value
+from robotd.hardware.wire.enquiry import Enquiry
 from robotd.hardware.wire.word import Word, typed
 
 _DISTANCE_WORD = 31
@@ -42,6 +43,13 @@ def parsed(text: str) -> Message | None:
     if about[-1] not in _TENTH_MM_IN:
         return Failed(_ONLY_DEVICE, ErrorCode.SYNTAX)
     return Distance(_ONLY_DEVICE, round(int(number) * _TENTH_MM_IN[about[-1]]))
+
+
+ENQUIRY = Enquiry(
+    command("t"),
+    lambda: DimetixWire(parsed),
+    lambda message: "it tells how hot it is" if isinstance(message, Value) else None,
+)
 
 
 def requests(data: bytes) -> list[Word]:

@@ -9,6 +9,7 @@ import struct
 from dataclasses import dataclass
 from typing import Final
 
+from robotd.hardware.wire.enquiry import Enquiry
 from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Repeat, Word, whole
 
@@ -25,6 +26,7 @@ _ASKED = (MOVING, PRESENT_POSITION, TORQUE_ENABLE)
 """What is read again and again until the answer is right: how often is a matter of the machine's pace."""
 BUS_WATCHDOG_MS = 20
 """Unit of the bus watchdog."""
+_FIRST_SERVO = 1
 ALERT = 0x80
 """Bit of the error byte: read the hardware error."""
 
@@ -168,6 +170,16 @@ def _message(servo: int, body: bytes) -> Message:
     if body[0] == STATUS and len(body) > 1:
         return ServoStatus(servo, body[1], body[2:])
     return Instruction(servo, body[0], body[1:])
+
+
+ENQUIRY = Enquiry(
+    packet(_FIRST_SERVO, PING),
+    DynamixelWire,
+    lambda message: (
+        f"servo {message.servo}" if isinstance(message, ServoStatus) and message.servo == _FIRST_SERVO else None
+    ),
+)
+"""Whether the servo is there that pans, unless the configuration says otherwise; it holds or rests as before."""
 
 
 def requests(data: bytes) -> list[Word]:

@@ -9,6 +9,7 @@ something that nobody needs goes first (maker's guide to the serial line).
 import re
 from dataclasses import dataclass
 
+from robotd.hardware.wire.enquiry import Enquiry
 from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, typed
 
@@ -44,6 +45,8 @@ PRODUCT = command(_NAME)
 FIRST_RETURN_RAW = command("?LDF,1")
 """Index 0 is a median of the last few, 2 the closest and 3 the furthest of them."""
 LASER_OFF, LASER_ON = command("#LF,0"), command("#LF,1")
+PRODUCTS = ("LW20", "SF20")
+"""How the names of those begin that are known."""
 FASTEST = command("#LM,1")
 """388 measurements a second."""
 
@@ -74,6 +77,14 @@ class Lw20Wire(Receiving):
         self._begun.clear()
         self._counters["replies"] += 1
         return [Lw20Answer(found[1], None if found[2] is None else int(found[2]), found[3])]
+
+
+ENQUIRY = Enquiry(
+    WAKE + PRODUCT,
+    Lw20Wire,
+    lambda answer: answer.text if answer.name == "p" and answer.text.startswith(PRODUCTS) else None,
+)
+"""Its name; what comes first after power-up, also chooses that it speaks on this line."""
 
 
 def requests(data: bytes) -> list[Word]:

@@ -9,6 +9,8 @@ import binascii
 import struct
 from dataclasses import dataclass
 
+from robotd.hardware.wire.enquiry import Enquiry
+from robotd.hardware.wire.lw20 import PRODUCTS
 from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, whole
 
@@ -109,6 +111,14 @@ class LwnxWire(Receiving):
 
     def _crc(self, size: int) -> int:
         return int.from_bytes(self._begun[size - _CRC_BYTES : size], "little")
+
+
+ENQUIRY = Enquiry(
+    read(NAME),
+    LwnxWire,
+    lambda packet: packet.text if packet.number == NAME and packet.text.startswith(PRODUCTS) else None,
+)
+"""Its name."""
 
 
 def requests(data: bytes) -> list[Word]:

@@ -13,6 +13,7 @@ each other; the codes of the UST are taken to be those of the UTM; and ``1Dh`` i
 import enum
 from dataclasses import dataclass
 
+from robotd.hardware.wire.enquiry import Enquiry
 from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, typed
 
@@ -194,6 +195,15 @@ def _checked(line: str) -> str | None:
     if sum_of(text) == said:
         return text
     return text[:-1] if text.endswith(";") and sum_of(text[:-1]) == said else None
+
+
+def _model(reply: ScipReply) -> str | None:
+    found = Parameters.of(reply) if reply.command == "PP" else None
+    return None if found is None else found.model or "a scanner"
+
+
+ENQUIRY = Enquiry(USE_SCIP2 + PARAMETERS, ScipWire, _model)
+"""What it is; the light stays off."""
 
 
 def requests(data: bytes) -> list[Word]:

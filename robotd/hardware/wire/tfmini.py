@@ -14,6 +14,7 @@ import enum
 import struct
 from dataclasses import dataclass
 
+from robotd.hardware.wire.enquiry import Enquiry
 from robotd.hardware.wire.receiving import Receiving
 from robotd.hardware.wire.word import Word, whole
 
@@ -86,7 +87,8 @@ def command(number: int, payload: bytes = b"") -> bytes:
     return head + bytes((sum(head) & 0xFF,))
 
 
-VERSION = command(0x01)
+VERSION_NUMBER = 0x01
+VERSION = command(VERSION_NUMBER)
 TRIGGER = command(0x04)
 RATE_0 = command(0x03, b"\0\0")
 OUTPUT_OFF, OUTPUT_ON = command(0x07, b"\0"), command(0x07, b"\1")
@@ -142,6 +144,22 @@ class TfminiWire(Receiving):
         self._counters["measurements"] += 1
         distance, strength, _ = _DATA.unpack(frame)
         return Data(distance, strength)
+
+
+def _version(message: Message) -> str | None:
+    # An empty one is our own question, from a line that echoes.
+    if not isinstance(message, TfminiReply) or message.number != VERSION_NUMBER or not message.payload:
+        return None
+    return f"version {'.'.join(map(str, reversed(message.payload)))}"
+
+
+def _streams(message: Message) -> str | None:
+    return "it streams readings" if isinstance(message, Data) else None
+
+
+def enquiry_to(model: Model) -> Enquiry:
+    """Return how one is found: by its version, for which model it is none of them says; the first hears nothing."""
+    return Enquiry(b"", TfminiWire, _streams) if model is Model.TFMINI else Enquiry(VERSION, TfminiWire, _version)
 
 
 def requests(data: bytes) -> list[Word]:

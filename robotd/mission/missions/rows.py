@@ -78,7 +78,7 @@ async def _continue_map(_: Host, context: MissionContext, mission: MapContinue, 
         silence_s = context.settings.driving.silence_s
         now = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
         context.whereabouts.placed(mission.start.pose, now.in_odom, is_found=True)
-    _, here = await here_on(context, "map continue")
+    _time_ns, here = await here_on(context, "map continue")
     points_m = ((here.x_m, here.y_m), *mission.stops_m)
     return str(await run_mapping(context, place, points_m, mission.legs, report, goes_on=True))
 

@@ -170,15 +170,17 @@ def calibrate(hour: Hour) -> None:
     with hour.beside("robotctl", "sim", "laboratory", "--links", links, "--truth", hour.directory / "truth.jsonl"):
         with hour.step("a simulated robot is plugged in"):
             hour.wait_for(links / "rangefinder")
-        with hour.step("robotctl config init, with wrong constants"):
-            devices = [word for name in ("drive", "pantilt", "rangefinder") for word in (f"--{name}", links / name)]
+        with hour.step("robotctl config init --probe, with wrong constants"):
+            ports = [links / name for name in ("drive", "pantilt", "rangefinder")]
             places = ("server.runtime_dir=run", "maps.dir=maps", "recording.dir=recordings")
             # A simulated board that gets no processor is slow, and not gone.
             slow = [f"{name}.silence_s=10.0" for name in ("drive", "pantilt", "rangefinder")]
             # And a client that gets none keeps its lease all the same: nobody stands beside this robot.
             slow.append("server.lease_s=5.0")
             settings = [*places, *slow, *(f"drive.{key}={value}" for key, value in WRONG.items())]
-            hour.run("config", "init", "robotd.toml", *devices, *(w for one in settings for w in ("--set", one)))
+            hour.run(
+                "config", "init", "robotd.toml", "--probe", *ports, *(w for one in settings for w in ("--set", one))
+            )
             hour.run("config", "check", "robotd.toml")
         for what in ("odometry", "heading", "head"):
             with hour.step(f"robotctl calibrate {what}"), hour.daemon():

@@ -12,6 +12,7 @@ from robotd.children.landlock import version
 from robotd.cli.checkup import Check, checks
 from robotd.cli.main import main
 from robotd.config import Config, load
+from robotd.hardware.devices.finding import Recognized
 
 
 @pytest.fixture
@@ -120,3 +121,41 @@ def test_without_a_file_the_defaults_are_shown(
     monkeypatch.setenv("ROBOTD_CONFIG", str(tmp_path / "none.toml"))
     assert main(["config", "show"]) == 0
     assert "counts_per_m = 27300.0" in capsys.readouterr().out
+
+
+def test_those_that_answer_are_written_down_and_those_that_do_not_are_remarked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    answers: dict[str, Recognized | str] = {
+        "/dev/a": Recognized("rangefinder", ("tfmini-s", "tf-luna"), "version 2.0.8"),
+        "/dev/b": "busy: held by robotd",
+        "/dev/c": Recognized("drive", ("board",), "our drive board"),
+        "/dev/d": Recognized("drive", ("board",), "our drive board"),
+    }
+    asked: list[str] = []
+
+    def who_answers(ports: list[str]) -> dict[str, Recognized | str]:
+        asked.extend(ports)
+        return {port: answers[port] for port in ports}
+
+    monkeypatch.setattr("robotd.cli.verbs.configuration.who_answers", who_answers)
+    file = tmp_path / "robotd.toml"
+    named = ["--pantilt", "/dev/e,ptu"]
+    assert main(["config", "init", str(file), "--probe", *answers, "/dev/e", *named]) == 0
+    assert asked == [*answers]  # what is named is not asked
+    config = load(file)
+    assert (config.rangefinder.port, config.rangefinder.dialect) == ("/dev/a", "tfmini-s")
+    assert (config.drive.port, config.pantilt.dialect) == ("/dev/c", "ptu")
+    assert "# It answers as tfmini-s, tf-luna all do: say which it is." in file.read_text()
+    said = capsys.readouterr().err
+    assert "/dev/b: busy: held by robotd" in said
+    assert "/dev/d: drive, board: our drive board; left out, for there is one at /dev/c" in said
+    assert main(["config", "init", str(file), "--probe", "/dev/a"]) == 0
+    text = file.read_text()
+    assert "# No drive answered (nobody asks for rwi-ascii or rflex: what is written to such a device may move" in text
+    assert "\n[drive]" not in text
+    answers["/dev/f"] = Recognized("rangefinder", ("scip",), "URG-04LX")
+    assert main(["config", "init", str(file), "--probe", "/dev/f"]) == 0
+    assert load(file).pantilt.dialect == "fixed"
+    assert main(["config", "init", str(file), "--probe", "/dev/b"]) == 1
+    assert "no device answered" in capsys.readouterr().err

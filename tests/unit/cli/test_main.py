@@ -271,3 +271,15 @@ def test_colour_stays_out_of_pipes_and_away_if_unwanted(
     monkeypatch.setenv("NO_COLOR", "1")
     main(["status"])
     assert "\x1b[3" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("words", [("map", "list"), ("localize",)])
+def test_where_no_daemon_is_nobody_waits_for_what_it_takes_to_talk_to_one(words: tuple[str, ...]) -> None:
+    script = (
+        "import sys; from robotd.cli.main import main; code = main(sys.argv[1:]);"
+        " print(code, *{'zmq', 'rich.progress', 'robotd.grid.kernels', 'robotd.maps.store'} & {*sys.modules})"
+    )
+    asked = [sys.executable, "-c", script, *words, "--runtime-dir", "/nowhere"]
+    done = subprocess.run(asked, capture_output=True, text=True, check=True)
+    assert done.stdout == "1\n"
+    assert "no daemon in /nowhere (there is no socket): start one" in done.stderr

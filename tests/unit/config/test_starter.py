@@ -36,7 +36,7 @@ def test_it_is_good_and_names_every_dialect_and_option(device: str, dialect: str
 
 
 def test_the_comments_are_the_defaults() -> None:
-    text = starter_text("# ours", {})
+    text = starter_text("# ours", {device: {} for device in DIALECTS})
     uncommented = "\n".join(line.removeprefix("# ") if " = " in line else line for line in text.splitlines())
     assert loads(uncommented) == Config()
 

@@ -29,7 +29,7 @@ from tests.support.taps import NoTap
 from tests.unit.hardware.devices.conftest import nowhere
 
 NAMES = [(device, name) for device, dialects in catalogue.DIALECTS.items() for name in dialects]
-SHARED = {"robotd.hardware.wire.receiving", "robotd.hardware.wire.word"}
+SHARED = {"robotd.hardware.wire.enquiry", "robotd.hardware.wire.receiving", "robotd.hardware.wire.word"}
 WIRING = Wiring(nowhere, NoTap(), random.Random(0))
 
 
