@@ -20,7 +20,7 @@ from robotd.head.jobs import (
     BeginMap,
     Choose,
     ChooseBearings,
-    ChooseLeg,
+    ChooseSafeWay,
     Chosen,
     FilesMade,
     Forget,
@@ -29,7 +29,6 @@ from robotd.head.jobs import (
     HeldMap,
     Insert,
     Inserted,
-    LegChosen,
     MakeFiles,
     MapRef,
     Narrow,
@@ -41,6 +40,7 @@ from robotd.head.jobs import (
     Ranks,
     RanksShown,
     ReadMap,
+    SafeWayChosen,
     ShowMap,
     ShowRanks,
     StopLaid,
@@ -52,9 +52,10 @@ from robotd.maps.grid_files import content_of, map_of
 from robotd.maps.packed_content import PackedContent
 from robotd.maps.stops_file import decode_packed_stops
 from robotd.planning.path import Path, plan
-from robotd.planning.traversable import free_cells, inflated
+from robotd.planning.traversable import free_cells
 from robotd.recording.results import result_of
-from robotd.sensing.safe_legs import Room, best_leg
+from robotd.sensing.common_ground import Room
+from robotd.sensing.safe_ways import best_way
 from robotd.sensing.telling_apart import Expected, telling_bearings
 from robotd.slam.glance import glanced
 
@@ -176,16 +177,12 @@ def _choose_bearings(desk: Desk, job: ChooseBearings) -> tuple[int, ...]:
     return telling_bearings(expected, beliefs, bearings_rad, job.taken_rad, job.count)
 
 
-def _choose_leg(desk: Desk, job: ChooseLeg) -> LegChosen:
+def _choose_safe_way(desk: Desk, job: ChooseSafeWay) -> SafeWayChosen:
     ready, held, planning = desk.ready(job.map), desk.map(job.map), desk.settings.planning
     # As the planner sees it: what was hit last is an obstacle whatever the cell's value.
     obstacles = ~free_cells(held.grid, planning.gap_cells) | held.obstacles()
-    cell_m = held.grid.spec.resolution_m
-    robot_cells, clearance_cells = planning.robot_radius_m / cell_m, planning.clearance_m / cell_m
-    # Two rooms: a robot that already stands nearer to a wall than it would drive must be allowed to leave.
-    tight = ~inflated(obstacles, robot_cells, 0.0)
-    room = Room(held.grid.spec, tight, ~inflated(obstacles, robot_cells, clearance_cells))
-    return LegChosen(best_leg(room, ready.meanings[0].walls, job.rivals, job.cutoff_m, job.speed_mps))
+    room = Room(held.grid.spec, obstacles, planning.robot_radius_m, planning.clearance_m)
+    return SafeWayChosen(best_way(room, ready.meanings[0].walls, job.rivals, job.cutoff_m, job.speed_mps))
 
 
 def _forget(desk: Desk, job: Forget) -> Done:
@@ -207,7 +204,7 @@ _TABLE: dict[type[Job[Any]], Callable[[Desk, Any], Any]] = {
     Narrow: _narrow,
     ShowRanks: _show_ranks,
     ChooseBearings: _choose_bearings,
-    ChooseLeg: _choose_leg,
+    ChooseSafeWay: _choose_safe_way,
     Plan: _plan,
     PreviewWay: _plan,
     Choose: _choose,

@@ -26,7 +26,7 @@ from robotd.head.job import Done, Job, Made
 from robotd.maps.packed_content import PackedContent
 from robotd.maps.version_files import STOPS
 from robotd.recording.entries import ResultEntry
-from robotd.sensing.rivals import Leg, Rival
+from robotd.sensing.rivals import Rival, SafeWay
 
 
 class MapRef(msgspec.Struct, frozen=True):
@@ -361,17 +361,17 @@ class ChooseBearings(Job[tuple[int, ...]], frozen=True):
     cutoff_m: float
 
 
-class LegChosen(msgspec.Struct, frozen=True):
-    """A leg, or none."""
+class SafeWayChosen(msgspec.Struct, frozen=True):
+    """A way, or none."""
 
-    leg: Leg | None
+    way: SafeWay | None
     """None if none is free wherever the robot may be."""
 
 
-class ChooseLeg(Job[LegChosen], frozen=True):
-    """Choose the leg at whose end rivals are told apart, and that is free under each of them."""
+class ChooseSafeWay(Job[SafeWayChosen], frozen=True):
+    """Choose the way at whose end rivals are told apart, and that is free under each of them."""
 
-    name, answer, is_noted = "choose leg", LegChosen, True
+    name, answer, is_noted = "choose safe way", SafeWayChosen, True
     map: MapRef
     rivals: tuple[Rival, ...]
     cutoff_m: float
@@ -390,7 +390,7 @@ JOBS: dict[str, type[Job[Any]]] = {
     for kind in (
         *(BeginMap, TakeMap, ReadMap, ShowMap, MakeFiles, Insert, PlaceStop, Glance),
         *(Prepare, Narrow, TakeReadings, ShowRanks),
-        *(Plan, PreviewWay, Choose, ChooseBearings, ChooseLeg, Forget),
+        *(Plan, PreviewWay, Choose, ChooseBearings, ChooseSafeWay, Forget),
     )
 }
 """Every job there is, by its name."""

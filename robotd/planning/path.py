@@ -123,7 +123,7 @@ def _planned(grid: OccupancyGrid, terrain: Terrain, start: Pose2, goal_m: Point)
     exit_cell = terrain.way_out(here, field)
     if exit_cell is None:
         return Unreachable(_hindrance(grid, terrain, there), _nearest_reachable_m(terrain, spec, here, goal_m))
-    cells = _descent(field, exit_cell)
+    cells = descent(field, exit_cell)
     way = [centre_of(cell) for cell in cells] + [position(spec, goal_m)]
     points_m = [spec.centre_of(*cell) for cell in cells] + [goal_m]
     # Where the robot does not fit, the leg out of there was checked by itself, and the string begins at its end.
@@ -134,7 +134,7 @@ def _planned(grid: OccupancyGrid, terrain: Terrain, start: Pose2, goal_m: Point)
     return Path((start.x_m, start.y_m), tuple(points_m[corner] for corner in onward))
 
 
-def _descent(field: NDArray[np.float64], start: Cell) -> list[Cell]:
+def descent(field: NDArray[np.float64], start: Cell) -> list[Cell]:
     """Return the cells of a shortest way, both ends included."""
     way, (rows, cols) = [start], field.shape
     while field[way[-1]] > 0.0:

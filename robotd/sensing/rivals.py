@@ -1,4 +1,4 @@
-"""Places where the robot may be, and a leg from there: data, as the head is asked and answers."""
+"""Places where the robot may be, and a way from there: data, as the head is asked and answers."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ class Rival:
 
     pose: Pose2
     spots_m: tuple[tuple[float, float], ...]
-    """All over the place, map frame: of one that reaches far, a leg must be free from everywhere in it."""
+    """All over the place, map frame: of one that reaches far, a way must be free from everywhere in it."""
 
     @classmethod
     def of(cls, region: Region, spec: GridSpec) -> "Rival":
@@ -42,11 +42,13 @@ class Rival:
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
-    """A straight way from where the robot stands."""
+class SafeWay:
+    """Where to drive from where the robot stands, before the next look."""
 
-    x_m: float
-    """Its end, in the robot frame."""
-    y_m: float
+    corners_m: tuple[tuple[float, float], ...]
+    """Ends of its straight legs, in the robot frame."""
+    length_m: float
+    rest_m: float
+    """How far it is from the last of them to where rivals are told apart."""
     told_apart: float
-    """Share of the sweep at its end that differs, mean over pairs of rivals, each no more than is needed."""
+    """Share of a sweep there that differs, mean over pairs of rivals, each no more than is needed."""

@@ -3,15 +3,16 @@
 import enum
 import math
 import random
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.motion_error import MotionError
 from robotd.core.pose import IDENTITY, Pose2
 from robotd.head.job_table import perform
-from robotd.head.jobs import ChooseLeg
+from robotd.head.jobs import ChooseSafeWay
 from robotd.mission.whereabouts.carried import Carried, Sure
-from robotd.sensing.rivals import Leg, Rival
+from robotd.sensing.rivals import Rival
 from tests.studies.senses.ground import Ground
 from tests.studies.senses.looks import adaptive_look
 
@@ -88,13 +89,16 @@ class _Robot:
         estimate, _ = await adaptive_look(self.ground, self.truth, self.draw)
         return self.carried.weighed(estimate, None, self.in_odom, _SAME_M)
 
-    def drive(self, leg: Leg) -> None:
-        """Go a leg: 5 % too far or not far enough, and up to 3 degrees aside."""
-        way_m, turn_rad = math.hypot(leg.x_m, leg.y_m), math.atan2(leg.y_m, leg.x_m)
-        self.in_odom @= Pose2(leg.x_m, leg.y_m, turn_rad)
-        self.carried.moved(self.in_odom)
-        true_m, aside_rad = way_m * self.draw.uniform(0.95, 1.05), math.radians(self.draw.uniform(-3.0, 3.0))
-        self.truth = self.truth @ Pose2(0.0, 0.0, turn_rad + aside_rad) @ Pose2(true_m, 0.0, 0.0)
+    def drive(self, corners_m: Sequence[tuple[float, float]]) -> None:
+        """Go to corners, as they lie to where it stands: each leg 5 % too far or not, and up to 3 degrees aside."""
+        begin = self.in_odom
+        for corner_m in corners_m:
+            aim = self.in_odom.inverse().transform(*begin.transform(*corner_m))
+            way_m, turn_rad = math.hypot(*aim), math.atan2(aim[1], aim[0])
+            self.in_odom @= Pose2(aim[0], aim[1], turn_rad)
+            self.carried.moved(self.in_odom)
+            true_m, aside_rad = way_m * self.draw.uniform(0.95, 1.05), math.radians(self.draw.uniform(-3.0, 3.0))
+            self.truth = self.truth @ Pose2(0.0, 0.0, turn_rad + aside_rad) @ Pose2(true_m, 0.0, 0.0)
 
 
 async def resolve(ground: Ground, seed: int) -> Resolving:
@@ -105,11 +109,11 @@ async def resolve(ground: Ground, seed: int) -> Resolving:
     fewest = len(estimate.regions)
     while estimate.state is PoseState.AMBIGUOUS and in_vain < _IN_VAIN_MAX and not estimate.regions_left_out:
         rivals = tuple(Rival.of(region, ground.grid.spec) for region in estimate.regions)
-        leg = perform(ground.desk, ChooseLeg(ground.map, rivals, ground.cutoff_m, _SPEED_MPS)).leg
-        if leg is None:
+        way = perform(ground.desk, ChooseSafeWay(ground.map, rivals, ground.cutoff_m, _SPEED_MPS)).way
+        if way is None:
             break
-        robot.drive(leg)
-        estimate, stops, way_m = await robot.look(), stops + 1, way_m + math.hypot(leg.x_m, leg.y_m)
+        robot.drive(way.corners_m)
+        estimate, stops, way_m = await robot.look(), stops + 1, way_m + way.length_m
         in_vain = 0 if len(estimate.regions) < fewest else in_vain + 1
         fewest = min(fewest, len(estimate.regions))
     return Resolving(came(estimate, robot.truth), stops, way_m)

@@ -27,7 +27,7 @@ from robotd.head.jobs import (
     BeginMap,
     Choose,
     ChooseBearings,
-    ChooseLeg,
+    ChooseSafeWay,
     Forget,
     Glance,
     Insert,
@@ -77,7 +77,7 @@ def a_life() -> list[Job[Any]]:
         Choose(MapRef(1, 1), HERE, Tried(((0.2, 0.2),)), Rectangle(-1.0, -1.0, 1.0, 1.0), 3.0, Pace()),
         Prepare(4, MapRef(2), "a map", (0.1, 0.2, 0.3), Area(0.0, 0.0, 0.5)),
         ChooseBearings(MapRef(1, 1), ((HERE, 0.6), (IDENTITY, 0.4)), (0.1, 0.7, 1.3), (2.0,), 2, 6.0),
-        ChooseLeg(MapRef(1, 1), (Rival(HERE, ((0.1, -0.2),)), Rival(IDENTITY, ((0.0, 0.0), (0.1, 0.0)))), 6.0, 0.4),
+        ChooseSafeWay(MapRef(1, 1), (Rival(HERE, ((0.1, -0.2),)), Rival(IDENTITY, ((0.0, 0.0), (0.1, 0.0)))), 6.0, 0.4),
         *(TakeReadings(4, READINGS[:20]), Narrow(4, READINGS[20:], 5, True)),
         *(ShowRanks(4), Forget(4), ShowRanks(4)),
     ]
