@@ -27,7 +27,7 @@ class Notifier:
 
     @classmethod
     def of(cls, environment: Mapping[str, str] = os.environ) -> "Notifier":
-        """Return the notifier of this process."""
+        """Return the notifier of this process, by ``NOTIFY_SOCKET``; one that says nothing where that is not set."""
         return cls(environment.get("NOTIFY_SOCKET"))
 
     def ready(self) -> None:
@@ -44,7 +44,7 @@ class Notifier:
         self.send("STOPPING=1")
 
     def feed(self) -> None:
-        """Feed the watchdog."""
+        """Say that all is well, within the time that :func:`watchdog_s` returns."""
         self.send("WATCHDOG=1")
 
     def send(self, state: str) -> None:

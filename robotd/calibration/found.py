@@ -43,7 +43,7 @@ class Seen:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """One constant."""
+    """One constant of the robot as it was found: which key of the configuration, how much, and how sure."""
 
     section: str
     """Of the configuration: ``drive``."""
@@ -67,7 +67,7 @@ class Residuals:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """What came of it."""
+    """The constants that one procedure found, and what people should know of how it went."""
 
     found: tuple[Found, ...]
     residuals: tuple[Residuals, ...]

@@ -17,7 +17,7 @@ class InProcess:
     """A child that runs on the loop of its parent."""
 
     def __init__(self, main: Main, lanes: int = 1) -> None:
-        """Start it."""
+        """Start ``main`` as a task of the running loop, with channels of memory in place of sockets."""
         (self.life, its_life), *pairs = (memory_channel() for _ in range(1 + lanes))
         self.lanes = [near for near, _ in pairs]
         self._ends = (self.life, *self.lanes)
@@ -37,7 +37,7 @@ class InProcess:
         return "it ended" if error is None else f"it ended with {error!r}"
 
     def kill(self) -> None:
-        """Cancel it."""
+        """End it at once, as a signal does a process: by cancelling its task."""
         self._task.cancel()
 
     def close(self) -> None:

@@ -19,7 +19,7 @@ from robotd.core.errors import ChildError
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """What to start."""
+    """A program to start as a child, and what it is given and allowed."""
 
     runs: tuple[str, ...]
     """What Python shall run, ``("-m", "robotd.front")``; it begins with :func:`robotd.children.inside.adopted`."""
@@ -43,7 +43,7 @@ class Running(Protocol):
 
     @property
     def lanes(self) -> Sequence[Channel]:
-        """What it is talked to by."""
+        """The channels for its work, in the order in which it knows them."""
 
     def share(self) -> Share:
         """Return what it has had of the processors."""
@@ -59,7 +59,7 @@ class Running(Protocol):
 
 
 class Process:
-    """A child that is a process."""
+    """A child that is a process of the operating system; reaped on the loop, whatever ends it."""
 
     def __init__(self, process: "subprocess.Popen[bytes]", ends: Sequence[socket.socket]) -> None:
         """Take over a process that was started, and our ends of its sockets."""
@@ -73,7 +73,7 @@ class Process:
 
     @property
     def pid(self) -> int:
-        """Its number."""
+        """Its number with the operating system; another process may have it once this one was reaped."""
         return self._process.pid
 
     def share(self) -> Share:

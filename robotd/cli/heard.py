@@ -9,7 +9,7 @@ from robotd.core.clock import NS_PER_S
 
 @dataclass(slots=True)
 class HeardRecording:
-    """What of a recording is exported."""
+    """What of a recording is exported: events in the order in which clients heard them."""
 
     events: list[Event] = field(default_factory=list)
     wall_offset_ns: int = 0

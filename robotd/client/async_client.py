@@ -66,7 +66,7 @@ class AsyncSubscription:
             yield event
 
     def close(self) -> None:
-        """Unsubscribe."""
+        """Unsubscribe and close the socket; what waits unread is dropped."""
         self._socket.close(0)
 
     def __enter__(self) -> Self:

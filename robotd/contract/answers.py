@@ -80,7 +80,7 @@ class Renewed(msgspec.Struct, frozen=True):
 
 
 class MapList(msgspec.Struct, frozen=True):
-    """The stored maps."""
+    """Every stored version of every map, the oldest first, damaged ones among them."""
 
     maps: tuple[MapEntryInfo, ...]
 

@@ -16,7 +16,7 @@ class Sample(msgspec.Struct, frozen=True):
 
 
 class Buckets(msgspec.Struct, frozen=True):
-    """A distribution."""
+    """A distribution: how many observations fell below each bound, how many there were, and their sum."""
 
     name: str
     labels: dict[str, str]

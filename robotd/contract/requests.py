@@ -39,7 +39,7 @@ class Hello(Request[HelloResult], frozen=True):
 
 
 class GetStatus(Request[Status], frozen=True):
-    """Ask for the status."""
+    """Ask for the whole robot in one look, as the topic ``status`` tells it."""
 
     cmd, result, only_looks = "status", Status, True
 
@@ -120,7 +120,7 @@ class MapDiscard(Request[Done], frozen=True):
 
 
 class ListMaps(Request[MapList], frozen=True):
-    """List the stored maps."""
+    """List every stored version of every map; answered by a :class:`MapList`."""
 
     cmd, result, only_looks, deadline_s = "map_list", MapList, True, 30.0
 
@@ -170,7 +170,7 @@ class RecordStart(Request[RecordingFile], frozen=True):
 
 
 class RecordStop(Request[RecordingFile], frozen=True):
-    """Close the recording."""
+    """Close the recording; RecordingError, as ``failed``, says if it is incomplete."""
 
     cmd, result, deadline_s = "record_stop", RecordingFile, 30.0
 

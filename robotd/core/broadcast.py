@@ -18,7 +18,7 @@ class Subscription(Generic[T]):
         self._ready = asyncio.Event()
 
     def offer(self, item: T) -> None:
-        """Queue an item."""
+        """Queue an item, at the cost of the oldest where the queue is full; never waits."""
         self._items.append(item)
         self._ready.set()
 

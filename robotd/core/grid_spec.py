@@ -40,7 +40,7 @@ class GridSpec:
 
     @property
     def rows(self) -> int:
-        """Number of rows."""
+        """How many rows there are: cells along map y."""
         return self.shape[0]
 
     @property

@@ -26,7 +26,7 @@ class Spread:
 
 @dataclass(frozen=True, slots=True)
 class RelationErrors:
-    """Of all relations of a log."""
+    """How far a survey of a log is from the relations that were checked by hand, over all of them."""
 
     metres: Spread
     radians: Spread

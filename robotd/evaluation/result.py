@@ -29,7 +29,7 @@ class CaseKey:
 
 @dataclass(frozen=True, slots=True)
 class CaseResult:
-    """One case, answered."""
+    """One case, what was estimated for it, and how far off that is."""
 
     key: CaseKey
     verdict: CaseVerdict

@@ -13,7 +13,7 @@ _PACKED = {".js", ".css", ".html", ".svg", ".json", ".webmanifest", ".txt"}
 
 @dataclass(frozen=True, slots=True)
 class ConsoleFile:
-    """One file."""
+    """One file of the console as it is served: its bytes, plain and packed, and its type."""
 
     data: bytes
     packed: bytes | None

@@ -27,7 +27,7 @@ def unix_s() -> float:
 
 
 class House:
-    """One of each."""
+    """Everything that answering a request may need, one of each."""
 
     def __init__(self, settings: GatewaySettings, services: Services) -> None:
         """Read who may come in.

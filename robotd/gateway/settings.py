@@ -58,7 +58,7 @@ class ListenSettings:
 
 @dataclass(frozen=True, slots=True)
 class RobotSettings:
-    """Which robot."""
+    """Which robot this gateway serves: where its daemon listens, and what people call it."""
 
     name: str = "robot"
     """What pages call it."""

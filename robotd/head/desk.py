@@ -36,7 +36,7 @@ class Desk:
         self._begin = begin or self._localizer
 
     def hold(self, ref: MapRef, held: Held) -> Held:
-        """Hold a map."""
+        """Hold a map under its number and generation, and return it."""
         self._maps.setdefault(ref.number, {})[ref.generation] = held
         return held
 

@@ -362,7 +362,7 @@ class ChooseBearings(Job[tuple[int, ...]], frozen=True):
 
 
 class SafeWayChosen(msgspec.Struct, frozen=True):
-    """A way, or none."""
+    """The way to drive, in the robot frame; None where none is free under each rival."""
 
     way: SafeWay | None
     """None if none is free wherever the robot may be."""

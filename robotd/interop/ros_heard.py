@@ -64,7 +64,7 @@ class HeardBag:
     frames: Frames = field(default_factory=Frames)
 
     def take(self, kind: str, message: Any, logged_s: float) -> None:
-        """Take one message."""
+        """Take one message of the bag, in the order of their times."""
         if kind == SCAN:
             laser = HeardLaser.of(message, logged_s)
             self.damaged += laser is None

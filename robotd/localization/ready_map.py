@@ -104,8 +104,10 @@ class ReadyMap:
             return self
         ternary = self.ternary.updated(grid, changed)
         cores = self.cores.updated(ternary.occupied, changed)
+        # The pen is another, which is seen on all of the map at once: no window holds such a change.
         if cores.depth_cells != self.cores.depth_cells:
             return self._of(grid, cores, self.settings, self.meanings[0].likelihood.model)
+        # A wall cell that changed moves the core of the wall round it.
         changed = changed.grown(cores.reach_cells, ternary.spec.shape)
         levels = self.prepared.updated(ternary, self.settings.unknown, changed, cores.before_cores())
         searched = self.searched.updated(levels, levels.reach(changed))

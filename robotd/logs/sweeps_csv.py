@@ -45,7 +45,7 @@ class _Column:
 
 @dataclass(frozen=True, slots=True)
 class _Reading:
-    """One line."""
+    """One line of the table: a reading, and where the robot was."""
 
     line: int
     sweep: str

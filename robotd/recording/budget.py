@@ -50,5 +50,5 @@ class Budgets:
         return is_alone or self._used[source] <= self._limit_bytes
 
     def free(self) -> None:
-        """Give all of it back."""
+        """Give back what all sources have used: the entries are gone."""
         self._used.clear()

@@ -55,7 +55,7 @@ Said = Peer | Message | Ping
 
 
 def message(*frames: bytes) -> bytes:
-    """Return the bytes of a message."""
+    """Return the bytes of a message of these frames, the flags between them included."""
     last = len(frames) - 1
     return b"".join(_header(len(frame), _MORE if index < last else 0) + frame for index, frame in enumerate(frames))
 

@@ -20,7 +20,7 @@ class StopGraph:
     edges: tuple[Edge, ...] = ()
 
     def pose(self, stop: int) -> Pose2:
-        """Return where a stop is."""
+        """Return where a stop is, map frame; -1 is the last."""
         x_m, y_m, heading_rad = self.poses[stop].tolist()
         return Pose2(x_m, y_m, heading_rad)
 
@@ -36,11 +36,11 @@ class StopGraph:
         return StopGraph((*self.stops, stop), poses, (*self.edges, *edges))
 
     def with_edges(self, edges: Sequence[Edge]) -> "StopGraph":
-        """Return it with more edges."""
+        """Return it with more edges; no stop moves by that, see :func:`.solve.solve`."""
         return replace(self, edges=(*self.edges, *edges))
 
     def moved_to(self, poses: Poses) -> "StopGraph":
-        """Return it with its stops elsewhere."""
+        """Return it with its stops at other poses ``float64[n, 3]``, map frame; the edges stay."""
         return replace(self, poses=poses)
 
     def off_m(self, pose: Pose2, stops: Sequence[int] | NDArray[np.intp]) -> NDArray[np.float64]:

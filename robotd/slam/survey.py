@@ -44,7 +44,7 @@ class SurveySettings:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StopPlaced:
-    """A stop has a place."""
+    """A stop has a place: where it was put, and how the map liked that."""
 
     stop: int
     placed: Placed
@@ -59,7 +59,7 @@ class LoopHeld:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoopClosed:
-    """A loop is believed."""
+    """A loop is believed: it is an edge of the graph from here on."""
 
     loop: Loop
 

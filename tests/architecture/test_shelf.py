@@ -1,6 +1,8 @@
 """What no program reaches stands on a shelf that says so; all else in the package is there for a program to run."""
 
 import ast
+from collections import Counter
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -40,6 +42,16 @@ PROGRAMS = {
     "robotd.sim.firmware.firmware_build",
     "firmware_proto.generate",
 }
+FOR_TESTS = {
+    "conservative_poses",  # the definition that its kernel is held against, beside the proof of it
+    "hit_limit",  # what befalls a head, for tests to let it
+    "shut_down",
+}
+CALLED_BY_OTHERS = {
+    *("collect", "emit", "process_renderables"),  # by libraries
+    *("from_cells", "from_file", "from_store", "from_sweeps"),  # by notebooks
+    "whole_parser",  # by the pages of the site
+}
 FILES = {
     ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): file
     for room in ("robotd", "firmware_proto")
@@ -48,10 +60,16 @@ FILES = {
 
 
 @cache
+def parsed(module: str) -> ast.Module:
+    """Return the tree of a module."""
+    return ast.parse(FILES[module].read_text())
+
+
+@cache
 def imports(module: str) -> frozenset[str]:
     """Return the modules of ours that a module imports, wherever in it."""
     names: set[str] = set()
-    for node in ast.walk(ast.parse(FILES[module].read_text())):
+    for node in ast.walk(parsed(module)):
         if isinstance(node, ast.Import):
             names |= {item.name for item in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -73,7 +91,7 @@ def reached(programs: set[str]) -> set[str]:
 
 def holds_code(module: str) -> bool:
     """Whether there is more in a module than a docstring."""
-    return len(ast.parse(FILES[module].read_text()).body) > 1
+    return len(parsed(module).body) > 1
 
 
 def test_what_no_program_reaches_is_what_stands_on_the_shelf() -> None:
@@ -90,3 +108,37 @@ def test_the_programs_are_there_and_reach_the_house() -> None:
 
 def test_the_engine_does_not_lean_on_the_shelf() -> None:
     assert not {module for module in reached(PROGRAMS) if module.startswith(SHELF + ".")}
+
+
+def defined(module: str) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef]:
+    """Yield what a module defines, at whatever depth."""
+    for node in ast.walk(parsed(module)):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            yield node
+
+
+def used(node: ast.AST) -> Counter[str]:
+    """Return the names that are read somewhere, as a name, an attribute, a keyword, or a text that is one."""
+    names: Counter[str] = Counter()
+    for one in ast.walk(node):
+        match one:
+            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.keyword(arg=str(name)):
+                names[name] += 1
+            case ast.Constant(value=str(text)) if text.isidentifier():
+                names[text] += 1
+    return names
+
+
+def test_no_function_of_the_engine_is_there_for_tests_alone() -> None:
+    everywhere: Counter[str] = Counter()
+    for module in FILES:
+        everywhere.update(used(parsed(module)))
+    shelved = {f"{SHELF}.{name}" for name in ON_THE_SHELF} | TWINS_ELSEWHERE
+    unused = {
+        node.name
+        for module in reached(PROGRAMS) - shelved - {"robotd.children.in_process"}
+        for node in defined(module)
+        # Less its own body: what only calls itself is called by nobody.
+        if not node.name.startswith("__") and everywhere[node.name] == used(node)[node.name]
+    }
+    assert unused == FOR_TESTS | CALLED_BY_OTHERS

@@ -31,7 +31,8 @@ class Audit:
         self._deeds: deque[Deed] = deque(maxlen=_MOST)
 
     def note(self, time_unix_ns: int, who: str, whence: str, what: str, result: str) -> Deed:
-        """Note a deed."""
+        """Note what somebody did, in the log and among the last thousand; return it as one line."""
+        # Printable before it is kept: names and addresses come from outside, and are shown in a terminal.
         deed = Deed(time_unix_ns, printable(who), printable(whence), printable(what), printable(result))
         self._deeds.append(deed)
         log.info("%s from %s: %s: %s", deed.who, deed.whence, deed.what, deed.result)

@@ -42,10 +42,14 @@ def check_origin(method: str, headers: Mapping[str, str], scheme: str, *, is_soc
     """
     if method in _SAFE and not is_socket:
         return
+    # What the browser itself says first: no page can set it; the origin decides where a browser is too old to
+    # say it.
     site = headers.get("Sec-Fetch-Site")
     if site is not None and site != "same-origin":
         raise ServerError("wrong_origin", f"a page of another site made this request ({site})")
     origin, host = headers.get("Origin"), headers.get("Host")
+    # Every browser sends one with what changes something; who is no browser brings a token and comes another
+    # way.
     if origin is None:
         raise ServerError("wrong_origin", "a request that changes something says its Origin, or brings a bearer token")
     found = urlsplit(origin)

@@ -28,6 +28,7 @@ class Role(enum.StrEnum):
 
 def role_for(command: type[Request[Any]]) -> Role:
     """Return who may send a command: looking is for all who signed in, and a stop is asked of no role at all."""
+    # By what the contract says of each command: one that is new has its role without a list to keep.
     if command.only_looks:
         return Role.VIEWER
     return Role.ADMIN if command.cmd in _OF_ADMINS else Role.OPERATOR

@@ -53,6 +53,7 @@ class Sessions:
         session = self._by_hash.get(hashed(secret))
         if session is None or not self.stands(session, now_unix_s):
             return None
+        # The later one: a clock that was set back must not end the sessions of all who look on.
         session.seen_unix_s = max(session.seen_unix_s, now_unix_s)
         return session
 
@@ -69,7 +70,7 @@ class Sessions:
         return session.ended_unix_s is None and now_unix_s - session.seen_unix_s < self._idle_s
 
     def end(self, session: ConsoleSession, now_unix_s: float) -> None:
-        """End a session."""
+        """End a session, unless it has ended; it may still stop the robot for a day."""
         if session.ended_unix_s is None:
             session.ended_unix_s = now_unix_s
 

@@ -28,7 +28,7 @@ class TokenError(RobotdError):
 
 
 class Token(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What is kept of a token."""
+    """What is kept of a token: all but its secret."""
 
     name: str
     """Who it is for; the audit and the other browsers show it."""
@@ -58,11 +58,12 @@ class Tokens:
     def match(self, secret: str, now_unix_s: float) -> Token | None:
         """Return the token of a secret; what it takes does not depend on which of them comes near."""
         wanted = hashed(secret)
+        # All are compared, and each in constant time: how long it takes tells nothing of which came near.
         found = [token for token in self.all if hmac.compare_digest(token.sha256, wanted)]
         return next((token for token in found if token.is_valid(now_unix_s)), None)
 
     def named(self, name: str) -> Token | None:
-        """Return the token of somebody."""
+        """Return the token made for somebody, whether its time is over or not; None if there is none."""
         return next((token for token in self.all if token.name == name), None)
 
     def usable(self, now_unix_s: float) -> bool:
@@ -104,7 +105,7 @@ def make_token(
 
 
 class TokenFile:
-    """Where the tokens are."""
+    """The file that tokens are kept in, readable by the gateway alone."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -143,6 +144,7 @@ class TokenFile:
 def write_private(path: Path, data: bytes) -> None:
     """Write a file that only the owner of its directory can read, whole or not at all."""
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    # Beside its place: a rename is one step within one file system alone.
     descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")  # 0600
     try:
         with os.fdopen(descriptor, "wb") as file:

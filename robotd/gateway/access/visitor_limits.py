@@ -31,10 +31,11 @@ class WrongTokens:
             raise ServerError("too_many_tries", f"too many wrong tokens from {address}: wait {left_s:.0f} s")
 
     def note(self, address: str, now_s: float) -> None:
-        """Note a wrong one."""
+        """Count a wrong token against an address, for :data:`WINDOW_S`."""
         tries = self._recent(address, now_s)
         tries.append(now_s)
         self._tries[address] = tries
+        # The one that tried the longest ago is forgotten first; who goes on trying is not.
         self._tries.move_to_end(address)
         while len(self._tries) > MOST_ADDRESSES:
             self._tries.popitem(last=False)

@@ -33,7 +33,7 @@ class Page(Protocol):
 
 
 class Services:
-    """One of each, for all browsers."""
+    """What all browsers share: who asks the daemon, who stops, who drives, what is known."""
 
     def __init__(self, fan: FanOut, asker: Asks, stop_line: StopLine, watching: WatchingSettings) -> None:
         self.fan, self.asker, self.stop_line = fan, asker, stop_line
@@ -65,7 +65,7 @@ class Services:
 
     @property
     def pages(self) -> tuple[Page, ...]:
-        """All that are there."""
+        """The pages that are connected now."""
         return tuple(self._pages.values())
 
     async def stop(self, who: str, whence: str) -> float:

@@ -73,6 +73,8 @@ class Arbiter:
 
     def ended(self, mission_id: int) -> None:
         """Note that a mission is over."""
+        # By its number: the word of an older mission may come late, and must not take the next one from its
+        # driver.
         if self.commander is not None and self.commander.mission_id == mission_id:
             self.commander = self.wish = self._stopping = None
 
@@ -88,6 +90,7 @@ class Arbiter:
             raise ServerError("refused", "you drive already")
         if self.wish is not None and self.wish.driver.browser != driver.browser:
             raise ServerError("refused", f"{self.wish.driver.who} asks to take over already")
+        # Asked twice is asked once: pressing again must not put off when it passes.
         self.wish = self.wish or Wish(driver, now_s + ASKED_S)
 
     def give(self, browser: str, *, give: bool) -> None:
@@ -146,6 +149,7 @@ class Arbiter:
     def _stop(self, reason: str) -> str | None:
         if self.commander is None or self.is_stopping:
             return None
+        # Once for each mission: a page that is silent is silent at the next look, too.
         self._stopping = self.commander.mission_id
         return reason
 

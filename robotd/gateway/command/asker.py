@@ -41,6 +41,8 @@ class Asker:
     def __init__(self, context: zmq.asyncio.Context, endpoints: Endpoints) -> None:
         self._endpoints = endpoints
         self._context = context
+        # Never again: with an endless pause between two tries the client's own bookkeeping sends each request
+        # once.
         self._exchanges = Exchanges(str(endpoints), NAME, retry_s=math.inf, deadline_s=None)
         self._waiting: dict[int, asyncio.Future[None]] = {}
 
@@ -54,6 +56,7 @@ class Asker:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
     ) -> None:
+        # Before the socket is closed, which it reads from.
         await ended([self._reader])
         self._socket.close(0)
 
@@ -71,6 +74,8 @@ class Asker:
         answered = self._waiting[exchange.id] = asyncio.get_running_loop().create_future()
         data = exchange.due(_now_s())
         try:
+            # Not waited for: what cannot leave at once would lie in a queue, and reach a daemon that starts
+            # later.
             await self._socket.send(data, zmq.DONTWAIT)
             exchange.reached()
             async with asyncio.timeout(exchange.wait_s(_now_s()) if within_s is None else within_s):

@@ -18,6 +18,7 @@ class Idle:
 
     def accept(self, status: Status, now_s: float) -> bool:
         """Take a status; return whether to disarm the robot now."""
+        # A robot that a script armed stands idle for reasons of its own.
         if not self._is_ours:
             return False
         if status.mode in {Mode.DISARMED, Mode.FAULT}:

@@ -90,6 +90,8 @@ class Missions:
         """Stop the robot when the page of who drives is silent; hand it over when nobody answers: a duty."""
         try:
             while True:
+                # Looked at twenty times a second, so that a page that falls silent costs the robot next to
+                # nothing beyond its patience.
                 await asyncio.sleep(_LOOK_S)
                 self._look()
         finally:
@@ -117,6 +119,8 @@ class Missions:
         """Renew a lease until its mission is over; one answer that stays away is not waited for."""
         period_s = started.lease_s / RENEWALS_PER_LEASE
         while self._is_kept(started.mission_id):
+            # From when it is asked, not from when it was answered: a slow answer must not stretch the time
+            # between two renewals.
             next_s = now_ns() / NS_PER_S + period_s
             try:
                 renewed = await self._asker.ask(Renew(started.mission_id), started.lease_s)

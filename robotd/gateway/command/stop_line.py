@@ -55,6 +55,7 @@ class StopLine:
         waiting: set[asyncio.Task[Done]] = set()
         try:
             while (took_s := (now_ns() - begun_ns) / NS_PER_S) < GIVEN_UP_S:
+                # The ones before go on: whichever is answered first will do.
                 waiting.add(asyncio.create_task(self._asker.ask(request, GIVEN_UP_S - took_s)))
                 done, waiting = await asyncio.wait(waiting, timeout=AGAIN_S, return_when=asyncio.FIRST_COMPLETED)
                 if any(task.exception() is None for task in done):

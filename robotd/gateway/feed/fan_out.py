@@ -124,6 +124,7 @@ class FanOut:
         """Ask for the whole map after a gap, and fold its changes into it when they are many: a duty."""
         while True:
             await self._map_work.wait()
+            # Before it is looked at: what comes during the work sets it again.
             self._map_work.clear()
             if self.snapshot.map_gap:
                 await self._ask_whole()
@@ -140,6 +141,7 @@ class FanOut:
             self._map_work.set()
             return
         whole = await asyncio.to_thread(as_heard, change, session or "", 0)
+        # A daemon that was started meanwhile has another map: the answer of the last one is not laid over it.
         if self.snapshot.session == session:
             self.snapshot.accept(whole, now_ns())
             for listener in tuple(self._listeners):

@@ -70,6 +70,7 @@ def folded(whole: HeardFrame, changes: list[HeardFrame]) -> HeardFrame:
     """
     last = (changes or [whole])[-1]
     begun = from_plain(MapChanged, whole.fields)
+    # A copy: what was decoded may be shared, or read-only.
     grid = np.array(begun.values)
     for heard in changes:
         change = from_plain(MapChanged, heard.fields)

@@ -105,6 +105,7 @@ class PageOutbox:
             return lost
         if self._wants_whole_map:
             self._wants_whole_map = False
+            # Before all else that waits: what happens on the map makes no sense to a page without it.
             self._frames = OrderedDict([*((self._next(), frame) for frame in self._whole_map()), *self._frames.items()])
             self._bytes = sum(map(len, self._frames.values()))
         return self._drop(next(iter(self._frames))) if self._frames else None
@@ -118,6 +119,7 @@ class PageOutbox:
 
     def _put_line(self, heard: HeardFrame) -> None:
         lines = self._lines.setdefault(heard.topic, deque())
+        # Sent since: taken out here and not where it is sent, which would search a queue for each frame.
         while lines and lines[0] not in self._frames:
             lines.popleft()
         if len(lines) >= MOST_LINES:

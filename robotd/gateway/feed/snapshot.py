@@ -40,6 +40,7 @@ class Snapshot:
             ValueError: it is not what its name promises.
             RemoteProtocolError: the same, of a map.
         """
+        # Another life of the daemon, whose numbers begin again: nothing of the last one may stand beside it.
         if heard.session != self.session:
             self._begin(heard.session)
         if heard.topic == "map" and heard.event == "map_changed":

@@ -35,7 +35,9 @@ log = logging.getLogger(__name__)
 def address_of(request: web.Request, trusted: tuple[str, ...]) -> str:
     """Return where a request comes from; a proxy that is trusted says it for others. For logs and limits alone."""
     peer = request.remote or "unknown"
+    # The last of them, which the proxy itself added: those before it the visitor may have written.
     told = request.headers.get("X-Forwarded-For", "").rpartition(",")[2].strip()
+    # Believed from a proxy alone: anyone else could be from whichever address is not limited yet.
     if peer not in trusted or not told:
         return peer
     try:

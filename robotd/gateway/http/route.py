@@ -33,7 +33,7 @@ Answer = Callable[[web.Request, House, Person | None], Awaitable[web.StreamRespo
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """One address."""
+    """One address: its method and path, who may ask it, what it is for, and what answers it."""
 
     method: str
     path: str

@@ -31,7 +31,7 @@ async def stop(_: web.Request, house: House, person: Person | None) -> web.Strea
 
 
 async def show(_: web.Request, house: House, _person: Person | None) -> web.StreamResponse:
-    """Show the button."""
+    """Show the page with the button that stops the robot, which works without scripts."""
     return _page(house, "")
 
 

@@ -70,6 +70,8 @@ class BoardDrive(BoardDevice):
     def set_velocity(self, twist: Twist2, ttl_s: float) -> None:
         """Send a set-point that the base may follow for ``ttl_s``; TransportError if it is absent."""
         session = self._talk()
+        # Before it is sent: the guard's thread must find a base that is driven as driven, not a moment too
+        # late.
         self._wanted = twist
         session.post(
             SetVelocity(
@@ -107,6 +109,7 @@ class BoardDrive(BoardDevice):
             return
         twist = Twist2(report.speed_mmps / _MILLI, report.turn_mradps / _MILLI)
         check_twist(self.name, twist)
+        # A board that booted begins its counts again: by its number the odometer sees that they lead nowhere.
         boot_id = self._talk().boot_id
         in_odom = self._odometer.update(boot_id, report.translate_counts, report.rotate_counts, time_ns)
         self.odometry.publish(Odometry(time_ns, in_odom, twist, self._odometer.counts))

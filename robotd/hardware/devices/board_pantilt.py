@@ -84,6 +84,8 @@ class BoardPanTilt(BoardDevice):
         aim = proto.Aim(
             pan_tenth_mrad=_pan_of_head(pan_rad - self._mount.pan_zero_rad),
             tilt_tenth_mrad=round((tilt_rad - self._mount.tilt_zero_rad) * _PER_RAD),
+            # Longer than we wait: a slow head is then halted by us, which is no fault, and not by its deadman,
+            # which is one.
             ttl_ms=min(round(timeout_s * 1000) + _TTL_MARGIN_MS, _TTL_LIMIT_MS),
         )
         async with self._one_at_a_time:
@@ -104,6 +106,7 @@ class BoardPanTilt(BoardDevice):
     async def _done(self, session: Session, seq: int, reports: Subscription[Report | None]) -> Report:
         while True:
             report = await self._next_report(session, reports)
+            # What is told of another aim is late: the newest one counts.
             if report.aim_seq != seq or report.moving == proto.Motion.TURNING:
                 continue
             if report.moving == proto.Motion.DONE:
@@ -134,6 +137,7 @@ class BoardPanTilt(BoardDevice):
     def link_lost(self, reason: str) -> None:
         """Note it, and let those who wait for the head know."""
         super().link_lost(reason)
+        # Else who waits for the head would wait until its own time runs out.
         self._reports.publish(None)
 
     def _readback(self, report: Report) -> AimReadback:

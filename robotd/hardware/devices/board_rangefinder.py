@@ -59,6 +59,7 @@ class BoardRangefinder(BoardDevice):
         """Take one reading; TransportError if the device is absent, any other failure is a result."""
         session = self._talk()
         try:
+            # The same seq for each repeat, so that a shot that was answered is not taken a second time.
             shot = await session.ask(proto.Shoot(max(1, round(timeout_s * 1000))), proto.Shot, takes_s=timeout_s)
         except LinkTimeout:
             return Shot(session.heard_ns, ReadingStatus.TIMEOUT, None, None)

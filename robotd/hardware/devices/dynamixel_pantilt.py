@@ -97,6 +97,8 @@ class DynamixelPanTilt(VendorDevice[Message]):
         async with self._one_aim:
             dialogue = self._talk_armed()
             goals = {
+                # Wrapped, as the servo turns less than once round: the same direction may be named from either
+                # side.
                 self._pan: _counts(wrap_rad(pan_rad - self._mount.pan_zero_rad)),
                 self._tilt: _counts(tilt_of_head_rad),
             }
@@ -189,6 +191,7 @@ class DynamixelPanTilt(VendorDevice[Message]):
             goes_on = False
             for servo in (self._pan, self._tilt):
                 for register in (dynamixel.TORQUE_ENABLE, dynamixel.MOVING):
+                    # Both registers: a servo that let go may still coast, and one that stands may still hold.
                     goes_on |= bool((await self._read(dialogue, servo, register, 1))[0])
             if not goes_on:
                 return

@@ -94,6 +94,7 @@ class PtuPanTilt(VendorDevice[Message]):
             except DeviceError:
                 self._check_steps()  # they are why it was stopped
                 raise
+        # Of the steps that it went to, not of the angle that was asked: it points where whole steps lead.
         return AimReadback(
             time_ns,
             pan / axes.pan_steps_per_rad + self._mount.pan_zero_rad,
@@ -112,6 +113,7 @@ class PtuPanTilt(VendorDevice[Message]):
             at_tilt = await self._order(dialogue, command("TP"))
             self._talk_armed()
             self._check_steps()
+            # Exactly: it counts the steps that it commands, so it is there or it is not.
             if (_whole(at_pan.message), _whole(at_tilt.message)) == (pan, tilt):
                 return at_tilt.time_ns
 

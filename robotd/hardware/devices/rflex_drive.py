@@ -155,6 +155,8 @@ class RflexDrive(VendorDevice[Message]):
                 await self._come_to_rest(dialogue)
                 self._calm.set()
             twist = self._wanted
+            # Standstill once is enough, anything else is said again: a set-point that was lost must not leave
+            # the base on the one before.
             if self._may_move and (twist != sent or not twist.is_zero):
                 sent = twist
                 for axis, counts_per_s in enumerate(self._counts(twist)):
@@ -179,6 +181,7 @@ class RflexDrive(VendorDevice[Message]):
         for order in _halts(_HALTS_LEAST):
             await asyncio.sleep(_SPACING_S)
             dialogue.post(order)
+        # After the first halts: a report of before them may be of a moment in which the base stood by chance.
         self._standing.clear()
         for order in _halts():
             await asyncio.sleep(_SPACING_S)
@@ -234,6 +237,7 @@ class RflexDrive(VendorDevice[Message]):
             return
         if report.axis != _ROTATION:
             raise implausible(self.NAME, f"it reports an axis {report.axis}")
+        # The first of a conversation may be half a pair: without its other half there is no place to tell.
         if self._translated is None or self._dialogue is None:
             return
         twist = Twist2(self._translated.speed / self._scales.counts_per_m, report.speed / self._scales.counts_per_rad)

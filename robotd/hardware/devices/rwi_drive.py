@@ -100,6 +100,7 @@ class RwiDrive(VendorDevice[Message]):
         speed = min(round(abs(counts_per_s)), _SPEED_MAX_COUNTS)
         wanted = 0 if speed == 0 else (1 if counts_per_s > 0.0 else -1)
         before = self._directions[axis]
+        # The base ramps down before it turns round; an order for the other way meanwhile is lost.
         if wanted == 0 or before == -wanted:
             self._directions[axis] = 0
             return [command(f"{axis}H")] if before else []
@@ -110,6 +111,7 @@ class RwiDrive(VendorDevice[Message]):
     async def _greet(self, dialogue: Dialogue[Message]) -> None:
         dialogue.post(STOP_BYTES + command("HD"))
         self._directions = {"T": 0, "R": 0}
+        # Asked before anything is set: a line with nobody at its end takes every order.
         await self._ask(dialogue, "TW")
         translate = round(_ACCELERATION_MPS2 * abs(self._scales.counts_per_m))
         rotate = round(_TURN_ACCELERATION_RADPS2 * abs(self._scales.counts_per_rad))
@@ -161,6 +163,8 @@ class RwiDrive(VendorDevice[Message]):
             translate = await self._ask(dialogue, "TW")
             rotate = await self._ask(dialogue, "RW")
             counts = translate.message.value, rotate.message.value
+            # Twice the same: the base reports no speed, and one look cannot tell standing from the turning
+            # point of a slow creep.
             if counts == before:
                 return
             before = counts

@@ -64,7 +64,7 @@ def crc16(data: bytes) -> int:
 
 @dataclass(frozen=True, slots=True)
 class ServoStatus:
-    """An answer."""
+    """What a servo answers: which one, its error byte, and the parameters."""
 
     servo: int
     error: int

@@ -24,7 +24,7 @@ class Repeat(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """One request."""
+    """One request to a device, as a comparison of two recordings sees it."""
 
     text: str
     repeat: Repeat = Repeat.UNANSWERED

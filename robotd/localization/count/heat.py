@@ -22,7 +22,7 @@ _MOST_WORK = 20_000_000_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Heat:
-    """The picture."""
+    """How much the best pose in each block of cells explains, as a picture."""
 
     spec: GridSpec
     """Where its cells lie, which are blocks of those of the map."""

@@ -107,6 +107,7 @@ def best_poses(
         budget=budget,
     )
     found = kernels.in_use().search.search_poses(search_map.planes, question, threads=threads)
+    # Back from the planes, which have a rim, to the map, which has none.
     return replace(found, poses=found.poses - np.array([0, search_map.rim, search_map.rim]))
 
 

@@ -198,6 +198,7 @@ class Sweeper:
 
     def _lag_rad(self, *, clockwise: bool) -> float:
         """Return how far the beam points behind what the head reads back while it pans in a sense."""
+        # Half to each side: the zero of the head was found in the middle between both senses.
         half_rad = self.mount.backlash_rad / 2.0
         return half_rad if clockwise else -half_rad
 
@@ -243,7 +244,9 @@ class Sweeper:
 
     async def _read(self, pan_rad: float, lag_rad: float, start: Odometry, here: Odometry) -> RangeReading:
         aim = await self.robot.pantilt.aim(pan_rad, self.settings.tilt_rad, timeout_s=self.settings.aim_timeout_s)
+        # Only after the head has said that it rests: a shot on the way has a range and no direction.
         shot = await self.robot.rangefinder.shoot(timeout_s=self.settings.shot_timeout_s)
+        # What is read back is the motor's side of the gears; the beam is on the other, behind by the play.
         aim = replace(aim, pan_rad=aim.pan_rad + lag_rad)
         # The last argument is where the robot stands now, seen from where it stood first.
         return reading_in_robot(self.mount, self.calibration, aim, shot, start.in_odom.inverse() @ here.in_odom)

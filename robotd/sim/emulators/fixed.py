@@ -23,5 +23,5 @@ class FixedEmulator:
         return None
 
     def take_output(self) -> bytes:
-        """Return nothing."""
+        """Return no bytes: a head without a motor says nothing."""
         return b""

@@ -71,7 +71,7 @@ class Laser:
         self._on = False
 
     def switch(self, *, on: bool) -> None:
-        """Switch the light."""
+        """Switch the light; without it every shot is answered ``LASER_OFF``."""
         self._on = on
 
     def shoot(self, at_us: int) -> ShotAnswer:

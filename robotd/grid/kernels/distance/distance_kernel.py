@@ -12,7 +12,7 @@ NOWHERE = int(np.iinfo(np.int32).max)
 
 
 class DistanceKernel(Protocol):
-    """The distance transform."""
+    """The exact Euclidean distance transform, squared, in whole numbers."""
 
     def squared_distances(
         self,

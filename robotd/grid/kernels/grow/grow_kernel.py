@@ -9,7 +9,7 @@ from robotd.grid.window import CellWindow
 
 
 class GrowKernel(Protocol):
-    """Growing by a disk."""
+    """Growing sets of cells by a disk: the Minkowski sum with B_eps."""
 
     def grow_disk(
         self,
