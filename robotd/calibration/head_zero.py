@@ -21,6 +21,8 @@ def calibrate_head(now: Constants, distance_m: float) -> Procedure:
     """Find pan zero and play: ``distance_m`` ahead and back, twice, with sweeps both ways round at each stop."""
     here = yield from stop("look round, once each way")
     plays, aheads = [play(here.counter_clockwise, here.clockwise)], list[tuple[float, float]]()
+    # There and back: a wheel that pulls to one side turns both ways' directions against each other, and the
+    # mean is free of it.
     for leg_m in (distance_m, -distance_m) * 2:
         yield Step(DriveStraight(leg_m), f"drive {abs(leg_m):g} m {'ahead' if leg_m > 0.0 else 'back'}")
         there = yield from stop("look round, once each way")
@@ -62,6 +64,7 @@ def combined(angles: list[tuple[float, float]]) -> tuple[float, float]:
     weights = errors**-2.0
     mean = float((weights * values).sum() / weights.sum())
     disagreement = float((weights * (values - mean) ** 2).sum()) / max(1, len(values) - 1)
+    # The larger of what each claims and of how far they disagree: four that contradict each other are not sure.
     return mean, math.sqrt(max(1.0, disagreement) / float(weights.sum()))
 
 

@@ -69,8 +69,10 @@ def _walls(at_m: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.f
     foot_m = (weight[:, :, None] * around).sum(axis=1) / weight.sum(axis=1)[:, None]
     off = (around - foot_m[:, None]) * np.sqrt(weight)[:, :, None]
     scatter = np.einsum("nki,nkj->nij", off, off) / weight.sum(axis=1)[:, None, None]
+    # Principal axes and not a fit of y by x: a wall may run in any direction.
     variances, axes = np.linalg.eigh(scatter)
     normal = axes[:, :, 0]
     thick_m, long_m = np.sqrt(np.maximum(variances, 0.0)).T
+    # Long as well as thin: a handful of heads on a table leg lie on a line of any direction.
     is_wall = (weight.sum(axis=1) >= _FEWEST) & (thick_m <= _FLAT_M) & (long_m >= 2.0 * thick_m)
     return foot_m, normal, is_wall

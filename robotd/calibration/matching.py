@@ -61,9 +61,12 @@ def match(reference: SweepHeads, moved: SweepHeads, starts: Sequence[Pose2], *, 
     Raises:
         CalibrationError: from none of them the two sweeps show the same walls.
     """
+    # From one place a bias moves all walls alike, in both sweeps, and nothing could tell it.
     bias_weight = _NO_BIAS if at_one_place else _BIAS_WEIGHT
     first = np.array([(start.x_m, start.y_m, start.heading_rad) for start in starts], np.float64)
     order = np.argsort([_misfit(reference, moved, pose) for pose in first])
+    # A few are followed to the end and not the best start alone: in a square room a quarter turn fits nearly as
+    # well at first.
     best = min(
         (_descend(reference, moved, pose, bias_weight) for pose in first[order[:_LOOKED_AT]]),
         key=lambda unknown: _misfit(reference, moved, unknown[:3]),
@@ -94,6 +97,8 @@ def _descend(
 ) -> NDArray[np.float64]:
     """Return x, y, heading and bias that fit best near a pose."""
     unknown = np.array((*pose, 0.0))
+    # Wide at first, so that a start half a metre off finds its walls; narrow at last, so that a chair has no
+    # say.
     for gate_m in _GATES_M:
         jacobian, off_m = _system(reference, moved, unknown, gate_m)
         if len(off_m) < FEWEST_HEADS:
@@ -126,6 +131,7 @@ def _system(
     normal = moved.normal[here.walls]
     lengthens = (normal * (ahead[here.heads] - moved.ahead[here.walls])).sum(axis=1)
     home = np.column_stack((-normal @ turn.T, -_across(back[here.heads], normal), lengthens))
+    # Both ways round: a wall that only one of them saw well would else pull with one side's errors alone.
     return np.vstack((forth, home)), np.concatenate((off_there_m, off_here_m))
 
 
@@ -155,6 +161,7 @@ def _judged(reference: SweepHeads, moved: SweepHeads, unknown: NDArray[np.float6
     jacobian, off_m = _system(reference, moved, unknown, _GATES_M[-1])
     _, near_m = _system(reference, moved, unknown, _GATES_M[0])
     share = len(off_m) / max(1, len(near_m))
+    # An error and not a doubtful match: a constant that is wrong is worse than one that was not measured.
     if share < _LEAST_SHARE or len(off_m) < FEWEST_HEADS:
         raise CalibrationError(
             f"the two sweeps do not show the same walls: {share:.0%} of {len(near_m)} readings near them agree;"

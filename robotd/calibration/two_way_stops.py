@@ -44,6 +44,7 @@ def stop(words: str) -> Generator[Step, Seen, TwoWayStop]:
     """Look round once each way; the base stands still."""
     sweeps: dict[bool, Sweep] = {}
     for _ in range(_TRIES):
+        # The base stands: a turn of it would be measured by the very wheels that are to be calibrated.
         seen = yield Step(Scan(base_turns=False), words)
         sweep = swept(seen)
         sweeps[sweep.is_clockwise] = sweep
@@ -60,6 +61,7 @@ def way(before: TwoWayStop, after: TwoWayStop, starts: Sequence[Pose2]) -> SeenM
         match(before.clockwise, after.clockwise, starts),
     )
     first, second = (one.pose for one in matches)
+    # Of a mean of two that err by themselves.
     covariance = (matches[0].covariance + matches[1].covariance) / 4.0
     turned_rad = math.remainder(second.heading_rad - first.heading_rad, math.tau)
     middle = Pose2((first.x_m + second.x_m) / 2.0, (first.y_m + second.y_m) / 2.0, first.heading_rad + turned_rad / 2.0)

@@ -66,7 +66,10 @@ class Attention:
         """Let the silence fall that is due first among those of one name; nothing happens where there is none."""
         awaited = self._awaited[of]
         if awaited:
+            # Several may bear one name, as the requests of one device do; the living loop let the one fall that
+            # was due first.
             silence = min(awaited, key=lambda one: one.due_s)
+            # Taken out first: what its fall leads to may wait for another of the same name.
             awaited.remove(silence)
             silence.fall()
 

@@ -24,6 +24,7 @@ class Subscription(Generic[T]):
 
     async def get(self) -> T:
         """Wait for the next item, in order."""
+        # Asked again after each waking: another task of the same reader may have taken it.
         while not self._items:
             self._ready.clear()
             await self._ready.wait()
@@ -44,6 +45,7 @@ class Broadcast(Generic[T]):
 
     def publish(self, item: T) -> None:
         """Hand an item out."""
+        # Before it is handed out: who is woken by it and looks for the latest must find this one.
         self.latest = item
         for subscription in self._subscriptions:
             subscription.offer(item)

@@ -20,6 +20,7 @@ T = TypeVar("T")
 
 def now_ns() -> int:
     """Return the monotonic time of the running loop [ns], real or virtual."""
+    # By the loop and not by the system: the one call that a virtual clock has to answer.
     return round(asyncio.get_running_loop().time() * NS_PER_S)
 
 
@@ -34,6 +35,7 @@ class TurnCountingLoop(asyncio.SelectorEventLoop):
     def __init__(self, selector: "CountingSelector | None" = None) -> None:
         self._counting = selector or CountingSelector()
         super().__init__(self._counting)
+        # Asked of the loop's own queue: only it knows whether a turn has anything left to do.
         self._counting.follow(lambda: not self._ready)  # type: ignore[attr-defined]  # asyncio's own queue
 
     @property
@@ -109,6 +111,8 @@ class _JumpingSelector(CountingSelector):
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
         self._count()
         if timeout is None:
+            # Real descriptors, as those of child processes, are waited for in real time: nothing could make
+            # them ready sooner.
             ready = selectors.DefaultSelector.select(self, _STUCK_AFTER_S)
             if not ready:
                 raise RuntimeError("virtual time is stuck: no timer is set and no descriptor is ready")

@@ -55,5 +55,6 @@ class Endpoints:
     @property
     def paths(self) -> tuple[Path, Path, Path]:
         """The files of the sockets: commands, state, maps."""
+        # Absolute: a program may change its directory between two connections.
         directory = self.runtime_dir.absolute()
         return directory / "commands.sock", directory / "state.sock", directory / "maps.sock"

@@ -47,4 +47,5 @@ def configure(level: str) -> None:
     form = "%(levelname)s %(name)s: %(message)s" if in_journal else "%(asctime)s %(levelname)-7s %(name)s: %(message)s"
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(PrintableFormatter(form))
+    # By force: a library that was imported before may have set up a log of its own.
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)

@@ -24,5 +24,6 @@ class LogLimit:
             self._left_out += 1
             return None
         self._saved -= 1.0
+        # Told with the next line that passes: a line of its own would be one more of what floods.
         left_out, self._left_out = self._left_out, 0
         return f"{text} ({left_out} more like it were not logged)" if left_out else text

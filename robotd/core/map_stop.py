@@ -96,6 +96,7 @@ class MapStop:
 
     @property
     def _content(self) -> tuple[int, Pose2, Pose2, bytes]:
+        # As bytes: NaN is not equal to itself, and a map is the same if its bits are.
         return self.number, self.in_odom, self.map_from_robot, self.readings.tobytes()
 
 

@@ -61,6 +61,7 @@ class MotionError:
 
     def deviations(self, travel: Travel) -> tuple[float, float]:
         """Return the standard deviations of the place [m], along either axis, and of the heading [rad]."""
+        # Linear in the way and not in its root: wheels of the wrong size err by the same share of all of it.
         heading_rad = self.standing_rad + self.rad_per_m * travel.way_m + self.per_turn * travel.turn_rad
         return self.standing_m + self.per_way * travel.way_m, heading_rad
 
@@ -96,8 +97,11 @@ class MotionBias:
         off = travel.step.inverse() @ step
         one = (travel.way_m, travel.step.heading_rad, off.x_m, off.y_m, off.heading_rad)
         latest = (*self.latest, one)[-_REMEMBERED:]
+        # Of shorter ways the error of the look itself is most of what was off.
         driven = [other for other in latest if other[0] >= _DRIVEN_M]
         per_m = tuple(median(row[of] / row[0] for row in driven) if driven else 0.0 for of in (2, 3, 4))
+        # What driving alone turned it by is taken off first: else a base that pulls to one side would seem to
+        # turn too far.
         turned = [(row[4] - per_m[2] * row[0]) / row[1] for row in latest if abs(row[1]) >= _TURNED_RAD]
         enough = len(turned) >= _ENOUGH
         return MotionBias(latest, (per_m[0], per_m[1], per_m[2]), median(turned) if enough else 0.0)

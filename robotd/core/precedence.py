@@ -13,6 +13,7 @@ _REALTIME = (os.SCHED_FIFO, os.SCHED_RR)
 def give_way() -> None:
     """Let this thread, and those that it starts, have no precedence over other programs."""
     no_realtime()
+    # Of the thread, not of the process: the loop beside it keeps what it was given.
     thread = threading.get_native_id()
     # Only precedence is given up: a daemon that was started nicer than others stays so.
     if os.getpriority(os.PRIO_PROCESS, thread) < 0:

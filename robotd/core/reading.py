@@ -116,6 +116,7 @@ def _reading(bearing_rad: float, range_m: float, cutoff_m: float) -> RangeReadin
         return RangeReading(0, bearing_rad, ReadingStatus.NOT_MEASURED, None)
     if range_m <= 0.0:
         return RangeReading(0, bearing_rad, ReadingStatus.TOO_NEAR, None)
+    # At the cut-off, not at where the sensor ends: beyond it nothing was asked.
     if range_m >= cutoff_m:
         return RangeReading(0, bearing_rad, ReadingStatus.MISS, cutoff_m)
     return RangeReading(0, bearing_rad, ReadingStatus.OK, range_m)

@@ -58,6 +58,7 @@ class Silence:
         self._fell_silent()
 
     def _set(self, due_s: float) -> None:
+        # What was missed before is no reason to wait longer: only a stall from here on is.
         self._missed_s = self._attention.missed_s
         self.due_s = due_s
         if self.of and self._attention.are_led:
@@ -66,6 +67,7 @@ class Silence:
             self._timer = self._loop.call_at(due_s, self._due)
 
     def _due(self) -> None:
+        # The timer may be the first to run after a stall, before anybody noted it.
         self._attention.look()
         missed_s = self._attention.missed_s - self._missed_s
         if missed_s > 0.0 and not self._counts_stalls:
@@ -101,4 +103,5 @@ async def idle(seconds: float, *, of: str) -> None:
 
 
 def _end_now(limit: asyncio.Timeout) -> None:
+    # Brought forward to now: asyncio itself then cancels the block and raises, as it would by its own timer.
     limit.reschedule(asyncio.get_running_loop().time())

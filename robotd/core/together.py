@@ -9,6 +9,8 @@ async def together(*duties: Coroutine[Any, Any, object]) -> NoReturn:
     """Do all of them until one ends with an error; end the others, and raise that error."""
     tasks = [asyncio.ensure_future(duty) for duty in duties]
     try:
+        # Not a task group: that would raise groups of errors, and callers tell one error from another by its
+        # type.
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         first = next(task for task in tasks if task.done())  # in their order: the same every time
     finally:

@@ -44,7 +44,7 @@ class Spot:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanarSet:
-    """A set of points of the plane, by what bounds it: edges, single points, and whether it holds what lies far away."""
+    """A set of points of the plane, by its edges, its single points, and whether it holds what lies far away."""
 
     borders: tuple[Border, ...] = ()
     """They may meet at their ends only."""

@@ -28,6 +28,7 @@ class BoardClock:
     def of_seed(cls, seed: int, device: str, skew_ppm: float) -> "BoardClock":
         """Draw the clock of one device."""
         random = stream(seed, f"{device}/clock")
+        # From a stream of its own: another board on the robot must not change what this one's clock is.
         return cls(random.randrange(_OLDEST_BOOT_US), round(random.uniform(-1000.0, 1000.0) * skew_ppm))
 
     def board_us(self, true_us: int) -> int:

@@ -96,6 +96,7 @@ class Body:
         self._wheel_rad = 0.0
         self._speed = _Axis(settings.speed_max_mps, settings.acceleration_mps2)
         self._turn = _Axis(settings.turn_max_radps, settings.turn_acceleration_radps2)
+        # Kept as a bound, and lessened by each way: walls are looked at once in some metres, not at each knot.
         self._clearance_m = clearance_m(walls, (start.x_m, start.y_m))
         self._first_us: int | None = None
         self._knot_us = 0

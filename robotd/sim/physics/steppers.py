@@ -67,6 +67,7 @@ class StepperHead:
     def aim(self, pan_rad: float, tilt_rad: float) -> None:
         """Start turning to the nearest steps; an endless head goes the shorter way round."""
         here = self.true_angles_rad
+        # Where the beam is now: a turn that begins within the play first takes it up, and the beam stays.
         lag_rad = self._follow_rad(here[0]) - here[0]
         pan_rad, tilt_rad = self._nearest_step(pan_rad), self._nearest_step(tilt_rad)
         if self._settings.is_endless:

@@ -29,6 +29,7 @@ class WallSegments:
         """Gather ``(start, end, height)`` segments; those of no length are left out."""
         table = np.array([(*start, *end, height) for start, end, height in segments], dtype=np.float64).reshape(-1, 5)
         along = table[:, 2:4] - table[:, 0:2]
+        # A wall of no length has no direction, and would divide by nothing in each ray.
         kept = np.any(along != 0.0, axis=1)
         return cls(table[kept, 0:2], along[kept], table[kept, 4])
 
