@@ -69,6 +69,7 @@ class Arrangement:
         kept: dict[int, Border] = {}
         for number, edge in enumerate(self.edges):
             border = _border(self, edge, of_face, on=belongs(edge.mask))
+            # On both sides the same as on itself: nothing changes there, and no one would see it.
             if not border.left == border.on == border.right:
                 kept[number] = border
         return _joined(self, kept, [belongs(vertex.mask) for vertex in self.vertices], of_face)

@@ -63,6 +63,7 @@ def rank_at(obstacles: PlanarSet, beams: Iterable[Beam], eps: Rational, pose: Po
 
 def distance_square(obstacles: PlanarSet, point: Point) -> Number:
     """Return the square of the distance from a point to the map."""
+    # Inside it is no distance at all, and the nearest border would say otherwise.
     if contains(obstacles, point):
         return arithmetic_of(point.x)(0)
     squares = (_square(border, point) for border in obstacles.borders)

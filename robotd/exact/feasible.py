@@ -71,6 +71,7 @@ def ranked(polygon_map: PolygonMap, beams: Sequence[Beam]) -> Arrangement:
     Bit k of a mask is the k-th reading; how many bits are set is the rank of the cell, rnk(M, Z, p). For m readings
     O((m n^2 + s) log m n) at worst (theorems 5, 7): the feasible poses of one have up to n^2 borders.
     """
+    # Each reading's own set first: D and all parts of E of all readings at once would cross in far more points.
     return arrange([feasible_poses(polygon_map, beam) for beam in beams])
 
 

@@ -19,6 +19,7 @@ def face_areas(arrangement: Arrangement) -> list[float]:
         start, end = ends_of(arrangement, edge)
         for face, sense in ((edge.left, 1.0), (edge.right, -1.0)):
             twice[face] += sense * _twice_swept(edge.support, start, end, corners.setdefault(face, start))
+    # The far face comes out negative, as its border is run the other way round: it has no area.
     return [math.inf, *(area / 2.0 for area in twice[1:])]
 
 

@@ -70,6 +70,7 @@ def corners(obstacles: PlanarSet) -> Iterator[tuple[Point, list[Ray]]]:
     rays: list[Ray] = []
     for number, (at, direction, solid) in enumerate(ends):
         rays.append((direction, solid))
+        # Sorted by place, so all that leave one corner follow each other.
         if number + 1 == len(ends) or ends[number + 1][0] != at:
             yield at, rays
             rays = []
@@ -83,6 +84,7 @@ def _stands_out(rays: list[Ray]) -> bool:
     """Return whether a corner can be nearer to free points than all else of the map; when in doubt, yes."""
     solid_after = next(direction for direction, solid in rays if solid)
     free_after = next(direction for direction, solid in rays if not solid)
+    # When in doubt yes: a disk too many is swallowed by the sweep, one too few would lose poses.
     return len(rays) > 2 or sign(_cross(solid_after, free_after)) > 0
 
 

@@ -51,6 +51,7 @@ def import_map(described: MapServerYaml, picture: bytes) -> ImportedMap:
     """
     image = decode_grey(picture)
     cells = _cells_of(described, image)[::-1]  # a picture begins at the largest y
+    # Before it is turned: what is said of its pixels is true of the picture.
     notes = _notes(described, image, cells)
     spec = GridSpec(described.resolution_m, described.origin_x_m, described.origin_y_m, cells.shape)
     if described.yaw_rad != 0.0:
@@ -62,6 +63,7 @@ def import_map(described: MapServerYaml, picture: bytes) -> ImportedMap:
             *notes,
             f"it was turned by {math.degrees(described.yaw_rad):.3g} deg, so its walls are a cell uncertain",
         )
+    # Within what settings may be; the cells themselves keep the size that the yaml says.
     settings = GridSettings(resolution_m=min(max(spec.resolution_m, 0.005), 2.0))
     return ImportedMap(OccupancyGrid(spec, np.ascontiguousarray(cells), settings), notes)
 

@@ -43,6 +43,7 @@ def decode_map_yaml(data: bytes) -> MapServerYaml:
     if len(data) > YAML_MAX_BYTES:
         raise MapError(f"it has {len(data)} bytes; the yaml of a map has a few lines, at most {YAML_MAX_BYTES} bytes")
     try:
+        # Safe: YAML can name any object to be made.
         content = yaml.safe_load(data)
     except (yaml.YAMLError, UnicodeDecodeError, ValueError, RecursionError) as error:
         raise MapError(f"it is no yaml: {printable(' '.join(str(error).split()))}") from error
@@ -86,6 +87,7 @@ def _value(content: dict[Any, Any], key: str, expected: str, read: Callable[[Any
 
 def _number(value: Any) -> float:
     # YAML 1.1 takes 1e-3 for a text, as it has no dot; other programs write it, and read it as a number.
+    # A true is a number to Python, and a slip of who wrote it.
     if isinstance(value, bool):
         raise TypeError
     number = float(value)

@@ -34,6 +34,7 @@ def write_bag(path: Path, events: Iterable[Any], wall_offset_ns: int) -> int:
     require_bags()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        # Beside its place, so that what is whole gets there by a rename.
         with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as beside:
             made = Path(beside) / path.name
             with (_ros1 if is_ros1(path) else _ros2)(made) as bag:
@@ -62,6 +63,7 @@ def _write(bag: _Bag, events: Iterable[Any], wall_offset_ns: int) -> int:
     for event in events:
         for message in told.messages(event):
             topic, kind = message.topic, TYPES[message.topic]
+            # Only for what comes: other programs list the topics of a bag, and would show what was never told.
             if topic not in channels:
                 channels[topic] = bag.channel(topic, kind)
             bag.write(channels[topic], told.unix_ns(event.time_ns), bag.serialized(message.content, kind))

@@ -38,6 +38,7 @@ class HeardLaser:
             return None
         if not _FINEST_RAD <= abs(step_rad) <= _ROUND_RAD / (len(ranges_m) - 1):
             return None
+        # Clockwise: the same scan, told from its other end.
         if step_rad < 0.0:
             first_rad, step_rad, ranges_m = first_rad + step_rad * (len(ranges_m) - 1), -step_rad, ranges_m[::-1]
         stamped_s, farthest_m = stamp_s(message.header.stamp), float(message.range_max)

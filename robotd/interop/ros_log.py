@@ -62,6 +62,7 @@ def log_of(heard: HeardBag, odometry_topic: str | None, remarks: Sequence[str] =
     """
     if not heard.lasers:
         raise RecordingError(f"none of its {heard.damaged} scans is whole")
+    # Of one scanner: scans of two at different heights are no one's view of the room.
     frame = heard.lasers[0].frame
     chain = heard.frames.chain(frame, heard.robot)
     way = _way(heard, chain, odometry_topic)
@@ -99,6 +100,7 @@ def _way(heard: HeardBag, chain: Chain, odometry_topic: str | None) -> _Way:
         RecordingError: nothing does.
     """
     tie = chain.moving[1][1] if len(chain.moving) > 1 else None
+    # Messages before frames: they come at the odometry's own rate, frames at whatever somebody published them.
     if heard.odometry and (chain.robot == heard.robot or not chain.moving):
         return _Way(PoseTrack.of(heard.odometry), f"{odometry_topic}", tie)
     if chain.moving:

@@ -49,6 +49,7 @@ def bearings_of(count: int, params: Mapping[str, str], scanner: str, fov_rad: fl
         step_rad = _angle_rad(params, scanner, "resolution", count - 1)
         if fov_rad is None and step_rad is not None:
             fov_rad = step_rad * (count - count % 2)
+        # Both only where they agree: logs were written with a PARAM of another scanner left in them.
         if fov_rad is not None and step_rad is not None and _spans(step_rad, count, fov_rad):
             return Bearings(_from_right(count, fov_rad, step_rad))
     if fov_rad is not None:

@@ -74,6 +74,7 @@ class _Reader:
             self.note(number, str(error))
             return
         if isinstance(record, Parameter):
+            # The last one counts: a setting that was changed is told again.
             self.params[record.name] = record.value
         elif isinstance(record, Odom):
             self.track.take(record)
@@ -82,6 +83,7 @@ class _Reader:
 
     def _take_scan(self, number: int, record: LaserRecord) -> None:
         placed = _Placed(record, number, len(self.track.lines), self.track.chained)
+        # By kind, all of them: which is best is known when the file is at its end.
         self.scans.setdefault(record.kind, []).append(placed)
         self.track.pass_scan(record.laser_pose)
 
@@ -91,6 +93,8 @@ class _Reader:
             placed = self.scans.get(kind, [])
             if placed:
                 usual = Counter(one.record.layout for one in placed).most_common()
+                # The most frequent, of equally frequent ones the longer: a line that lost numbers is shorter
+                # than it was.
                 layout = max(usual, key=lambda pair: (pair[1], pair[0][1]))[0]
                 unusual = [one for one in placed if one.record.layout != layout]
                 words = f"{kind}: its end is laid out unlike that of the other lines: numbers are missing, or too many"
@@ -153,6 +157,7 @@ def _log(reader: _Reader, placed: list[_Placed], file: str, fov_rad: float | Non
     robots = [_robot_pose(reader, one, frame, file) for one in placed]
     refuse_other_units(file, records, robots)
     for record in records:
+        # Before anything is measured by ranges: one such number would be the largest of all.
         record.ranges_m[record.ranges_m > _FARTHEST_M] = math.inf
     limits_m = _limits_m(reader, records, scanner)
     code_m = code_from_m([record.ranges_m for record in records], robots, limits_m)
@@ -230,6 +235,8 @@ def _provenance(
         return PoseSource.RAW_ODOMETRY, f"{placed[0].record.kind} has none: they are those of the ODOM lines around it"
     if frame.is_corrected:
         return PoseSource.CORRECTED, "an ODOM line after each scan copies its pose, as GMapping does"
+    # What the walls say goes before what the odometry lines say: a log may have been corrected and its ODOM
+    # lines with it.
     fit = fit_of(scans)
     if fit is Fit.GOOD:
         return PoseSource.LOG, "where the robot came by again, its scans fit each other"

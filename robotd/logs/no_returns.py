@@ -54,6 +54,7 @@ def code_from_m(scans_m: Sequence[_Ranges], poses: Sequence[Pose2], limits_m: Se
     from_m = math.inf
     below = _below(scans_m, limits_m)
     largest_m = _largest_m(below)
+    # Only where the log names no limit: with one, whatever lies below it is a distance, however far.
     if largest_m > _CODES_FROM_M and all(map(math.isinf, limits_m)):
         from_m = largest_m - _CODE_SPREAD_M
         below = _below(scans_m, [from_m] * len(scans_m))
@@ -90,4 +91,5 @@ def _is_pile(below: Sequence[_Ranges], poses: Sequence[Pose2], largest_m: float)
         for pose, count in zip(poses, pile, strict=True)
         if count
     }
+    # From several places: a robot that stands before one wall has a pile of equal ranges as well.
     return len(places) >= _PILE_PLACES or sum(pile) >= _PILE_SHARE * total

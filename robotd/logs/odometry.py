@@ -27,6 +27,8 @@ class OdometryTrack:
 
     def take(self, odom: Odom) -> None:
         """Take the next ODOM line."""
+        # Equal to the last bit: a copy is written by the same program from the same number, a measurement
+        # never.
         if self._scan is not None and odom.pose == self._scan:
             self.copies += 1  # no measurement: from here on odometry is told from this pose
         else:
@@ -53,6 +55,8 @@ def pose_between(lines: Sequence[Odom], after: int, time_s: float | None) -> Pos
     at = min(max(after - 1, 0), len(lines) - 1)
     if time_s is None:
         return lines[at].pose
+    # Looked for beside the place in the file, and no farther than times ascend: a clock that jumped would lead
+    # anywhere.
     while at + 2 < len(lines) and _ascends(lines, at) and _time(lines, at + 1) <= time_s:
         at += 1
     while at > 0 and _ascends(lines, at - 1) and _time(lines, at) > time_s:

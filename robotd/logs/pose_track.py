@@ -43,6 +43,7 @@ class PoseTrack:
         begun, ended = self.poses[after - 1 : after + 1]
         turned_rad = wrap_rad(ended.heading_rad - begun.heading_rad)
         stands = begun.distance_m(ended) <= _STANDS_M and abs(turned_rad) <= _STANDS_RAD
+        # A robot that stood may be silent for as long as it likes.
         if ended_s - begun_s > _GAP_S and not stands:
             return None
         share = (time_s - begun_s) / (ended_s - begun_s)

@@ -63,6 +63,7 @@ def moved_to_odometry(
     A PARAM may tell another mount than the one that made the log; odometry is what moves with the scanner all the
     same. The arguments are as for :func:`lie_on_odometry`; nothing is returned where no scanner sits so far away.
     """
+    # In the middle: at the first scan odometry may be 0, whatever frame it is told in.
     middle = len(lasers) // 2
     odometry = pose_between(lines, places[middle], times_s[middle])
     if odometry is None or odometry.distance_m(lasers[middle]) > _MOUNT_MAX_M:
@@ -96,6 +97,7 @@ def fit_of(scans: Sequence[Scan]) -> Fit:
     shares = fitting_shares(scans)
     if len(shares) < _PAIRS_MIN:
         return Fit.UNKNOWN
+    # The median: a door that was opened meanwhile spoils a few pairs, drift spoils most.
     share = float(np.median(shares))
     return Fit.GOOD if share >= _GOOD_SHARE else Fit.BAD if share < _BAD_SHARE else Fit.UNKNOWN
 
@@ -117,8 +119,10 @@ def _revisits(scans: Sequence[Scan]) -> Iterator[tuple[int, int]]:
         beside = poses[: index + 1] - poses[index]
         near = np.hypot(beside[:, 0], beside[:, 1]) <= _NEAR_M
         alike = np.abs(np.mod(beside[:, 2] + math.pi, math.tau) - math.pi) <= _TURNED_RAD
+        # By the way and not by the time: a robot that stood for an hour has not drifted.
         far_back = way_m[index] - way_m[: index + 1] >= _TRAVEL_MIN_M
         found.extend((int(earlier), index) for earlier in np.flatnonzero(near & alike & far_back))
+    # Evenly over all of them: the first four hundred would be of the first room.
     yield from found[:: max(1, math.ceil(len(found) / _PAIRS_MAX))]
 
 

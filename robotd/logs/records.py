@@ -94,6 +94,7 @@ def parse_line(line: str) -> Record | None:
     Raises:
         DamagedLineError: the line is damaged.
     """
+    # Before it is split: a file without line ends would become as many texts as it has numbers.
     if len(line) >= LINE_MAX:
         raise DamagedLineError(f"over {LINE_MAX} characters long")
     word, *fields = line.split() or ("",)
@@ -103,6 +104,7 @@ def parse_line(line: str) -> Record | None:
             return parse(word, fields)
         except DamagedLineError as error:
             raise DamagedLineError(f"{word}: {error}; expected {LAYOUTS[_family(word)]}") from None
+    # Told, though it is no record: half of a scan was lost with the line end before it.
     if word[:1] in "+-.0123456789" and word:
         raise DamagedLineError("begins with a number, not with the name of a record: the rest of a torn line?")
     return None
@@ -117,6 +119,7 @@ def _parameter(_: str, fields: Sequence[str]) -> Parameter | None:
         return None
     name, value = fields[:2]
     if _OF_SCANNER.match(name) is not None:
+        # Read here, though it is used later: the line that holds a text in its place can still be named.
         read = number(value)
         if name.endswith("offset") and not abs(read) <= MOUNT_MAX:
             likely = (
@@ -155,6 +158,7 @@ def _rawlaser(word: str, fields: Sequence[str]) -> LaserRecord:
 def _new_layout(fields: Sequence[str], tail_fields: int) -> tuple[NDArray[np.float64], Sequence[str], tuple[str, int]]:
     """Return the ranges, what follows them and their echoes, and which of the two layouts it is."""
     ranges_m, tail = counted(fields[_HEAD:])
+    # The shorter layout first: the count of echoes would be read from what is a coordinate here.
     if len(tail) == tail_fields and _time_s(tail[-1]) is not None:
         return ranges_m, tail, ("without echoes", tail_fields)
     _, rest = counted(tail)

@@ -49,6 +49,7 @@ def parse_relations(lines: Iterable[str], scans: Sequence[Scan], file: str = "re
     at: dict[int, int] = {}
     for index, scan in enumerate(scans):
         if scan.time_s is not None:
+            # Of several scans of one time the first in the file is meant.
             at.setdefault(_ms(scan.time_s), index)
     known: list[Relation] = []
     unknown = 0
@@ -65,6 +66,7 @@ def parse_relations(lines: Iterable[str], scans: Sequence[Scan], file: str = "re
     total = len(known) + unknown
     if not total:
         raise RecordingError(f"{file}: no relation in it; expected lines of {_FIELDS}")
+    # A few may be of scans that were damaged; more, and the file belongs to another log.
     if unknown > _UNKNOWN_MAX_SHARE * total:
         raise RecordingError(
             f"{file}: {unknown} of {total} relations are of times at which the log has no scan; is it another log's?"

@@ -111,4 +111,5 @@ def _cut_off(scan: Scan, range_max_m: float) -> Scan:
     beyond = scan.hit & (scan.ranges_m > range_max_m)
     if not beyond.any():
         return scan
+    # A miss and not a failure: the beam went that far, and met nothing on its way.
     return replace(scan, hit=scan.hit & ~beyond, missed=scan.missed | beyond)

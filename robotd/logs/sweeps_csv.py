@@ -73,6 +73,7 @@ def parse_sweeps(lines: Iterable[str], *, file: str = "table") -> RecordedLog:
     table = _Table(file)
     sweeps = [
         sweep
+        # By runs and not by names: the same name may come again later, of another sweep.
         for _, run in groupby(table.readings(lines), key=lambda one: (one.sweep, one.pose))
         for sweep in _one_way(list(run))
     ]
@@ -133,6 +134,7 @@ class _Table:
         if step_rad < _FINEST_RAD:
             self._note(sweep[0].line, "a sweep whose bearings do not change from reading to reading")
             return
+        # Readings that were left out leave gaps of whole steps: they are filled with what was not measured.
         beams = np.rint((bearings_rad - bearings_rad[0]) / step_rad).astype(np.int64)
         if beams[-1] >= _BEAMS_MAX or (np.diff(beams) < 1).any():
             self._note(sweep[0].line, "a sweep whose bearings lie neither evenly nor with gaps of whole steps")

@@ -51,6 +51,7 @@ def refuse_other_units(file: str, records: Sequence[LaserRecord], robots: Sequen
 
 def _typical_range_m(records: Sequence[LaserRecord]) -> float:
     told = np.concatenate([record.ranges_m for record in records])
+    # Different values and not all of them: a code for nothing came back may be half of a log.
     different = np.unique(told[np.isfinite(told) & (told > 0.0)].round(2))
     return float(np.median(different)) if len(different) >= _VALUES_MIN else 0.0
 
