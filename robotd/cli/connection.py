@@ -21,11 +21,13 @@ def connect(arguments: argparse.Namespace) -> "Client":
         TransportError: there is no daemon, or this user may not talk to it.
     """
     directory = Path(arguments.runtime_dir or runtime_dir_of_user())
+    # Told apart: without the right to enter, the socket seems not to be there.
     if directory.exists() and not os.access(directory, os.X_OK):
         raise TransportError(
             f"{directory}: permission denied: only members of its group may talk to robotd;"
             " join it, with: sudo usermod -aG robotd $USER, then log in again"
         )
+    # Asked plainly and at once: a client waits for seconds, as a daemon may be about to start.
     require_daemon(directory)
     from robotd.client import Client  # noqa: PLC0415  # where there is no daemon, nobody waits for its client
 

@@ -49,6 +49,7 @@ def live(arguments: argparse.Namespace, *, with_map: bool) -> int:
             while (key := pressed()) != "q":
                 if key:
                     board.told = _obeyed(client, key) or board.told
+                # All that came meanwhile, and then one picture of it.
                 _hear(events, board, _TICK_S)
                 shown = board.show(console.width, console.height, ink, with_map=with_map)
                 screen.update(shown, refresh=True)

@@ -82,6 +82,7 @@ _JSON = {"--json", "--events"}
 
 def verbs_of(word: str) -> "tuple[Verb, ...]":
     """Return the verbs that begin with a word: one, or a family."""
+    # By name, so that ``robotctl stop`` loads what stops and nothing else.
     verbs: tuple[Verb, ...] = importlib.import_module(f"robotd.cli.verbs.{WORDS[word][0]}").VERBS
     return tuple(verb for verb in verbs if verb.name.split()[0] == word)
 
@@ -163,6 +164,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:  # the reader of our output went away, as `head` does
+        # Else the interpreter would complain once more, as it flushes what nobody reads.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:  # a file that was named on the command line

@@ -63,6 +63,8 @@ def shown(client: "Client", mission: Mission) -> Iterator[Iterator[MissionEvent]
     """Start a mission and yield what happens, with bars that show it."""
     from robotd.cli.show.progress import MissionBars  # noqa: PLC0415  # where no mission begins, nobody waits for bars
 
+    # Closed at once where it is left: the generator stops the robot, and must not wait for a collection of
+    # garbage.
     with closing(client.run_mission(mission)) as events, MissionBars() as bars:
 
         def each() -> Iterator[MissionEvent]:
@@ -100,6 +102,7 @@ def _tell(event: MissionEvent) -> bool:
 def stopped(client: "Client") -> int:
     """Stop the robot, then say so; if it cannot be told, its lease will stop it, and that is said too."""
     try:
+        # Before anything is said: printing may wait for a terminal.
         client.stop("interrupted at the command line")
     except RobotdError as error:
         complain(f"interrupted, and the robot could not be told to stop: {error}; it stops when its lease runs out")

@@ -110,6 +110,7 @@ def check(path: Path, kind: Kind) -> None:
         elif stat.S_ISREG(mode):
             with path.open("rb") as file:
                 head = file.read(_HEAD_BYTES)
+            # An empty file may be written over: `mktemp` makes one.
             if head and not kind.is_one(head):
                 raise RobotdError(f"{path}: is there, and is not {kind.name}; it is left as it is")
     except FileNotFoundError:
@@ -155,9 +156,11 @@ def write(path: Path, content: bytes) -> None:
         RobotdError: it cannot be written; an older one is as it was.
     """
     try:
+        # A pipe cannot be replaced by a file, and somebody reads at its other end.
         if path.exists() and (not path.is_file() or path.is_relative_to("/dev")):
             path.write_bytes(content)
             return
+        # Through links: what is replaced is the file, and the link still leads to it.
         path = path.resolve()
         path.parent.mkdir(parents=True, exist_ok=True)
         _replace(path, content)
@@ -198,6 +201,7 @@ def writing(path: Path) -> Iterator[Callable[[bytes], None]]:
 
 
 def _replace(path: Path, content: bytes) -> None:
+    # A temporary file is for its owner alone; what takes the place of another keeps who may read it.
     mode = stat.S_IMODE(path.stat().st_mode) if path.exists() else 0o666 & ~_umask()
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
     try:

@@ -103,6 +103,7 @@ class AsyncClient(Methods, Awaiting):
         self._context = zmq.asyncio.Context()
         self._commands = self._context.socket(zmq.DEALER)
         connect_dealer(self._commands, self._endpoints, retry_s=self._retry_s)
+        # One reader for all tasks that ask: two that read one socket would take each other's answers.
         self._reader = asyncio.create_task(self._read_replies(), name="robotd client")
         return self
 
@@ -125,6 +126,7 @@ class AsyncClient(Methods, Awaiting):
         """
         async with self._follow(MISSION_TOPICS) as events:
             run = MissionRun(await self._start_or_stop(mission, lease_s), _now_s())
+            # A task of its own: who takes the events may stop to think for longer than a lease lasts.
             lease = asyncio.create_task(self._keep_lease(run), name=f"lease of mission {run.mission_id}")
             try:
                 while not run.is_over:

@@ -37,6 +37,7 @@ class Exchange(Generic[R]):
         self.id = request_id
         self._request = request
         self._whom = whom
+        # Encoded once: a repeat must be the same to the last bit, or it would not be known as one.
         self._data = encode_request(request_id, request, client)
         self._retry_s = retry_s
         self._deadline_s = now_s + deadline_s

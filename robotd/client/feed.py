@@ -49,6 +49,7 @@ class Feed:
         frame = Frame.of(data)
         # What was said before this reader came is no gap: the first message is the next one, whatever its number.
         place = self._places.setdefault(frame.topic, _Place(frame.session, frame.seq - 1, set()))
+        # Another life of the daemon counts from 0 again: its numbers say nothing of what was missed.
         if place.session != frame.session:
             self._places[frame.topic] = _Place(frame.session, frame.seq, {frame.event})
             return [Gap(frame.topic, None), frame]

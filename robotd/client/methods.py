@@ -83,6 +83,7 @@ class Method(Generic[P, V]):
     def __init__(self, make: Callable[P, Any], send: Callable[[Blocking | Awaiting, Any], Any]) -> None:
         self._make = make
         self._send = send
+        # That of the request: it is told once, where it is declared.
         self.__doc__ = make.__doc__
 
     @overload

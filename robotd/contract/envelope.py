@@ -69,11 +69,13 @@ def decode_request(
     request_id = None
     try:
         fields = _unpack(data, max_bytes)
+        # First of all that is read: an answer without its number would leave its client waiting.
         request_id = _id_of(fields)
         # After the number: so what is refused from here on names the request that it answers.
         _check(fields, _MAX_DEPTH)
         request, client = _request_of(fields, known), _client_of(fields)
     except ServerError as error:
+        # In this order: a stop whose reason alone is odd is a good one, and is answered as such.
         return _stop_for_an_odd_reason(data) or _bad(request_id, error, means_stop=means_stop(data))
     if request_id is None:
         nameless = ServerError(ErrorCode.MALFORMED, "id must be a whole number from 0 to 2^63 - 1")
@@ -155,6 +157,8 @@ def _unpack(data: bytes, max_bytes: int) -> dict[str, Any]:
     try:
         fields = msgpack.unpackb(
             data,
+            # Of two keys alike another reader may take the other one: what was checked would not be what is
+            # done.
             object_pairs_hook=_without_duplicates,
             max_str_len=max_bytes,
             # No argument is of these two types. A stop whose reason is bytes is recognized elsewhere.
@@ -182,6 +186,7 @@ def _check(value: object, depth: int) -> None:
         raise ServerError(ErrorCode.BAD_ARGUMENT, f"numbers must be finite, got {value}")
     if not isinstance(value, dict | list):
         return
+    # Bounded here and not by the reader: its own bound is the stack of this process.
     if depth == 0:
         raise ServerError(ErrorCode.MALFORMED, f"nested more than {_MAX_DEPTH} deep")
     for item in value.values() if isinstance(value, dict) else value:
@@ -209,6 +214,8 @@ def _request_of(fields: dict[str, Any], known: Mapping[str, type[Request[Any]]])
         request: Request[Any] = msgspec.convert(_arguments_of(fields), kind, strict=True)
     except msgspec.ValidationError as error:
         raise ServerError(ErrorCode.BAD_ARGUMENT, f"{name}: {_in_words(error)}") from error
+    # Made again by its own rule, which cuts the reason and makes it printable: no other stop reaches the
+    # mission.
     return Stop.because(request.reason) if isinstance(request, Stop) else request
 
 

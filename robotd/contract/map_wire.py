@@ -85,6 +85,7 @@ def _unpack_changes(payload: MapPayload, spec: GridSpec) -> tuple[NDArray[np.int
     values = np.frombuffer(payload.values_u8, dtype=np.uint8)
     if len(cells) != len(values):
         raise ValueError(f"{len(cells)} indices with {len(values)} values")
+    # Looked at before it is used: NumPy would count from the end, or refuse in the middle of a map.
     if len(cells) and int(cells.max()) >= spec.rows * spec.cols:
         raise ValueError(f"index {int(cells.max())} lies outside of {spec.rows} x {spec.cols} cells")
     return cells, values

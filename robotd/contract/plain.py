@@ -33,6 +33,7 @@ def from_plain(kind: type[T], fields: object) -> T:
     """
     if kind is MapChanged:
         return unpack_map(msgspec.convert(fields, MapPayload, strict=True))  # type: ignore[return-value]  # T is it
+    # Strict: a number sent as text is a mistake of its sender, and taking it would hide that.
     return msgspec.convert(fields, kind, strict=True)
 
 

@@ -53,8 +53,11 @@ def _map_says_stop(fields: Pairs, data: bytes) -> bool:
     commands = [value for key, value in fields if isinstance(key, bytes) and _plain(key) in _KEYS]
     if any(_says_stop(command) for command in commands) or any(_is_word(key) for key, _ in fields):
         return True
+    # A command that exists is that command: a map may be called ``stop``, and saving it must not stop the
+    # robot.
     if any(isinstance(command, bytes) and _plain(command) in _OTHERS for command in commands):
         return False
+    # Whatever key it stands under: who writes it by hand may not know ours.
     return any(_is_word(value) for _, value in fields) or _speaks_of_stopping(data)
 
 
@@ -75,6 +78,7 @@ def _speaks_of_stopping(data: bytes) -> bool:
         if _is_almost_a_word(name) or (match.end() == len(plain) and _is_cut_off(name)):
             return True
         is_another = is_another or name in _OTHERS
+    # As a word of its own: ``nonstop`` is none.
     return not is_another and _ALONE.search(plain) is not None
 
 

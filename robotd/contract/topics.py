@@ -122,6 +122,7 @@ class Frame:
         """Return the message of these bytes; RemoteProtocolError if it is none, or of another version."""
         topic, _, packed = data.partition(_END_OF_TOPIC)
         try:
+            # The envelope alone: who hands messages on need not take a map apart.
             envelope = msgspec.msgpack.decode(packed, type=_Envelope)
             name = topic.decode()
         except ValueError as error:
@@ -155,6 +156,7 @@ def from_wire(fields: dict[str, Any]) -> Published | None:
         RemoteProtocolError: it is not what its name promises.
     """
     kind = _KINDS.get(fields.get("event", ""))
+    # None and no error: a daemon of a later version tells more, and clients of today go on.
     if kind is None:
         return None
     try:
