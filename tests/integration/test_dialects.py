@@ -1,5 +1,7 @@
 """The daemon maps a room and localizes in it whatever its devices speak."""
 
+from dataclasses import replace
+
 import pytest
 
 from robotd.cli.emulated import config_text
@@ -7,11 +9,13 @@ from robotd.config import Config, loads
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.missions import Localize, MapStart
 from robotd.hardware.devices.catalogue import MOTORLESS, SCANNERS
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
 from robotd.sim.robot import DEVICES, SimulatedRobot
 from tests.integration.conftest import Live
 
+READINGS = 150
 COMBINATIONS = [
     *(Dialects(drive=dialect) for dialect in DRIVES if dialect != OWN),
     *(Dialects(pantilt=dialect) for dialect in PANTILTS if dialect not in {OWN, MOTORLESS}),
@@ -35,7 +39,8 @@ def name_of(dialects: Dialects) -> str:
 async def test_a_room_is_mapped_and_the_robot_finds_itself_in_it(live: Live, dialects: Dialects) -> None:
     world = load_world("office")
     robot = SimulatedRobot(world, seed=2, dialects=dialects)
-    async with live(robot, config_for(dialects)) as it:
+    config = replace(config_for(dialects), sweep=SweepSettings(readings=READINGS))
+    async with live(robot, config) as it:
         await it.done(MapStart.of("office", world.stops_m[:1], world.start_pose))
         said = await it.done(Localize())
         estimate = [event for event in said if isinstance(event, PoseEstimate) and event.final][-1]

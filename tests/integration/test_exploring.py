@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from robotd.config import Config
 from robotd.contract.area import Bounds
 from robotd.contract.arguments import PoseArgument
 from robotd.contract.events import Event, MissionPhase, MissionProgress, StopPlaced, SweepDone
@@ -14,6 +15,7 @@ from robotd.contract.missions import Explore, with_lease
 from robotd.contract.requests import MapLoad, PlanTo, RecordStart, RecordStop
 from robotd.core.errors import MapError
 from robotd.core.pose import Pose2
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.motion.legs import next_odometry
 from robotd.sim.buildings.world import Start, Wall, load_world
 from robotd.sim.physics.noise import NoiseSettings
@@ -23,6 +25,7 @@ from tests.support.replayed import check, replayed
 
 pytestmark = pytest.mark.slow
 
+QUICK = Config(sweep=SweepSettings(readings=150))
 LYING = SimSettings(noise=NoiseSettings(translation_scale_error=0.05, drift_noise_rad=0.02))
 """Wheels that count 5 % short, and wander."""
 
@@ -66,7 +69,7 @@ async def test_it_explores_an_office_by_itself_and_the_replay_does_the_same(live
 
 async def test_what_was_asked_for_comes_first_and_a_budget_ends_it(live: Live) -> None:
     robot = robot_in("laboratory")
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         said = await it.done(Explore.of("lab", robot.start, stops_m=((2.5, 1.2),), stops_max=3))
     first, second = chosen(said)
     assert ((first.x_m, first.y_m), first.reason, first.candidates) == ((2.5, 1.2), "asked for", ())
@@ -79,7 +82,7 @@ async def test_what_was_asked_for_comes_first_and_a_budget_ends_it(live: Live) -
 @pytest.mark.parametrize("budget", [{"way_max_m": 1.0}, {"time_max_s": 20.0}])
 async def test_way_and_time_are_budgets_too(live: Live, budget: dict[str, float]) -> None:
     robot = robot_in("laboratory")
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         end = ended(await it.done(Explore.of("lab", robot.start, **budget)))
     assert end.ending == "budget"
     assert end.stops <= 4
@@ -87,7 +90,7 @@ async def test_way_and_time_are_budgets_too(live: Live, budget: dict[str, float]
 
 async def test_bounds_keep_it_in_and_must_hold_the_robot(live: Live) -> None:
     robot = robot_in("laboratory")
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         _, end = await it.do(Explore.of("lab", robot.start, within=Bounds(3.0, 3.0, 6.0, 6.0)))
         assert end.phase is MissionPhase.FAILED
         assert "outside of the bounds" in end.message
@@ -125,14 +128,14 @@ def put(robot: SimulatedRobot, wall: Wall) -> None:
 
 async def test_it_does_not_begin_where_no_map_could_be_kept(live: Live, tmp_path: Path) -> None:
     (tmp_path / "maps").write_text("a file")
-    async with live(robot_in("office")) as it:
+    async with live(robot_in("office"), QUICK) as it:
         with pytest.raises(MapError, match=r"no map could be kept in .*maps"):
             await it.daemon.control.perform(with_lease(Explore.of("office"), 1.0))
         assert it.daemon.control.status.mission_id is None
 
 
 async def test_going_on_needs_a_map(live: Live) -> None:
-    async with live(robot_in("office")) as it:
+    async with live(robot_in("office"), QUICK) as it:
         _, end = await it.do(Explore.of("office", resume=True))
         assert end.phase is MissionPhase.FAILED
         assert "no map is in use" in end.message
@@ -140,7 +143,7 @@ async def test_going_on_needs_a_map(live: Live) -> None:
 
 async def test_going_on_takes_the_map_in_use_and_its_name(live: Live) -> None:
     robot = robot_in("office")
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         await it.done(Explore.of("office", robot.start, stops_max=2))
         _, end = await it.do(Explore.of("kitchen", resume=True))
         assert "the map in use is office, not kitchen" in end.message
@@ -157,12 +160,12 @@ async def test_going_on_takes_the_map_in_use_and_its_name(live: Live) -> None:
 
 async def test_after_a_crash_it_goes_on_from_the_stops_that_were_kept(live: Live) -> None:
     robot = robot_in("laboratory")
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         await it.done(Explore.of("lab", robot.start, stops_max=4))
         await it.daemon.control.keeping.keep()
     stood = robot.truth
     again = SimulatedRobot(replace(load_world("laboratory"), start=_start(stood)), 2, LYING)
-    async with live(again) as it:
+    async with live(again, QUICK) as it:
         control = it.daemon.control
         recording = await control.perform(RecordStart())
         await next_odometry(it.daemon.robot.drive, 1.0)
@@ -183,7 +186,7 @@ async def test_a_bump_is_a_place_on_the_map_from_then_on(live: Live, tmp_path: P
     """A box too low for the laser: it is bumped into once, kept with the map, and gone round afterwards."""
     low = Wall(((2.4, 1.0), (2.7, 1.0), (2.7, 1.4), (2.4, 1.4)), height_m=0.1)
     robot = robot_in("laboratory", low)
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         control = it.daemon.control
         _, end = await it.do(Explore.of("lab", robot.start, stops_m=((4.2, 1.2),), stops_max=2))
         assert end.phase is MissionPhase.STOPPED

@@ -9,6 +9,7 @@ from robotd.contract.events import Event, MapChanged, StopPlaced, SweepDone
 from robotd.contract.missions import MapStart
 from robotd.core.pose import Pose2
 from robotd.localization.stop_poses import StopPoses
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.sim.buildings.world import load_world
 from robotd.sim.physics.noise import NoiseSettings
 from robotd.sim.robot import SimSettings, SimulatedRobot
@@ -17,6 +18,7 @@ from tests.support.living import Living
 
 pytestmark = pytest.mark.slow
 
+QUICK = Config(sweep=SweepSettings(readings=150))
 LYING = NoiseSettings(translation_scale_error=0.05, rotation_scale_error=0.03, drift_noise_rad=0.02)
 """Wheels that count 5 % short and turns that go 3 % too far, and wander."""
 
@@ -34,7 +36,7 @@ async def mapped(it: Living, robot: SimulatedRobot) -> tuple[list[Event], Pose2]
 
 async def test_stops_are_placed_to_centimetres_where_odometry_is_decimetres_off(live: Live) -> None:
     robot = lying_robot()
-    async with live(robot) as it:
+    async with live(robot, QUICK) as it:
         said, by_odometry = await mapped(it, robot)
         placed = [event for event in said if isinstance(event, StopPlaced)]
         assert [event.stop for event in placed] == list(range(6))
@@ -52,8 +54,8 @@ async def test_stops_are_placed_to_centimetres_where_odometry_is_decimetres_off(
 
 
 async def test_where_that_is_not_wanted_odometry_has_the_only_say(live: Live) -> None:
-    robot, config = lying_robot(), Config()
-    config = replace(config, localization=replace(config.localization, stops=StopPoses.ODOMETRY))
+    robot = lying_robot()
+    config = replace(QUICK, localization=replace(QUICK.localization, stops=StopPoses.ODOMETRY))
     async with live(robot, config) as it:
         said, by_odometry = await mapped(it, robot)
         assert not any(isinstance(event, StopPlaced) for event in said)
