@@ -90,7 +90,7 @@ def _let_watchers_end() -> None:
     """Threads that watched a line end soon after it was closed, and close what rang them."""
     for thread in threading.enumerate():
         if thread.name.startswith("watch "):
-            thread.join(1.0)
+            thread.join(5.0)
 
 
 def _open_descriptors() -> set[tuple[str, str]]:

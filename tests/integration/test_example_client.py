@@ -15,11 +15,14 @@ from robotd.cli.demo.rig import rig, wired
 from robotd.client import Client
 from robotd.config import Config
 from robotd.contract.missions import MapStart
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.sim.buildings.world import load_world
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_clock, pytest.mark.shares_descriptors]
 
 DOCS = Path(__file__).parents[2] / "docs"
+READINGS = 150
+PATIENCE_S = 180.0
 WHERE = r"localized at x (0\.9|1\.0)\d\d m, y (1\.0|1\.1)\d\d m, \d+ of \d+ readings explained"
 
 
@@ -27,7 +30,8 @@ WHERE = r"localized at x (0\.9|1\.0)\d\d m, y (1\.0|1\.1)\d\d m, \d+ of \d+ read
 def runtime_dir(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Where a daemon serves that has made a map of the office from one stop, where its robot still stands."""
     directory = tmp_path_factory.mktemp("rig")
-    with rig(directory, wired(Config(), directory), ["sim", "office"]) as parts:
+    config = Config(sweep=SweepSettings(readings=READINGS))
+    with rig(directory, wired(config, directory), ["sim", "office"]) as parts:
         parts.client.arm()
         for _ in parts.client.run_mission(MapStart.of("office", (), load_world("office").start_pose), lease_s=5.0):
             pass
@@ -43,7 +47,7 @@ def run(runtime_dir: Path, *arguments: str) -> str:
         env={**os.environ, "ROBOTD_RUNTIME_DIR": str(runtime_dir)},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=PATIENCE_S,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
@@ -79,6 +83,6 @@ def test_the_client_in_javascript_asks_listens_and_stops_the_robot_when_it_is_in
         # A new subscriber hears the newest pose at once.
         assert re.match(r"(localized|predicted): x \d\.\d+ m, y \d\.\d+ m", program.stdout.readline())
         program.send_signal(signal.SIGINT)
-        program.communicate(timeout=10)
+        program.communicate(timeout=PATIENCE_S)
         assert program.returncode == 0
         assert client.status().reason == "Ctrl-C in the example"

@@ -79,7 +79,7 @@ def _hold_on(runtime_dir: Path, running: Event) -> None:
 
 async def loop_stall(rig: Rig, trials: int) -> AsyncIterator[float]:
     """The loop computes for 0.4 s while the base is driven: from 0.2 s after that began, when the guard must act."""
-    async with rig.daemon(STALLING_DAEMON) as daemon, AsyncClient(rig.runtime_dir) as client:
+    async with rig.daemon(STALLING_DAEMON, "few.toml") as daemon, AsyncClient(rig.runtime_dir) as client:
         assert daemon.stdout is not None
         start = rig.robot.start
         await armed(client)

@@ -9,7 +9,7 @@ from tests.studies.safety.run import measured, percentile
 from tests.support.real_rig import ms_since
 from tests.support.ways_to_end import CAUSES, ON_C_BOARDS
 
-TRIALS = {"lease expiry": 8, "client killed": 1, "loop stall": 8, "SIGTERM": 2, "daemon killed": 1, ON_C_BOARDS: 1}
+TRIALS = {"lease expiry": 4, "client killed": 1, "loop stall": 4, "SIGTERM": 1, "daemon killed": 1, ON_C_BOARDS: 1}
 SOON_MS = 500.0
 """However busy the machine that runs the tests; how soon it really is, ``make safety`` says."""
 needs_c = pytest.mark.skipif(

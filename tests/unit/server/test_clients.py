@@ -181,7 +181,7 @@ async def test_frames_are_handed_on_as_they_are(serving: Serving, tmp_path: Path
     async with serving() as control, AsyncClient(tmp_path) as robot:
         control.events.publish(Odometry(1, IDENTITY, STANDSTILL))
         heard: list[Frame] = []
-        async with asyncio.timeout(5), aclosing(robot.frames("odometry", "status", "map")) as frames:
+        async with asyncio.timeout(60.0), aclosing(robot.frames("odometry", "status", "map")) as frames:
             async for frame in frames:
                 assert isinstance(frame, Frame)
                 if frame.event not in {one.event for one in heard}:

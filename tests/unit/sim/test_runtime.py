@@ -174,7 +174,7 @@ async def hello(line: Transport) -> int:
     """Say HELLO and return the boot id."""
     line.write(encode_frame(RawFrame(Hello.TYPE, 1, Hello(1, 0, 5).to_payload())))
     deframer = Deframer()
-    async with asyncio.timeout(5.0):
+    async with asyncio.timeout(60.0):
         while True:
             for frame in deframer.feed(await line.read()):
                 if frame.type == HelloReply.TYPE:
@@ -186,7 +186,7 @@ async def on_ptys(robot: EmulatedRobot, directory: Path) -> AsyncIterator[dict[s
     announced: asyncio.Future[dict[str, str]] = asyncio.get_running_loop().create_future()
     task = asyncio.create_task(run_on_ptys(robot, announce=announced.set_result, directory=directory))
     try:
-        async with asyncio.timeout(5.0):
+        async with asyncio.timeout(60.0):
             yield await announced
     finally:
         task.cancel()

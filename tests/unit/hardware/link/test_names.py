@@ -19,7 +19,7 @@ from tests.support.taps import NoTap
 
 
 async def until(device: BoardDrive, link: LinkState, detail: str = "") -> None:
-    async with asyncio.timeout(20.0):
+    async with asyncio.timeout(60.0):
         with device.status_changes.subscribe() as changes:
             while device.status.link is not link or detail not in device.status.detail:
                 await changes.get()
