@@ -134,7 +134,7 @@ async def run(config: Config) -> int:
             with stopping_on_errors(partial(_halt, daemon)):
                 # Round everything that moves the robot, and inside what keeps the last map, which may hold up
                 # the loop at will.
-                async with guarded(stalls.stop_past_loop, stalls.stalled):
+                async with guarded(stalls.must_stop, daemon.robot.stop_past_loop, stalls.stalled):
                     await _serve(config, daemon, thinking, ending)
         except asyncio.CancelledError:
             if not ending.is_hastened:

@@ -35,17 +35,19 @@ Stalled = Callable[[float, bool, str], None]
 
 
 @contextlib.asynccontextmanager
-async def guarded(stop_past_loop: Callable[[int], bool], stalled: Stalled) -> AsyncIterator[None]:
+async def guarded(
+    must_stop: Callable[[], bool], stop_past_loop: Callable[[int], None], stalled: Stalled
+) -> AsyncIterator[None]:
     """Guard the running loop for as long as the block lasts.
 
     Args:
-        stop_past_loop: puts the stop on every wire if it must, and says whether it did; called in the guard's thread,
-            and if it did, again every :data:`PAST_LOOP_S` until the loop turns, and told how often it was called before
-            in this stall.
+        must_stop: says whether there is anything to stop; asked in the guard's thread.
+        stop_past_loop: puts the stop on every wire; called in the guard's thread, again every :data:`PAST_LOOP_S` until
+            the loop turns, and told how often it was called before in this stall.
         stalled: called on the loop, as soon as it turns again: how long it stood still, whether the robot was stopped,
             and where the loop was.
     """
-    guard = _Guard(stop_past_loop, stalled)
+    guard = _Guard(must_stop, stop_past_loop, stalled)
     # A daemon thread: an interpreter that ends must not wait for one that waits for the loop.
     thread = threading.Thread(target=guard.watch, name="stall guard", daemon=True)
     switch_s = sys.getswitchinterval()
@@ -65,7 +67,8 @@ async def guarded(stop_past_loop: Callable[[int], bool], stalled: Stalled) -> As
 
 
 class _Guard:
-    def __init__(self, stop_past_loop: Callable[[int], bool], stalled: Stalled) -> None:
+    def __init__(self, must_stop: Callable[[], bool], stop_past_loop: Callable[[int], None], stalled: Stalled) -> None:
+        self._must_stop = must_stop
         self._stop_past_loop = stop_past_loop
         self._stalled = stalled
         self._due_s: float | None = None
@@ -109,13 +112,16 @@ class _Guard:
             # A wait with a bound, not a sleep: the thread is woken by each beat, and computes nothing in
             # between.
             if not self._beaten.wait(STALL_S):
-                has_stopped = self._stop(0)
-                # After the stop: to walk the stack takes time that a stop has not.
-                self._stuck_in = self._where()
-                if has_stopped:
+                if self._has_reason():
+                    # Before its first byte: the loop may turn again while this thread waits for its turn, and a board
+                    # that says that it was stopped must find a stall told that explains it.
                     self._has_stopped.set()
+                    self._stop(0)
+                    # After the stop: to walk the stack takes time that a stop has not.
+                    self._stuck_in = self._where()
                     self._go_on_stopping()
                 else:
+                    self._stuck_in = self._where()
                     self._beaten.wait()
             self._beaten.clear()
 
@@ -126,14 +132,19 @@ class _Guard:
                 return
             self._stop(before)
 
-    def _stop(self, before: int) -> bool:
-        """Stop, and say whether there was reason to; what goes wrong must not end the thread, all that is left."""
+    def _has_reason(self) -> bool:
         try:
-            return self._stop_past_loop(before)
+            return self._must_stop()
+        except Exception:
+            log.exception("whether the robot must be stopped past the loop cannot be said")
+            return True
+
+    def _stop(self, before: int) -> None:
+        """Stop; what goes wrong must not end the thread: the loop stops, too, as soon as it turns."""
+        try:
+            self._stop_past_loop(before)
         except Exception:
             log.exception("the robot could not be stopped past the loop")
-            # Taken for stopped: it is told on the loop as if it had been, and stopped there in any case.
-            return True
 
     def _where(self) -> str:
         """Return where the loop's thread is: who reads the log wants to know what held it up."""

@@ -22,15 +22,12 @@ class Stalls:
         self._daemon = daemon
         self._log = log_place()
 
-    def stop_past_loop(self, before: int) -> bool:
-        """Put the stop on every wire if the base is driven, from any thread; return whether it was.
+    def must_stop(self) -> bool:
+        """Return whether the base is driven, from any thread.
 
         What merely sweeps or computes goes on: nothing of it can hurt anybody.
         """
-        is_driven = self._daemon.robot.drive.is_driven
-        if is_driven:
-            self._daemon.robot.stop_past_loop(before)
-        return is_driven
+        return self._daemon.robot.drive.is_driven
 
     def stalled(self, stood_still_s: float, was_stopped: bool, stuck_in: str) -> None:
         """Tell the mission, and the log."""

@@ -14,20 +14,26 @@ from robotd.hardware.transport.pty import open_pty
 from robotd.hardware.transport.serial_port import open_serial
 
 
+def always() -> bool:
+    return True
+
+
+def never_called(before: int) -> None:
+    raise AssertionError("nothing was to be stopped")
+
+
 @pytest.mark.real_clock
 async def test_a_stuck_loop_gets_the_stop_onto_the_wire_while_it_is_stuck() -> None:
     board, told = open_pty(), asyncio.Event()
     line = await open_serial(board.path, LineFormat(115_200))
     stopped = threading.Event()
 
-    def stop(before: int) -> bool:
-        if before:
-            return True
-        line.write_past_loop(b"stop")
-        stopped.set()
-        return True
+    def stop(before: int) -> None:
+        if not before:
+            line.write_past_loop(b"stop")
+            stopped.set()
 
-    async with guarded(stop, lambda *_: told.set()):
+    async with guarded(always, stop, lambda *_: told.set()):
         await asyncio.sleep(0)  # the first beat
         began_s = time.monotonic()
         assert stopped.wait(60.0), "the guard did nothing"  # blocks the loop, which is the point
@@ -40,20 +46,25 @@ async def test_a_stuck_loop_gets_the_stop_onto_the_wire_while_it_is_stuck() -> N
 
 @pytest.mark.real_clock
 async def test_a_loop_that_turns_is_left_alone_and_each_stall_is_told_once() -> None:
+    asked: list[str] = []
     stops: list[str] = []
     stalls: list[tuple[float, bool, str]] = []
 
-    def stop(before: int) -> bool:
+    def once() -> bool:
+        asked.append("must it stop?")
+        return len(asked) == 1  # the second time there is nothing to stop
+
+    def stop(before: int) -> None:
         if before == 0:
             stops.append("stop")
-        return len(stops) == 1  # the second time there is nothing to stop
 
-    async with guarded(stop, lambda *stall: stalls.append(stall)):
+    async with guarded(once, stop, lambda *stall: stalls.append(stall)):
         await asyncio.sleep(0)
         for count in (1, 2):
             time.sleep(3 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
             await asyncio.sleep(STALL_S / 8)
-            assert (len(stops), len(stalls)) == (count, count)
+            assert (len(asked), len(stalls)) == (count, count)
+    assert stops == ["stop"]
     assert all(stood_still_s > STALL_S and "time.sleep" in where for stood_still_s, _, where in stalls)
     assert [was_stopped for _, was_stopped, _ in stalls] == [True, False]
     assert attention().missed_s == 0.0  # for those who are told to add up
@@ -62,7 +73,9 @@ async def test_a_loop_that_turns_is_left_alone_and_each_stall_is_told_once() -> 
 async def test_a_stop_is_told_with_what_the_thread_waited_though_the_loop_told_of_the_stall_before() -> None:
     """A process that stood still wakes as a whole: now the loop is first to see it, now the thread."""
     stalls: list[tuple[float, bool]] = []
-    guard = _Guard(lambda _: True, lambda stood_still_s, was_stopped, _: stalls.append((stood_still_s, was_stopped)))
+    guard = _Guard(
+        always, never_called, lambda stood_still_s, was_stopped, _: stalls.append((stood_still_s, was_stopped))
+    )
     guard._due_s = asyncio.get_running_loop().time() - 5.0
     guard.look()
     guard._has_stopped.set()
@@ -74,7 +87,7 @@ async def test_a_stop_is_told_with_what_the_thread_waited_though_the_loop_told_o
 @pytest.mark.real_clock
 async def test_whoever_reads_first_after_a_stall_finds_it_noted() -> None:
     stalls: list[float] = []
-    async with guarded(lambda _: False, lambda stood_still_s, *_: stalls.append(stood_still_s)):
+    async with guarded(lambda: False, never_called, lambda stood_still_s, *_: stalls.append(stood_still_s)):
         await asyncio.sleep(0)
         time.sleep(STALL_S)  # noqa: ASYNC251  # a loop that is stuck
         attention().look()
@@ -84,17 +97,50 @@ async def test_whoever_reads_first_after_a_stall_finds_it_noted() -> None:
 
 
 @pytest.mark.real_clock
+async def test_what_a_stop_leads_to_is_read_as_its_work_though_the_thread_is_not_done_with_it() -> None:
+    """On a busy machine the thread waits for its turn between the wires, and boards answer sooner."""
+    stalls: list[tuple[bool, bool]] = []
+    writing, read = threading.Event(), threading.Event()
+
+    def stop(before: int) -> None:
+        writing.set()
+        read.wait(10.0)
+
+    async with guarded(always, stop, lambda _, was_stopped, __: stalls.append((was_stopped, read.is_set()))):
+        await asyncio.sleep(0)
+        assert writing.wait(10.0)  # blocks the loop, which is the point
+        attention().look()  # as who reads does, before anything is made of what was read
+        assert stalls == [(True, False)]
+        read.set()
+
+
+@pytest.mark.real_clock
+async def test_a_question_that_fails_is_a_reason_to_stop(caplog: pytest.LogCaptureFixture) -> None:
+    said: list[int] = []
+
+    def fails() -> bool:
+        raise ZeroDivisionError("a mistake")
+
+    async with guarded(fails, said.append, lambda *_: None):
+        await asyncio.sleep(0)
+        time.sleep(2 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
+        await asyncio.sleep(STALL_S / 4)
+    assert said[0] == 0
+    assert any("cannot be said" in message for message in caplog.messages)
+
+
+@pytest.mark.real_clock
 async def test_a_stop_that_fails_is_told_and_the_next_stall_is_seen_all_the_same(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     asked: list[int] = []
     stalls: list[str] = []
 
-    def stop(before: int) -> bool:
+    def stop(before: int) -> None:
         asked.append(before)
         raise OSError("no way to the wire")
 
-    async with guarded(stop, lambda *_: stalls.append("stall")):
+    async with guarded(always, stop, lambda *_: stalls.append("stall")):
         for count in (1, 2):
             await asyncio.sleep(STALL_S / 2)
             time.sleep(2 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
@@ -107,11 +153,7 @@ async def test_a_stop_that_fails_is_told_and_the_next_stall_is_seen_all_the_same
 async def test_the_stop_is_said_again_until_the_loop_turns_and_then_no_more() -> None:
     said: list[int] = []
 
-    def stop(before: int) -> bool:
-        said.append(before)
-        return True
-
-    async with guarded(stop, lambda *_: None):
+    async with guarded(always, said.append, lambda *_: None):
         await asyncio.sleep(0)
         time.sleep(3 * STALL_S)  # noqa: ASYNC251  # a loop that is stuck
         await asyncio.sleep(STALL_S / 4)
@@ -141,7 +183,7 @@ async def test_a_mistake_in_what_is_told_stops_the_robot_and_ends_neither_the_be
         raise ZeroDivisionError("a mistake")
 
     with stopping_on_errors(halts.append):
-        async with guarded(lambda _: False, stalled):
+        async with guarded(lambda: False, never_called, stalled):
             await asyncio.sleep(0)
             time.sleep(STALL_S)  # noqa: ASYNC251  # a loop that is stuck
             attention().look()
