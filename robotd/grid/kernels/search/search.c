@@ -15,8 +15,7 @@
 #include "shared/arena.h"
 #include "shared/threads.h"
 
-#define HOPES 64 /* this many bounds are made finer before the search, and this many windows of them tried */
-#define SEEDS 16
+#define HOPES 64 /* this many bounds at a time are made finer, and the windows tried that they lead to */
 #define STEPS 12
 #define FEW_WINDOWS 1 /* as many windows are looked at sooner than the blocks in them are bounded */
 
@@ -173,23 +172,21 @@ static int may_hold(const search *s, int32_t heading, int32_t unit)
     return !s->job->by_blocks || s->bounds[(size_t)heading * (size_t)s->units + (size_t)unit] >= s->asked;
 }
 
-/* Search the units of a heading that can hold an answer, as far as its share of the budget goes. */
-static void search_heading(worker *self, int32_t heading)
+/* Search the units of a heading that can hold an answer, as far as its share of the budget goes: one at least. */
+static void search_heading(worker *self, place_in_search *at)
 {
     search *s = self->shared;
     const int64_t before = looked_at(self);
     int drawn = 0;
-    for (int32_t unit = 0; unit < s->units; unit++) {
-        if (!may_hold(s, heading, unit))
+    for (; at->unit < s->units; at->unit++) {
+        if (!may_hold(s, at->heading, at->unit))
             continue;
-        if (looked_at(self) - before > s->share) {
-            __atomic_store_n(&s->job->is_complete, 0, __ATOMIC_RELAXED);
+        if (looked_at(self) - before > s->share)
             return;
-        }
         if (!drawn)
-            draw(self, heading);
+            draw(self, at->heading);
         drawn = 1;
-        search_unit(self, heading, unit);
+        search_unit(self, at->heading, at->unit);
     }
 }
 
@@ -201,7 +198,7 @@ static void work(void *shared, int32_t number)
         if (s->phase == BOUNDING)
             bound_heading(self, next);
         else
-            search_heading(self, s->together[next]);
+            search_heading(self, &s->together[next]);
 }
 
 /* Share what was taken among the threads. */
@@ -222,16 +219,19 @@ static void look_up(search *s)
     s->reached = s->job->best_rank;
 }
 
-/* Take the next headings that can hold an answer. Returns how many. */
+/* Take the next headings that can hold an answer, after those whose share was too small. Returns how many. */
 static int32_t take_some(search *s, int32_t *next)
 {
     int32_t taken = 0;
+    for (int32_t i = 0; i < s->taken; i++)
+        if (s->together[i].unit < s->units)
+            s->together[taken++] = s->together[i];
     for (; taken < TOGETHER && *next < s->ordered; ++*next) {
         int32_t unit = 0;
         while (unit < s->units && !may_hold(s, s->order[*next], unit))
             unit++;
         if (unit < s->units)
-            s->together[taken++] = s->order[*next];
+            s->together[taken++] = (place_in_search){s->order[*next], unit};
     }
     return taken;
 }
@@ -240,6 +240,7 @@ static int32_t take_some(search *s, int32_t *next)
 static void search_all(search *s, int64_t budget)
 {
     int32_t next = 0, taken;
+    s->taken = 0;
     for (look_up(s); (taken = take_some(s, &next)) > 0; look_up(s)) {
         s->share = (budget - s->work) / taken;
         if (s->share <= 0) {
@@ -252,10 +253,10 @@ static void search_all(search *s, int64_t budget)
     }
 }
 
-/* Bring the best of some to their beginning, in order; equal ones stay in the order of headings. */
-static void sort_best(hope *hopes, int32_t count, int32_t best)
+/* The best first; equal ones stay in their order. */
+static void sort_best(hope *hopes, int32_t count)
 {
-    for (int32_t i = 0; i < best && i < count; i++) {
+    for (int32_t i = 0; i < count; i++) {
         int32_t first = i;
         for (int32_t j = i + 1; j < count; j++)
             first = hopes[j].bound > hopes[first].bound ? j : first;
@@ -265,7 +266,7 @@ static void sort_best(hope *hopes, int32_t count, int32_t best)
     }
 }
 
-/* The best of all bounds, at most one for each heading. */
+/* The best of all bounds, at most one for each heading, the best first. */
 static int32_t hopes_of(const search *s, hope *hopes)
 {
     int32_t count = 0;
@@ -279,33 +280,50 @@ static int32_t hopes_of(const search *s, hope *hopes)
         if (best.bound >= s->least)
             hopes[count++] = best;
     }
-    sort_best(hopes, count, HOPES);
+    sort_best(hopes, count);
     return count;
 }
 
-/* Look at the best bounds first: some rank is reached there. Returns the best bound of all. */
+/* Try the window that a hope leads to: some rank may be reached there. */
+static void try_hope(search *s, worker *first, const hope *h)
+{
+    look_up(s);
+    if (h->place[0] >= s->job->map->rows || h->place[1] >= s->job->map->cols || allowed_misses(s) < 0 ||
+        !open_window(s->job, h->place[0], h->place[1], &first->at))
+        return;
+    draw(first, h->heading);
+    if (s->with->count_ends(s->job, first->beams, &first->at, allowed_misses(s)))
+        try_best(first);
+}
+
+/* Make some bounds finer, and try the best of them. */
+static void try_some(search *s, worker *first, hope *hopes, int32_t count)
+{
+    for (int32_t i = 0; i < count; i++) {
+        draw(first, hopes[i].heading);
+        hopes[i].bound = descend(first, hopes[i].heading, hopes[i].unit, hopes[i].place);
+    }
+    sort_best(hopes, count);
+    for (int32_t i = 0; i < count && hopes[i].bound > s->job->best_rank && hopes[i].bound >= s->least; i++)
+        try_hope(s, first, hopes + i);
+}
+
+/* How far down the rank that is asked for goes at a time. */
+static int32_t step_of(const search_job *job)
+{
+    return larger(1, job->reading_count / STEPS);
+}
+
+/* Look at the best bounds first: some rank is reached there. Where it is far from the bounds they tell little, and are
+ * alike at most headings: then others are tried as well. Returns the best bound of all. */
 static int32_t seed(search *s, worker *first)
 {
-    const int32_t all = hopes_of(s, s->hopes), count = clamp(all, 0, HOPES), best = all ? s->hopes[0].bound : 0;
+    const int32_t all = hopes_of(s, s->hopes), best = all ? s->hopes[0].bound : 0;
     for (int32_t i = 0; i < all; i++)
         s->order[i] = s->hopes[i].heading;
     s->ordered = all;
-    for (int32_t i = 0; i < count; i++) {
-        hope *h = s->hopes + i;
-        draw(first, h->heading);
-        h->bound = descend(first, h->heading, h->unit, h->place);
-    }
-    sort_best(s->hopes, count, SEEDS);
-    for (int32_t i = 0; i < clamp(count, 0, SEEDS) && s->hopes[i].bound >= s->least; i++) {
-        const int32_t *place = s->hopes[i].place;
-        look_up(s);
-        if (place[0] >= s->job->map->rows || place[1] >= s->job->map->cols || allowed_misses(s) < 0 ||
-            !open_window(s->job, place[0], place[1], &first->at))
-            continue;
-        draw(first, s->hopes[i].heading);
-        if (s->with->count_ends(s->job, first->beams, &first->at, allowed_misses(s)))
-            try_best(first);
-    }
+    for (int32_t i = 0; i < all && best - s->job->best_rank > step_of(s->job); i += HOPES)
+        try_some(s, first, s->hopes + i, clamp(all - i, 0, HOPES));
     return best;
 }
 
@@ -323,7 +341,7 @@ static void from_the_middle(search *s)
 static void rank(search *s, int32_t bound)
 {
     search_job *job = s->job;
-    const int32_t step = larger(1, job->reading_count / STEPS);
+    const int32_t step = step_of(job);
     const int32_t low = larger(job->least_rank, larger(1, job->best_rank + 1));
     s->phase = RANKING;
     for (int32_t least = larger(bound - step, low);; least = larger(least - step, low)) {
@@ -399,6 +417,7 @@ int32_t search_poses(search_job *job)
     s.phase = COLLECTING;
     s.least = larger(1, larger(job->least_rank, job->best_rank) - job->slack);
     if (!job->by_blocks || job->best_rank >= job->least_rank) {
+        job->is_complete = 1; /* whatever was left out before: all that comes near is looked at now */
         search_all(&s, job->budget);
         compact(&s);
     }

@@ -10,6 +10,11 @@ typedef struct {
     int32_t bound, heading, unit, place[2];
 } hope;
 
+/* A heading, and the unit of it that is searched next. */
+typedef struct {
+    int32_t heading, unit;
+} place_in_search;
+
 struct search;
 
 /* What one of them keeps. */
@@ -35,11 +40,11 @@ typedef struct search {
     int32_t *bounds;     /* [headings][units] */
     int32_t *order;      /* [ordered]: the headings that can hold an answer, the best bound first */
     int32_t ordered;
-    hope *hopes;                /* [headings] */
-    int32_t together[TOGETHER]; /* the headings that are searched at a time */
-    int32_t next, taken;        /* of these */
-    int64_t work;               /* what all of them have looked at */
-    int64_t share;              /* how much each of these headings may cost */
+    hope *hopes;                        /* [headings] */
+    place_in_search together[TOGETHER]; /* the headings that are searched at a time */
+    int32_t next, taken;                /* of these */
+    int64_t work;                       /* what all of them have looked at */
+    int64_t share;                      /* how much each of these headings may cost */
     enum {
         BOUNDING,
         RANKING,

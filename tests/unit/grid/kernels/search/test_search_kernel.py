@@ -177,3 +177,40 @@ def test_what_a_budget_is_enough_for_does_not_depend_on_threads() -> None:
             alone = NATIVE.search.search_poses(planes, asked)
             for threads in (2, 3, 7):
                 assert_same(NATIVE.search.search_poses(planes, asked, threads=threads), alone)
+
+
+def across_a_hall(headings_rad: list[float]) -> tuple[Ground, Question]:
+    """At heading 0 every pose on the middle line explains all readings, at others none explains one."""
+    solid = np.ones((100, 320), np.bool_)
+    solid[20:81] = False
+    readings = np.zeros((140, 5))
+    readings[:, 0], readings[:, 1] = np.where(np.arange(140) % 2, math.pi / 2, -math.pi / 2), 31 * 0.2
+    question = question_of(solid.shape, 0, slack=0, least_rank=len(readings))
+    return ground_of(solid), replace(question, readings=readings, headings_rad=np.array(headings_rad), by_blocks=False)
+
+
+@needs_native
+def test_a_heading_may_have_what_the_others_leave() -> None:
+    """Those that are searched together get equal shares, and one that looks like the answer costs far more."""
+    ground, alone = across_a_hall([0.0])
+    _, among_others = across_a_hall([0.8, 0.0, 1.2, 1.5])
+    planes = NATIVE.search.make_planes(ground)
+
+    def is_enough(question: Question, budget: int) -> bool:
+        return bool(NATIVE.search.search_poses(planes, replace(question, budget=budget)).is_all)
+
+    enough = next(2**power for power in range(40) if is_enough(alone, 2**power))
+    assert enough > 1000
+    assert is_enough(among_others, 2 * enough)
+
+
+@needs_native
+def test_all_that_comes_near_is_all_even_if_the_best_rank_was_not_sought_to_the_end() -> None:
+    ground, question = case(0)
+    planes = NATIVE.search.make_planes(ground)
+    for heading_rad in question.headings_rad:
+        one = replace(question, headings_rad=np.array([heading_rad]))
+        # Enough for bounds, and then for anything: half of it, for the best rank, is less than the bounds took.
+        found = NATIVE.search.search_poses(planes, replace(one, budget=len(one.readings)))
+        assert found.is_all
+        assert_same(found, NATIVE.search.search_poses(planes, one))
