@@ -3,11 +3,12 @@
 A method is sugar: ``client.arm()`` is ``client.call(Arm())``. A request without a line here can be sent all the same.
 """
 
-from collections.abc import Awaitable, Callable, Coroutine
+from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from functools import wraps
 from typing import Any, Generic, ParamSpec, Self, TypeVar, cast, overload
 
 from robotd.client.mission_run import MissionEvent, final_estimate, last_sweep, ranges_measured
+from robotd.contract.map_import import MapImport
 from robotd.contract.missions import (
     DriveStraight,
     DriveTo,
@@ -60,6 +61,11 @@ class Blocking:
         """Send a request and return what is wanted of its answer."""
         raise NotImplementedError
 
+    def ask_in_turn(self, requests: Iterable[Request[A]], value: Callable[[A], V]) -> V:
+        """Send one request after the other and return what is wanted of the last one's answer."""
+        *_, answer = (self.ask(request, _all) for request in requests)
+        return value(answer)
+
     def carry_out(self, mission: Mission, value: Callable[[list[MissionEvent]], V]) -> V:
         """Run a mission to its end and return what is wanted of what happened."""
         raise NotImplementedError
@@ -71,6 +77,11 @@ class Awaiting:
     async def ask(self, request: Request[A], value: Callable[[A], V]) -> V:
         """Send a request and return what is wanted of its answer."""
         raise NotImplementedError
+
+    async def ask_in_turn(self, requests: Iterable[Request[A]], value: Callable[[A], V]) -> V:
+        """Send one request after the other and return what is wanted of the last one's answer."""
+        answers = [await self.ask(request, _all) for request in requests]
+        return value(answers[-1])
 
     async def carry_out(self, mission: Mission, value: Callable[[list[MissionEvent]], V]) -> V:
         """Run a mission to its end and return what is wanted of what happened."""
@@ -107,6 +118,11 @@ class Method(Generic[P, V]):
 def asks(make: Callable[P, Request[A]], value: Callable[[A], V]) -> Method[P, V]:
     """Return the method that sends one request."""
     return Method(make, lambda client, request: client.ask(request, value))
+
+
+def asks_in_turn(make: Callable[P, Iterable[Request[A]]], value: Callable[[A], V]) -> Method[P, V]:
+    """Return the method that sends several requests, of which the last one's answer counts."""
+    return Method(make, lambda client, requests: client.ask_in_turn(requests, value))
 
 
 def carries_out(make: Callable[P, Mission], value: Callable[[list[MissionEvent]], V]) -> Method[P, V]:
@@ -153,6 +169,7 @@ class Methods:
     map_show = asks(MapShow, _all)
     map_delete = asks(MapDelete, _nothing)
     map_rename = asks(MapRename, _nothing)
+    map_import = asks_in_turn(MapImport.parts, lambda answer: answer.map)
     plan_to = asks(PlanTo, _all)
     record_start = asks(RecordStart, lambda answer: answer.path)
     record_stop = asks(RecordStop, lambda answer: answer.path)

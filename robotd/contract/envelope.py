@@ -161,9 +161,8 @@ def _unpack(data: bytes, max_bytes: int) -> dict[str, Any]:
             # done.
             object_pairs_hook=_without_duplicates,
             max_str_len=max_bytes,
-            # No argument is of these two types. A stop whose reason is bytes is recognized elsewhere.
-            max_bin_len=0,
-            max_ext_len=0,
+            max_bin_len=max_bytes,
+            max_ext_len=0,  # no argument is of such a type
             max_array_len=_MAX_ITEMS,
             max_map_len=_MAX_KEYS,
         )

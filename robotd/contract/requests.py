@@ -21,6 +21,7 @@ from robotd.contract.answers import (
 )
 from robotd.contract.arguments import Coordinate, MapName, Number, PoseArgument, RecordingPath
 from robotd.contract.events import MapChanged, Status
+from robotd.contract.map_import import MapImport
 from robotd.contract.metrics import Metrics
 from robotd.contract.missions import MISSIONS
 from robotd.contract.request import Request
@@ -206,7 +207,7 @@ REQUESTS: dict[str, type[Request[Any]]] = {
         *(Hello, GetStatus, GetConfig, GetMetrics),
         *(Arm, Disarm, Stop, Clear),
         *(*MISSIONS, Renew),
-        *(MapSave, MapLoad, MapDiscard, ListMaps, MapShow, MapDelete, MapRename, PlanTo),
+        *(MapSave, MapLoad, MapDiscard, ListMaps, MapShow, MapDelete, MapRename, MapImport, PlanTo),
         *(RecordStart, RecordStop, ListRecordings, RecordDelete),
     )
 }

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from robotd.head.held import Held
 from robotd.head.jobs import MapRef, Prepare
+from robotd.head.parts import Parts
 from robotd.head.settings import HeadSettings
 from robotd.head.wire import NotHeld
 from robotd.localization.estimator import Estimator
@@ -29,6 +30,8 @@ class Desk:
             begin: begins a stop; a :class:`Localizer` if there is none.
         """
         self.settings = settings
+        self.parts = Parts()
+        """Of the map that a client brings."""
         self._maps: dict[int, dict[int, Held]] = {}
         """By number, then by generation."""
         self._stops: dict[int, Estimator] = {}

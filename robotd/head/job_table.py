@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from robotd.contract.ways import Way
+from robotd.core.errors import MapError
 from robotd.core.grid_bytes import unpacked_cells
 from robotd.exploring.choice import ChoiceQuestion, choose
 from robotd.grid.map_stops import MapStops
@@ -47,6 +48,7 @@ from robotd.head.jobs import (
     TakeMap,
     TakeReadings,
 )
+from robotd.head.parts_jobs import PartTaken, TakePart
 from robotd.head.stop_placing import with_stop
 from robotd.maps.grid_files import content_of, map_of
 from robotd.maps.packed_content import PackedContent
@@ -98,6 +100,18 @@ def _make_files(desk: Desk, job: MakeFiles) -> FilesMade:
     held = desk.map(job.map)
     content, remark = content_of(held.grid, held.stops)
     return FilesMade(PackedContent.of(content), remark)
+
+
+def _take_part(desk: Desk, job: TakePart) -> PartTaken:
+    packed = desk.parts.take(job.sha256, job.size_bytes, job.offset_bytes, job.part)
+    if packed is None:
+        return PartTaken(job.offset_bytes + len(job.part), None)
+    try:
+        grid = OccupancyGrid(job.spec, unpacked_cells(packed, job.spec), desk.settings.grid)
+    except ValueError as error:
+        raise MapError(str(error)) from error
+    content, _ = content_of(grid, None)
+    return PartTaken(job.size_bytes, FilesMade(PackedContent.of(content), None))
 
 
 def _insert(desk: Desk, job: Insert) -> Inserted:
@@ -196,6 +210,7 @@ _TABLE: dict[type[Job[Any]], Callable[[Desk, Any], Any]] = {
     ReadMap: _read_map,
     ShowMap: _show_map,
     MakeFiles: _make_files,
+    TakePart: _take_part,
     Insert: _insert,
     PlaceStop: _place_stop,
     Glance: _glance,

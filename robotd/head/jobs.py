@@ -1,11 +1,9 @@
-"""Every job there is: what is asked, declared once; :mod:`robotd.head.job_table` says what carries it out.
+"""What is asked, declared once; :mod:`robotd.head.job_table` says what carries it out.
 
 Who asks knows maps and stops by number alone, and chooses the numbers. A map in a number is a row of *generations*: an
 insertion makes the next of one and leaves that one as it is, so a mission that is stopped while a sweep is laid in goes
 on with the map that it had.
 """
-
-from typing import Any
 
 import msgspec
 
@@ -383,14 +381,3 @@ class Forget(Job[Done], frozen=True):
 
     name, answer = "forget", Done
     number: int
-
-
-JOBS: dict[str, type[Job[Any]]] = {
-    kind.name: kind
-    for kind in (
-        *(BeginMap, TakeMap, ReadMap, ShowMap, MakeFiles, Insert, PlaceStop, Glance),
-        *(Prepare, Narrow, TakeReadings, ShowRanks),
-        *(Plan, PreviewWay, Choose, ChooseBearings, ChooseSafeWay, Forget),
-    )
-}
-"""Every job there is, by its name."""

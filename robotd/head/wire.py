@@ -11,7 +11,7 @@ import msgspec
 
 from robotd.core.errors import MapError, MissionError, RemoteProtocolError, RobotdError, TooLarge
 from robotd.head.job import A, Job
-from robotd.head.jobs import JOBS
+from robotd.head.job_names import JOBS
 
 NUMBER = 8
 """Bytes of the number of a job, which goes before it and before its answer."""

@@ -12,17 +12,20 @@ from typing import Any
 
 import msgspec
 
-from robotd.contract.answers import Done, MapEntryInfo, MapList
+from robotd.contract.answers import Done, ErrorCode, MapEntryInfo, MapList
 from robotd.contract.events import MapChanged
+from robotd.contract.map_import import MapImport, MapImported
 from robotd.contract.request import Request
 from robotd.contract.requests import ListMaps, MapDelete, MapDiscard, MapLoad, MapRename, MapSave, MapShow, PlanTo
 from robotd.contract.ways import Hindrance, Way
-from robotd.core.clock import now_ns
-from robotd.core.errors import MapError, MissionError
+from robotd.core.clock import now_ns, wall_offset_ns
+from robotd.core.errors import MapError, MissionError, ServerError
 from robotd.core.pose import Pose2
+from robotd.core.text import printable
 from robotd.head.compute import Compute
 from robotd.head.head import Head
 from robotd.head.jobs import HeldMap, PreviewWay, ReadMap, ShowMap, TakeMap
+from robotd.head.parts_jobs import TakePart
 from robotd.maps.archive import Archive
 from robotd.maps.entry import MapEntry
 from robotd.maps.packed_content import PackedContent
@@ -67,6 +70,7 @@ class MapRequests:
             MapShow: self._show,
             MapDelete: self._delete,
             MapRename: self._rename,
+            MapImport: self._import,
             PlanTo: self._plan,
         }
 
@@ -144,6 +148,30 @@ class MapRequests:
             await self._disk.run("rename map", self._archive.rename, request.name, request.new_name)
         log.info("map %s is called %s now", request.name, request.new_name)
         return Done()
+
+    async def _import(self, request: MapImport) -> MapImported:
+        """Hand a part of a map on to the head, and store what that made of all of them.
+
+        Raises:
+            ServerError: this part does not go on where the last one ended, or they make no map together.
+            MissionError: it cannot be written.
+        """
+        part = TakePart(request.spec, request.sha256, request.size_bytes, request.offset_bytes, request.part)
+        try:
+            taken = await self._head.ask(part)
+        except MapError as error:
+            raise ServerError(ErrorCode.BAD_ARGUMENT, f"map_import {request.name}: {error}") from error
+        if taken.made is None:
+            return MapImported(taken.received_bytes, None)
+        metadata = {"imported_from": printable(request.imported_from)}
+        content, made_ns = taken.made.content, now_ns() + wall_offset_ns()
+        save = partial(self._archive.save, request.name, metadata=metadata, created_unix_ns=made_ns)
+        try:
+            entry = await self._disk.run("save map", lambda: save(content=content.unpacked()))
+        except MapError as error:
+            raise MissionError(str(error)) from error  # it is a map, but there is no room for it
+        log.info("map %s was imported as version %d (%s)", entry.name, entry.version, entry.digest)
+        return MapImported(taken.received_bytes, entry_info(entry))
 
     @contextlib.asynccontextmanager
     async def _stored(self, name: str, done: str) -> AsyncIterator[None]:

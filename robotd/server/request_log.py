@@ -6,6 +6,7 @@ from typing import Any
 import msgspec
 
 from robotd.contract.answers import MapEntryInfo, MissionStarted, RecordingFile
+from robotd.contract.map_import import MapImported
 from robotd.contract.request import Request
 from robotd.contract.stopping import STOPPING
 from robotd.core.errors import ServerError
@@ -32,7 +33,8 @@ class RequestLog:
 
     def done(self, sender: str, request: Request[Any], result: object) -> None:
         """Note what was done; what only looks goes without saying, and a stop was noted."""
-        if not (request.only_looks or isinstance(request, STOPPING)):
+        is_part = isinstance(result, MapImported) and result.map is None  # of which there may be thousands
+        if not (request.only_looks or is_part or isinstance(request, STOPPING)):
             _say(self._done, f"{sender}: {in_words(request)}: {_came_to(result)}")
 
     def refused(self, sender: str, request: Request[Any], error: ServerError) -> None:
@@ -49,8 +51,12 @@ def in_words(request: Request[Any]) -> str:
     """
     defaults = {field.name: field.default for field in msgspec.structs.fields(type(request))}
     asked = {name: value for name, value in msgspec.structs.asdict(request).items() if value != defaults[name]}
-    plain = msgspec.to_builtins(asked)
+    plain = {name: _shown(value) for name, value in asked.items()}
     return printable(" ".join((request.cmd, *(f"{name}={value}" for name, value in plain.items()))), 300)
+
+
+def _shown(value: object) -> object:
+    return f"<{len(value)} bytes>" if isinstance(value, bytes) else msgspec.to_builtins(value)
 
 
 def _came_to(result: object) -> str:
@@ -59,6 +65,8 @@ def _came_to(result: object) -> str:
             return f"mission {result.mission_id}, lease {result.lease_s:g} s"
         case MapEntryInfo():
             return f"map {result.name} version {result.version}"
+        case MapImported(map=MapEntryInfo() as entry):
+            return _came_to(entry)
         case RecordingFile():
             return printable(str(result.path or "there was no recording"))
     return "done"

@@ -1,15 +1,18 @@
 """What missions do with stops that cannot be reached, and what the journal's requests do when they are asked again."""
 
 import asyncio
+import json
 from dataclasses import replace
 from pathlib import Path
 
 import msgspec
+import numpy as np
 import pytest
 
 from robotd.config import Config
 from robotd.contract.answers import RecordingFile
 from robotd.contract.events import MissionPhase, MissionProgress
+from robotd.contract.map_import import MapImport, MapImported
 from robotd.contract.missions import DriveTo, Legs, Localize, MapStart
 from robotd.contract.modes import Mode
 from robotd.contract.requests import (
@@ -26,7 +29,9 @@ from robotd.contract.requests import (
     RecordStart,
     RecordStop,
 )
-from robotd.core.errors import MapError, MissionError, RecordingError
+from robotd.core.errors import MapError, MissionError, RecordingError, ServerError
+from robotd.core.grid_bytes import unpacked_cells
+from robotd.core.grid_spec import GridSpec
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.recording.entries import CommandEntry
 from robotd.sim.buildings.world import load_world
@@ -203,6 +208,30 @@ async def test_stored_maps_are_renamed_and_deleted_but_never_the_one_in_use(live
         assert [entry.name for entry in (await control.perform(ListMaps())).maps] == ["office"]
         with pytest.raises(MapError, match="there is no map 'lab'"):
             await control.perform(MapDelete("lab"))
+
+
+async def test_a_map_is_brought_in_parts_stored_and_not_taken_into_use(live: Live, tmp_path: Path) -> None:
+    spec, noise = GridSpec(0.05, -2.0, 1.0, (200, 250)), np.random.default_rng(3)
+    cells = noise.integers(0, 256, spec.shape, dtype=np.uint8)
+    async with live(office(), QUICK) as it:
+        control = it.daemon.control
+        first, second = MapImport.parts("lab", spec, cells, "lab.yaml")
+        with pytest.raises(ServerError, match="bad_argument: map_import lab: the parts before this one are gone"):
+            await control.perform(second)
+        assert await control.perform(first) == MapImported(len(first.part), None)
+        told = await control.perform(second)
+        assert told.map is not None
+        assert (told.received_bytes, told.map.name, told.map.version) == (first.size_bytes, "lab", 1)
+        shown = await control.perform(MapShow("lab"))
+        assert shown.packed is not None
+        assert unpacked_cells(shown.packed, shown.spec).tolist() == cells.tolist()
+        assert it.daemon.supervisor.whereabouts.map_in_use is None
+        manifest = json.loads((tmp_path / "maps" / "lab" / "1" / "manifest.json").read_text())
+        assert manifest["metadata"] == {"imported_from": "lab.yaml"}
+        # Only small letters apart: on some disks it would be the same map.
+        (last,) = MapImport.parts("Lab", spec, np.zeros(spec.shape, np.uint8))
+        with pytest.raises(MissionError, match="lab"):
+            await control.perform(last)
 
 
 async def test_recordings_are_listed_and_deleted_but_not_the_one_under_way(live: Live) -> None:

@@ -108,7 +108,7 @@ BAD = {
     "duplicate key": (DUPLICATE, "malformed"),
     "key that is no string": (msgpack.packb({1: 2}), "malformed"),
     "bad utf-8": (b"\x81\xa1\xff\x01", "malformed"),
-    "bytes": (request(args={"x_m": 1.0, "y_m": b"x"}), "malformed"),
+    "bytes": (request(args={"x_m": 1.0, "y_m": b"x"}), "bad_argument"),
     "extension type": (request(args={"x_m": msgpack.Timestamp(1), "y_m": 1.0}), "malformed"),
     "nesting bomb": (b"\x91" * 60000 + b"\xc0", "malformed"),
     "nested seven deep": (request(args={"x_m": [[[[[[1]]]]]]}), "malformed"),

@@ -1,6 +1,7 @@
 """Jobs and answers come back from bytes as they were, and what is none is refused by name."""
 
 import math
+from hashlib import sha256
 from typing import Any, get_origin
 
 import numpy as np
@@ -21,9 +22,9 @@ from robotd.grid.settings import GridSettings
 from robotd.head.answering import answer_to
 from robotd.head.desk import Desk
 from robotd.head.job import Done, Job
+from robotd.head.job_names import JOBS
 from robotd.head.job_table import perform
 from robotd.head.jobs import (
-    JOBS,
     BeginMap,
     Choose,
     ChooseBearings,
@@ -45,6 +46,7 @@ from robotd.head.jobs import (
     TakeMap,
     TakeReadings,
 )
+from robotd.head.parts_jobs import TakePart
 from robotd.head.settings import HeadSettings
 from robotd.head.wire import JobFailed, pack_answer, pack_error, pack_job, unpack_answer, unpack_job
 from robotd.sensing.rivals import Rival
@@ -70,6 +72,7 @@ def a_life() -> list[Job[Any]]:
     return [
         *(begin, insert, make, ShowMap(MapRef(1, 1)), Plan(MapRef(1, 1), HERE, (0.5, 0.5))),
         PreviewWay(MapRef(1, 1), HERE, (0.5, 0.5)),
+        TakePart(SPEC, sha256(shown.packed).hexdigest(), len(shown.packed), 0, shown.packed),
         *(ReadMap(2, content), TakeMap(3, SPEC, shown.packed, GRID, content.files["stops.bin"])),
         *(BeginMap(5, SPEC, GRID), PlaceStop(MapRef(5), "m", SWEEP, Travel(), HERE, 7)),
         PlaceStop(MapRef(5, 1), "m", SWEEP, Travel(Pose2(0.02, 0.0, 0.01), 0.02, 0.01), HERE, 8),

@@ -109,7 +109,13 @@ def test_every_word_of_a_mode_stands_there() -> None:
 
 @pytest.mark.parametrize("client", [Client, AsyncClient])
 def test_every_method_of_the_clients_stands_there(client: type[Any]) -> None:
-    public = {name for name in dir(client) if not name.startswith("_")} - {"call", "ask", "carry_out", "close"}
+    public = {name for name in dir(client) if not name.startswith("_")} - {
+        "call",
+        "ask",
+        "ask_in_turn",
+        "carry_out",
+        "close",
+    }
     public.add("frames")  # of the asynchronous client alone
     assert public == {name for name in re.findall(r"`(\w+)\(", section("From Python", level=2)) if name[0].islower()}
 
