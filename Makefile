@@ -74,8 +74,8 @@ liars: .venv/.dev  ## Devices that lie, with right checksums, in every state of 
 fuzz: .venv/.dev  ## Strange bytes for every parser, a minute each: make fuzz FUZZ_SECONDS=5; keeps what it learns in tests/studies/fuzz/corpus
 	@$(BIN)/python -m tests.studies.fuzz.run $(if $(FUZZ_SECONDS),--seconds $(FUZZ_SECONDS)) $(if $(ONLY),--only $(ONLY))
 
-safety: .venv/.dev  ## How late stops are on the wires in real time, all processors busy (half an hour; make safety SHARE=0.1)
-	@$(BIN)/python -m tests.studies.safety.run $(if $(SHARE),--share $(SHARE))
+safety: .venv/.dev  ## How late stops are on the wires in real time, all processors busy (half an hour; make safety SHARE=0.1; ONLY=gateway: of the console)
+	@$(BIN)/python -m tests.studies.safety.run $(if $(SHARE),--share $(SHARE)) $(if $(ONLY),--only "$(ONLY)")
 
 heads: .venv/.dev  ## Kill or stop the process that computes, whatever the robot is at: TRIALS=200, a table (half an hour)
 	@$(BIN)/python -m tests.studies.heads.run $(if $(TRIALS),--trials $(TRIALS))

@@ -53,6 +53,8 @@ class House:
         self.dropped_messages = 0
         """Left out for browsers that are gone; those of the others are in their outboxes."""
         self.files = ConsoleFiles()
+        self.importing = asyncio.Lock()
+        """Held while a map of another program is read, which takes hundreds of megabytes: one at a time has to do."""
 
     def match(self, secret: str) -> Token | None:
         """Return the token of a secret, by the file as it is now; one for one use is used up."""

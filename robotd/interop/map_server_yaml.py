@@ -32,6 +32,18 @@ class MapServerYaml:
     negate: bool
     mode: str
 
+    @classmethod
+    def of_picture(cls, image: str, resolution_m: float | None, origin_m: tuple[float, float]) -> "MapServerYaml":
+        """Describe a picture that has no yaml, by map_server's own defaults.
+
+        Raises:
+            MapError: its size is not given, or impossible.
+        """
+        if resolution_m is None:
+            raise MapError("a picture says nothing of its size: give the yaml beside it, or its resolution_m")
+        x_m, y_m = origin_m
+        return _checked(cls(image, resolution_m, x_m, y_m, 0.0, 0.65, 0.196, negate=False, mode="trinary"))
+
 
 def decode_map_yaml(data: bytes) -> MapServerYaml:
     """Return what a yaml says; ``mode`` is trinary where it is missing, everything else must be there.

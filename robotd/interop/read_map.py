@@ -23,27 +23,10 @@ def read_map(file: Path, resolution_m: float | None = None, origin_m: tuple[floa
             described = decode_map_yaml(_bytes(file, YAML_MAX_BYTES))
             picture = file.parent / described.image
         else:
-            described, picture = _bare(file, resolution_m, origin_m), file
+            described, picture = MapServerYaml.of_picture(file.name, resolution_m, origin_m), file
         return import_map(described, _bytes(picture, IMAGE_MAX_BYTES))
     except MapError as error:
         raise MapError(f"{file}: {error}") from error
-
-
-def _bare(file: Path, resolution_m: float | None, origin_m: tuple[float, float]) -> MapServerYaml:
-    """Describe a picture that has no yaml: by map_server's own defaults."""
-    if resolution_m is None:
-        raise MapError("a picture says nothing of its size: give the yaml beside it, or its resolution_m")
-    return MapServerYaml(
-        image=file.name,
-        resolution_m=resolution_m,
-        origin_x_m=origin_m[0],
-        origin_y_m=origin_m[1],
-        yaw_rad=0.0,
-        occupied_thresh=0.65,
-        free_thresh=0.196,
-        negate=False,
-        mode="trinary",
-    )
 
 
 def _bytes(file: Path, most: int) -> bytes:

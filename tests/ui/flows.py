@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from robotd.core.errors import ServerError
+from tests.support.console_page import until
 from tests.ui.browser import DESK, NARROW, PHONE, axe_source, chromium, hold, open_page
-from tests.unit.gateway.pages import until
 from tests.unit.gateway.rig import Opening
 
 pytestmark = [pytest.mark.real_clock, pytest.mark.shares_descriptors]

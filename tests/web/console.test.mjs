@@ -8,6 +8,7 @@ import { Grid, unpacked } from '../../robotd/gateway/web/app/map/grid.js';
 import { distances } from '../../robotd/gateway/web/app/map/overlays.js';
 import { boundsOf, colours, paint } from '../../robotd/gateway/web/app/map/paint.js';
 import { fitted, toMap, toPixel, zoomed } from '../../robotd/gateway/web/app/map/view.js';
+import { Stopping } from '../../robotd/gateway/web/app/parts/stopping.js';
 import { accept, hear, nothing } from '../../robotd/gateway/web/app/state/store.js';
 import { hindrance, silent } from '../../robotd/gateway/web/app/state/silence.js';
 import { isDriving, whereabouts } from '../../robotd/gateway/web/app/state/words.js';
@@ -201,4 +202,36 @@ test('who drives is the browser that the gateway names', () => {
 test('tries come later and later, up to a bound, and not all at once', () => {
   assert.deepEqual([0, 1, 2, 9].map((failed) => waitMs(failed, 0.5)), [250, 500, 1000, 5000]);
   assert.ok(waitMs(9, 1) <= 6250 && waitMs(0, 0) >= 187);
+});
+
+test('STOP is said again and again until it is confirmed, and once more for as long when it is pressed again', (context) => {
+  let now = 0, said = 0, alarms = 0;
+  context.mock.timers.enable({ apis: ['setInterval', 'setTimeout'] });
+  context.mock.method(performance, 'now', () => now);
+  const pass = (ms) => { for (let at = 0; at < ms; at += 100) { now += 100; context.mock.timers.tick(100); } };
+  const stopping = new Stopping({ say: () => { said += 1; return true; }, post: () => new Promise(() => {}), changed: () => {}, alarm: () => { alarms += 1; } });
+  stopping.press();
+  pass(200);
+  stopping.press(); // a key that is held
+  pass(200);
+  assert.deepEqual([stopping.phase, alarms], ['unconfirmed', 1]);
+  pass(5000);
+  const before = said;
+  stopping.press();
+  pass(1000);
+  assert.ok(said - before >= 10, `${said - before} times in a second`);
+  assert.equal(stopping.phase, 'unconfirmed', 'it is not true that it stops now');
+  stopping.confirmed();
+  assert.equal(stopping.phase, 'stopped');
+});
+
+test('a plan of an earlier mission, which a page that joins is told, is not drawn', () => {
+  const told = (topic, event, fields) => ({ topic, event, session: 'a', seq: 1, fields });
+  const state = nothing();
+  accept(state, told('mission', 'mission_progress', { mission_id: 6, phase: 'done' }), 0);
+  accept(state, told('mission', 'plan', { mission_id: 5, stops: [{ x_m: 1, y_m: 2, state: 'swept' }] }), 0);
+  assert.equal(state.plan, null);
+  accept(state, told('mission', 'plan', { mission_id: 7, stops: [] }), 0);
+  accept(state, told('mission', 'mission_progress', { mission_id: 7, phase: 'started' }), 0);
+  assert.equal(state.plan.mission_id, 7);
 });

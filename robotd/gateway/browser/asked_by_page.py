@@ -5,6 +5,7 @@ from typing import Any
 
 import msgspec
 
+from robotd.contract.map_import import MapImport
 from robotd.contract.missions import MissionRequest
 from robotd.contract.plain import to_plain
 from robotd.contract.request import Request
@@ -16,7 +17,7 @@ from robotd.gateway.access.roles import Role, role_for
 from robotd.gateway.command.asker import Asks
 from robotd.gateway.command.idle import Idle
 
-_NOT_FOR_BROWSERS = {Hello.cmd, Renew.cmd, MapShow.cmd}
+_NOT_FOR_BROWSERS = {Hello.cmd, Renew.cmd, MapShow.cmd, MapImport.cmd}
 """The gateway says hello and renews itself; maps are bytes, and have addresses of their own."""
 
 

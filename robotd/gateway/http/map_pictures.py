@@ -1,34 +1,25 @@
-"""Stored maps as pictures."""
+"""Stored maps as pictures, whole or small."""
 
 import asyncio
-import re
 
 import numpy as np
 from aiohttp import web
 from numpy.typing import NDArray
 
 from robotd.contract.events import MapChanged
-from robotd.contract.requests import MapShow
-from robotd.core.errors import ServerError
 from robotd.gateway.browser.page_connection import Person
 from robotd.gateway.house import House
 from robotd.gateway.http.route import Needs, Route
+from robotd.gateway.http.stored_map import KEPT, stored_map
 
-_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 _SMALL_CELLS = 320
 
 
 async def picture(request: web.Request, house: House, _: Person | None) -> web.StreamResponse:
     """Draw a stored map: whole, or small enough for a card."""
-    name, version = request.match_info["name"], request.match_info["version"]
-    if not _NAME.fullmatch(name) or not version.isdecimal() or len(version) > 9:
-        raise ServerError("not_found", f"no map {name[:64]} {version[:9]}")
-    shown = await house.services.asker.ask(MapShow(name, int(version)))
-    small = "small" in request.query
-    data = await asyncio.to_thread(_png, shown, small=small)
-    # A version never changes; after a delete its number is not given again.
-    headers = {"Cache-Control": "private, max-age=3600"}
-    return web.Response(body=data, content_type="image/png", headers=headers)
+    shown = await stored_map(request, house)
+    data = await asyncio.to_thread(_png, shown, small="small" in request.query)
+    return web.Response(body=data, content_type="image/png", headers=KEPT)
 
 
 def _png(shown: MapChanged, *, small: bool) -> bytes:

@@ -8,7 +8,16 @@ from robotd import __version__
 from robotd.gateway.browser.console_protocol import LONGEST_TEXT
 from robotd.gateway.browser.page_connection import Person
 from robotd.gateway.house import House
-from robotd.gateway.http import map_pictures, page_socket, recorded_files, robot_state, signing_in, static, stop_pages
+from robotd.gateway.http import (
+    map_files,
+    map_pictures,
+    page_socket,
+    recorded_files,
+    robot_state,
+    signing_in,
+    static,
+    stop_pages,
+)
 from robotd.gateway.http.front_door import FrontDoor
 from robotd.gateway.http.route import Needs, Route
 
@@ -20,7 +29,7 @@ async def described(_: web.Request, _house: House, _person: Person | None) -> we
 
 ROUTES: tuple[Route, ...] = (
     *(*static.ROUTES, *signing_in.ROUTES, *page_socket.ROUTES, *stop_pages.ROUTES),
-    *(*robot_state.ROUTES, *map_pictures.ROUTES, *recorded_files.ROUTES),
+    *(*robot_state.ROUTES, *map_pictures.ROUTES, *map_files.ROUTES, *recorded_files.ROUTES),
     Route("GET", "/api/openapi.json", Needs.VIEWER, "this description", described),
 )
 

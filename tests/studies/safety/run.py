@@ -12,11 +12,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from robotd.sim.emulators.catalogue import Dialects, Firmware
+from tests.studies.safety import consoles_table
 from tests.support.real_rig import NICE, give_precedence, rig
 from tests.support.spinning import spinning
 from tests.support.ways_to_end import CAUSES, ON_C_BOARDS
 
 BOUND_MS = 50.0
+GATEWAY = "gateway"
+_CONSOLE_TRIALS = 20
 _TRIALS = {
     "lease expiry": 500,
     "client killed": 500,
@@ -30,10 +33,12 @@ _TRIALS = {
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", choices=CAUSES, help="one cause (default: all)")
+    parser.add_argument("--only", choices=(*CAUSES, GATEWAY), help="one cause, or those of the console (default: all)")
     parser.add_argument("--share", type=float, default=1.0, help="of the trials (default: %(default)s)")
     parser.add_argument("--idle", action="store_true", help="leave the processors alone")
     arguments = parser.parse_args()
+    if arguments.only == GATEWAY:
+        sys.exit(consoles_table.measure(max(1, round(_CONSOLE_TRIALS * arguments.share))))
     causes = [arguments.only] if arguments.only else list(CAUSES)
     load = "idle" if arguments.idle else "busy"
     print(f"{os.cpu_count()} processors kept {load}; daemon at nice {NICE} as in its unit; others' load: {_load()}")

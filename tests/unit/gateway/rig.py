@@ -16,7 +16,7 @@ from robotd.gateway.access.tokens import TokenFile, Tokens, make_token
 from robotd.gateway.composed import gateway
 from robotd.gateway.house import House
 from robotd.gateway.settings import AccessSettings, GatewaySettings, ListenSettings, RobotSettings, WatchingSettings
-from tests.unit.gateway.pages import until
+from tests.support.console_page import until
 from tests.unit.server.conftest import FakeControl, Serving
 
 

@@ -18,7 +18,7 @@ from robotd.gateway.command.kept_missions import Missions
 from robotd.gateway.composed import run as run_gateway
 from robotd.gateway.house import NO_TOKEN
 from robotd.gateway.program import read_settings
-from tests.unit.gateway.pages import PATIENCE_S, page_of, until
+from tests.support.console_page import PATIENCE_S, page_of, until
 from tests.unit.server.conftest import Serving
 
 SHIPPED = Path(__file__).parents[3] / "systemd" / "robotd-gateway.toml"

@@ -16,7 +16,7 @@ from robotd.gateway.access.visitor_limits import WRONG_TOKENS
 from robotd.gateway.composed import gateway
 from robotd.gateway.http.routes import ROUTES, openapi
 from robotd.gateway.settings import AccessSettings, GatewaySettings, ListenSettings
-from tests.unit.gateway.pages import PATIENCE_S, page_of, until
+from tests.support.console_page import PATIENCE_S, page_of, until
 from tests.unit.gateway.rig import Opening
 
 pytestmark = pytest.mark.real_clock
@@ -256,15 +256,6 @@ async def test_only_recordings_that_are_listed_are_sent(opening: Opening, tmp_pa
             assert [one["name"] for one in (await listed.json())["recordings"]] == ["good.mcap"]
         async with session.get("api/recordings/good.mcap", headers={"Range": "bytes=3-5"}) as answer:
             assert (answer.status, await answer.read()) == (206, b"345")
-
-
-async def test_a_stored_map_is_a_picture(opening: Opening) -> None:
-    async with opening() as rig, rig.browser("viewer") as session:
-        async with session.get("api/maps/office/3.png") as answer:
-            assert (answer.status, (await answer.read())[:8]) == (200, b"\x89PNG\r\n\x1a\n")
-        for name in ("office/x.png", "..%2F..%2Fa/1.png", "none/1.png", "office/99999999999.png"):
-            async with session.get(URL(f"{rig.address}api/maps/{name}", encoded=True)) as answer:
-                assert answer.status == 404, name
 
 
 def test_the_description_has_every_address() -> None:

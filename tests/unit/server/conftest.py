@@ -24,6 +24,7 @@ from robotd.contract.events import (
     SweepDone,
     SweepProgress,
 )
+from robotd.contract.map_import import MapImport, MapImported
 from robotd.contract.metrics import Metrics
 from robotd.contract.missions import Measure, Mission, Scan
 from robotd.contract.modes import Mode
@@ -181,6 +182,10 @@ class FakeControl:
             case MapDiscard():
                 self.calls.append("discard")
                 return Done()
+            case MapImport():
+                is_last = request.offset_bytes + len(request.part) == request.size_bytes
+                self.calls.append(f"import {request.name} of {request.imported_from} {request.rows} x {request.cols}")
+                return MapImported(7, _entry(request.name, 1, "d3", 0) if is_last else None)
             case ListMaps():
                 return MapList((_entry("office", 3, "d2", 6),))
         raise AssertionError(f"{request} is for the server alone")

@@ -1,13 +1,13 @@
-// Maps: what is stored, and the one in use.
+// Maps: what is stored, the one in use, and what comes from other programs and goes to them.
 import { html, nothing } from 'lit-html';
 import { metres, when } from '../parts/format.js';
 import { t } from '../texts/texts.js';
+import { bringing, NAME } from './maps/bring.js';
 
 /** @typedef {import('../app.js').App} App */
 /** @typedef {{ name: string, version: number, digest: string, created_unix_ns: number, rows: number, cols: number, resolution_m: number,
  *   damage: string | null, unsaved: boolean, stops: number | null }} Entry */
 
-const NAME = /^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$/;
 /** @type {Entry[] | null} */
 let entries = null;
 /** The map in use, and whether it was saved, when the list was asked for. */
@@ -29,7 +29,7 @@ export function mapsPage(app) {
   /** @type {Map<string, Entry[]>} */
   const byName = new Map();
   for (const entry of entries ?? []) byName.set(entry.name, [...(byName.get(entry.name) ?? []), entry]);
-  return html`<h1>${t('maps.title')}</h1>${current(app)}
+  return html`<h1>${t('maps.title')}</h1>${current(app)}${bringing(app, () => { asked = ''; })}
     ${entries !== null && entries.length === 0 ? html`<p class="quiet">${t('maps.none')}</p>` : nothing}
     <div class="cards maps">${[...byName].map(([name, versions]) => card(app, name, versions.sort((a, b) => b.version - a.version)))}</div>`;
 }
@@ -119,6 +119,6 @@ function version(app, entry) {
       : html`<p class="why">${t('maps.damaged', { damage: entry.damage })}</p>`}
     <div class="buttons">
       ${may && !isInUse ? html`<button @click=${() => load({})}>${t('maps.load')}</button>` : nothing}
-      ${entry.damage === null ? html`<a class="button" href=${`api/maps/${entry.name}/${entry.version}.png`} download=${`${entry.name}-${entry.version}.png`}>${t('maps.picture')}</a>` : nothing}
+      ${entry.damage === null ? html`<a class="button" href=${`api/maps/${entry.name}/${entry.version}.png`} download=${`${entry.name}-${entry.version}.png`}>${t('maps.picture')}</a><a class="button" href=${`api/maps/${entry.name}/${entry.version}.zip`} download=${`${entry.name}-${entry.version}.zip`}>${t('maps.export')}</a>` : nothing}
     </div></div>`;
 }

@@ -30,12 +30,12 @@ export class Stopping {
 
   press() {
     clearTimeout(this.#rest);
-    if (this.phase !== 'stopping' && this.phase !== 'unconfirmed') {
+    if (this.phase !== 'stopping') { // of a key that is held, each press but the first comes while it stops
       this.#begun = performance.now();
-      this.phase = 'stopping';
+      if (this.phase !== 'unconfirmed') this.phase = 'stopping';
       clearInterval(this.#timer);
       this.#timer = setInterval(() => this.#again(), AGAIN_MS);
-    } else if (this.phase === 'unconfirmed') this.#begun = performance.now();
+    }
     this.#send();
     this.ways.changed();
   }

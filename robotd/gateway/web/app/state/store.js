@@ -34,7 +34,7 @@ export function accept(state, frame, now) {
     sweep_readings: () => takeReadings(state, fields),
     sweep_progress: () => takeProgress(state, fields),
     sweep_done: () => takeSweep(state, fields),
-    plan: () => Object.assign(state, { plan: fields }),
+    plan: () => takePlan(state, fields),
     rank_map: () => Object.assign(state, { rank: fields }),
     log: () => takeLog(state, fields),
   });
@@ -100,6 +100,11 @@ function takeMission(state, fields) {
     if (state.plan?.mission_id !== fields.mission_id) state.plan = null;
   }
   state.mission = fields;
+}
+
+/** Who joins is told the last plan that there was, of whichever mission. @param {State} state @param {any} fields */
+function takePlan(state, fields) {
+  if (fields.mission_id >= (state.mission?.mission_id ?? 0)) state.plan = fields;
 }
 
 /** @param {State} state @param {any} fields */

@@ -47,7 +47,8 @@ export const en = {
 
   'maps.title': 'Maps', 'maps.none': 'No map is stored.', 'maps.version': 'version {version}', 'maps.in_use': 'in use', 'maps.unsaved': 'not saved by anybody', 'maps.damaged': 'damaged: {damage}', 'maps.size': '{cols} × {rows} cells of {cell}', 'maps.load': 'Load', 'maps.picture': 'Picture', 'maps.older': '{count} older versions', 'maps.stops': '{count} stops',
   'maps.current': 'In use: {name}', 'maps.current_none': 'No map is in use.', 'maps.save': 'Save', 'maps.save_as': 'Save as', 'maps.discard': 'Give up changes', 'maps.not_saved': 'It has changes that nobody saved; they are kept as version {version}.', 'maps.not_kept': 'It has changes that are in memory alone: save them.', 'maps.loaded': 'In use: {name}. The robot does not know where it is on it: localize.', 'maps.saved': 'Saved as version {version}.',
-  'maps.delete': 'Delete', 'maps.delete_sure': 'Type the name to delete it for good: {name}', 'maps.rename': 'Rename', 'maps.new_name': 'New name', 'maps.made': 'made {when}',
+  'maps.delete': 'Delete', 'maps.delete_sure': 'Type the name to delete it for good: {name}', 'maps.rename': 'Rename', 'maps.new_name': 'New name', 'maps.made': 'made {when}', 'maps.export': 'Export',
+  'bring.title': 'A map of another program', 'bring.files': 'A yaml and its picture, both in a zip, or a picture alone', 'bring.resolution': 'Metres per pixel', 'bring.counts': '{free} free, {walls} walls, {unseen} never seen', 'bring.store': 'Store', 'bring.stored': '{name} is stored as version {version}. Load it to use it.',
 
   'rec.title': 'Recordings', 'rec.none': 'There are none.', 'rec.start': 'Start recording', 'rec.stop': 'Stop recording', 'rec.running': 'Recording to {path}', 'rec.not': 'Nothing is being recorded.', 'rec.file': 'File', 'rec.size': 'Size', 'rec.changed': 'Changed', 'rec.download': 'Download', 'rec.now': 'under way',
 
