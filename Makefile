@@ -12,7 +12,7 @@ ONLY ?=
 ROOT ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help console ui-test demo demo-real demo-busy test bench bench-peers paper conservative exact docs deb arm lowest supply faults interop replay-many liars fuzz safety stops heads heart lag worlds senses truth firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help console ui-test console-bench load demo demo-real demo-busy test bench bench-peers paper conservative exact docs deb arm lowest supply faults interop replay-many liars fuzz safety stops heads heart lag worlds senses truth firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -76,6 +76,12 @@ fuzz: .venv/.dev  ## Strange bytes for every parser, a minute each: make fuzz FU
 
 safety: .venv/.dev  ## How late stops are on the wires in real time, all processors busy (half an hour; make safety SHARE=0.1; ONLY=gateway: of the console)
 	@$(BIN)/python -m tests.studies.safety.run $(if $(SHARE),--share $(SHARE)) $(if $(ONLY),--only "$(ONLY)")
+
+load: .venv/.dev  ## Two hundred browsers of the console, ten of them stalled and one hostile: a table (three minutes; PAGES=50)
+	@$(BIN)/python -m tests.studies.console.load $(if $(PAGES),--pages $(PAGES))
+
+console-bench: .venv/.ui  ## What the console costs, and how soon people see something, in Debian's Chromium: a table (five minutes)
+	@$(BIN)/python -m tests.studies.console.bench $(if $(SECONDS_EACH),--seconds $(SECONDS_EACH))
 
 heads: .venv/.dev  ## Kill or stop the process that computes, whatever the robot is at: TRIALS=200, a table (half an hour)
 	@$(BIN)/python -m tests.studies.heads.run $(if $(TRIALS),--trials $(TRIALS))

@@ -3,15 +3,18 @@
 import asyncio
 import contextlib
 import logging
+from typing import Protocol
 
 from robotd.core.clock import NS_PER_S, now_ns, wall_offset_ns
 from robotd.core.errors import ConfigError
 from robotd.gateway.access.sessions import ConsoleSession, Sessions
+from robotd.gateway.access.tickets import Tickets
 from robotd.gateway.access.tokens import Token, TokenFile, Tokens, write_private
 from robotd.gateway.access.visitor_limits import Crowd, WrongTokens
-from robotd.gateway.browser.page_connection import PageConnection
+from robotd.gateway.browser.page_connection import Person
 from robotd.gateway.browser.services import Services
 from robotd.gateway.console_files import ConsoleFiles
+from robotd.gateway.feed.page_outbox import PageOutbox
 from robotd.gateway.settings import GatewaySettings
 
 NO_TOKEN = "no token: nobody could sign in; make one, with: robotctl gateway token new NAME --role operator"
@@ -19,6 +22,20 @@ _LOOK_S = 0.5
 _SAVE_EVERY = 120
 
 log = logging.getLogger(__name__)
+
+
+class Connected(Protocol):
+    """Somebody who is told what the robot tells."""
+
+    person: Person
+    outbox: PageOutbox
+    woken: asyncio.Event
+    """Set when something waits in the outbox."""
+    ended: str | None
+    """Why this connection has to end; None while it need not."""
+
+    def finish(self, why: str) -> None:
+        """Let the connection end as soon as it can."""
 
 
 def unix_s() -> float:
@@ -47,7 +64,8 @@ class House:
             raise ConfigError(NO_TOKEN)
         self.wrong_tokens = WrongTokens()
         self.crowd = Crowd()
-        self.connections: set[PageConnection] = set()
+        self.connections: set[Connected] = set()
+        self.tickets: Tickets[Person] = Tickets()
         self.sign_ins = 0
         self.refused_sign_ins = 0
         self.dropped_messages = 0

@@ -164,10 +164,9 @@ class MapRequests:
         if taken.made is None:
             return MapImported(taken.received_bytes, None)
         metadata = {"imported_from": printable(request.imported_from)}
-        content, made_ns = taken.made.content, now_ns() + wall_offset_ns()
-        save = partial(self._archive.save, request.name, metadata=metadata, created_unix_ns=made_ns)
+        save, made_ns = self._archive.save, now_ns() + wall_offset_ns()
         try:
-            entry = await self._disk.run("save map", lambda: save(content=content.unpacked()))
+            entry = await self._disk.run("save map", save, request.name, taken.made.content, metadata, made_ns)
         except MapError as error:
             raise MissionError(str(error)) from error  # it is a map, but there is no room for it
         log.info("map %s was imported as version %d (%s)", entry.name, entry.version, entry.digest)

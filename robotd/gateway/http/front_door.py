@@ -104,6 +104,8 @@ class FrontDoor:
         if route.needs is Needs.STOP:
             return self._who_may_stop(request)
         check_host(request.headers.get("Host"), self._house.settings.listen.allowed_hosts)
+        if route.needs is Needs.TICKET:
+            return self._by_ticket(request.match_info["ticket"])
         whence = address_of(request, self._house.settings.listen.trusted_proxies)
         scheme, secret = request.headers.get("Authorization", "").partition(" ")[::2]
         if scheme.lower() == "bearer" and route.needs is not Needs.NOBODY:
@@ -135,6 +137,13 @@ class FrontDoor:
             self._house.refused_sign_ins += 1
             raise ServerError("wrong_token", "no such token: robotctl gateway token new makes one")
         return Person(token.name, token.role, whence, token.sha256)
+
+    def _by_ticket(self, ticket: str) -> Person:
+        # Of no account which page brings it: it is a secret of its own, for one use, and gives a viewer's rights.
+        person = self._house.tickets.use(ticket, now_ns() / NS_PER_S)
+        if person is None:
+            raise ServerError("not_signed_in", "this address was used, or is too old: ask for another one")
+        return person
 
     def _checked(self, person: Person, route: Route) -> Person:
         needed = route.needs.role

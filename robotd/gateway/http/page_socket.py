@@ -2,8 +2,7 @@
 
 import asyncio
 import contextlib
-from collections.abc import Coroutine
-from typing import Any
+from functools import partial
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
@@ -11,15 +10,12 @@ from robotd import __version__
 from robotd.contract.requests import REQUESTS
 from robotd.core.clock import now_ns, wall_offset_ns
 from robotd.core.errors import ServerError
-from robotd.core.together import ended
 from robotd.gateway.browser import console_protocol as protocol
 from robotd.gateway.browser.liveness import EVERY_S
 from robotd.gateway.browser.page_connection import PageConnection, Person
 from robotd.gateway.house import House
 from robotd.gateway.http.route import Needs, Route
-
-_BLOCKED_S = 10.0
-"""How long one message may take to be sent."""
+from robotd.gateway.http.socket_duties import Item, first_of, write
 
 
 async def serve(request: web.Request, house: House, person: Person | None) -> web.StreamResponse:
@@ -45,7 +41,7 @@ async def _serve(socket: web.WebSocketResponse, connection: PageConnection, hous
     house.connections.add(connection)
     services.enter(connection)
     try:
-        await _first_of(_read(socket, connection), _write(socket, connection), _question(connection))
+        await first_of(_read(socket, connection), write(connection, partial(_send, socket)), _question(connection))
     finally:
         services.fan.leave(connection)
         house.connections.discard(connection)
@@ -85,22 +81,7 @@ async def _read(socket: web.WebSocketResponse, connection: PageConnection) -> No
             return
 
 
-async def _write(socket: web.WebSocketResponse, connection: PageConnection) -> None:
-    while True:
-        await connection.woken.wait()
-        connection.woken.clear()
-        if connection.ended is not None:
-            return
-        while (item := connection.outbox.take()) is not None and connection.ended is None:
-            try:
-                async with asyncio.timeout(_BLOCKED_S):
-                    await _send(socket, item)
-            except (TimeoutError, ConnectionError):
-                connection.finish("it reads nothing")
-                return
-
-
-async def _send(socket: web.WebSocketResponse, item: str | bytes | dict[str, int]) -> None:
+async def _send(socket: web.WebSocketResponse, item: Item) -> None:
     match item:
         case bytes():
             await socket.send_bytes(protocol.FRAME + item)
@@ -114,16 +95,6 @@ async def _question(connection: PageConnection) -> None:
     while True:
         connection.ask()
         await asyncio.sleep(EVERY_S)
-
-
-async def _first_of(*duties: Coroutine[Any, Any, None]) -> None:
-    """Do all until one ends; then end the others."""
-    tasks = [asyncio.create_task(duty) for duty in duties]
-    try:
-        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-    finally:
-        for error in await ended(tasks):
-            raise error
 
 
 ROUTES = (Route("GET", "/api/ws", Needs.VIEWER, "the socket of a page, robotd.console.v1", serve, is_socket=True),)

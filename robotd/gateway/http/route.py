@@ -18,6 +18,8 @@ class Needs(enum.Enum):
     """Everybody, signed in or not."""
     STOP = "stop"
     """Anyone who signed in within a day."""
+    TICKET = "ticket"
+    """Who brings a ticket in the address, once."""
     VIEWER = "viewer"
     OPERATOR = "operator"
     ADMIN = "admin"
@@ -25,7 +27,7 @@ class Needs(enum.Enum):
     @property
     def role(self) -> Role | None:
         """The role that is needed, where one is."""
-        return None if self in {Needs.NOBODY, Needs.STOP} else Role(self.value)
+        return None if self in {Needs.NOBODY, Needs.STOP, Needs.TICKET} else Role(self.value)
 
 
 Answer = Callable[[web.Request, House, Person | None], Awaitable[web.StreamResponse]]

@@ -9,7 +9,8 @@ from robotd.gateway.browser.console_protocol import LONGEST_TEXT
 from robotd.gateway.browser.page_connection import Person
 from robotd.gateway.house import House
 from robotd.gateway.http import (
-    map_files,
+    foxglove_socket,
+    map_exchange,
     map_pictures,
     page_socket,
     recorded_files,
@@ -29,7 +30,7 @@ async def described(_: web.Request, _house: House, _person: Person | None) -> we
 
 ROUTES: tuple[Route, ...] = (
     *(*static.ROUTES, *signing_in.ROUTES, *page_socket.ROUTES, *stop_pages.ROUTES),
-    *(*robot_state.ROUTES, *map_pictures.ROUTES, *map_files.ROUTES, *recorded_files.ROUTES),
+    *(*robot_state.ROUTES, *map_pictures.ROUTES, *map_exchange.ROUTES, *recorded_files.ROUTES, *foxglove_socket.ROUTES),
     Route("GET", "/api/openapi.json", Needs.VIEWER, "this description", described),
 )
 

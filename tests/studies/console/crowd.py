@@ -101,7 +101,7 @@ async def _sessions(address: URL, secret: str, count: int) -> AsyncIterator[list
 
 
 async def crowd(address: URL, secret: str, pages: int, stalled: int, hostile: int, seconds: float) -> Seen:
-    """Let so many look for so long, and return what those that read saw in the second half."""
+    """Let a crowd look for some time, and return what those that read saw in the second half of it."""
     seen = Seen()
     reading = pages - stalled - hostile
     async with _sessions(address, secret, math.ceil(pages / A_SESSION)) as sessions:

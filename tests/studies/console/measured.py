@@ -135,7 +135,7 @@ async def idle(it: House, seconds: float) -> Cost:
 
 
 def cpu_s(pid: int) -> float:
-    """Return the processor time of a process, whoever used it on its behalf [s]."""
+    """Return the processor time of a process, of all its threads [s]."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / _TICKS_PER_S
 

@@ -12,7 +12,7 @@ from PIL import Image
 from yarl import URL
 
 from robotd.core.errors import MissionError
-from robotd.gateway.http import map_files
+from robotd.gateway.http import map_exchange
 from robotd.interop.map_bundle import map_of_files
 from tests.unit.gateway.rig import Opening
 from tests.unit.server.conftest import stored_map
@@ -116,7 +116,7 @@ async def test_what_is_no_map_is_said_in_words(
 
 
 async def test_files_that_are_too_large_are_not_even_read(opening: Opening, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(map_files, "LONGEST_UPLOAD", 1 << 20)
+    monkeypatch.setattr(map_exchange, "LONGEST_UPLOAD", 1 << 20)
     async with opening() as rig, rig.browser() as session:
         noise = np.random.default_rng(1).bytes(2 << 20)
         assert (await sent(session, "", ("lab.pgm", noise)))[1]["code"] == "too_large"

@@ -1,6 +1,7 @@
 // Settings: how the page looks, who is signed in, what the robot goes by, and who may come in.
 import { html, nothing } from 'lit-html';
 import { when } from '../parts/format.js';
+import { foxgloveCard } from '../parts/foxglove.js';
 import { signOut } from '../parts/sign-in.js';
 import { chooseTheme, theme, THEMES } from '../parts/theme.js';
 import { t } from '../texts/texts.js';
@@ -26,6 +27,7 @@ export function settingsPage(app) {
       <section class="card"><h2>${t('set.you')}</h2><p>${t('set.you_are', { name: app.who?.name ?? '', role: t(`role.${app.who?.role}`) })}</p><button @click=${() => signOut(app)}>${t('sign.out')}</button></section>
       <section class="card"><h2>${t('set.versions')}</h2><p>${hello === null ? nothing : t('set.gateway', { version: hello.gateway, console: hello.console })}</p><p class="quiet">${t('set.daemon', { session: session ?? '…' })}</p></section>
       <section class="card"><h2>${t('set.keys')}</h2><p>${t('set.keys_text')}</p></section>
+      ${foxgloveCard(app)}
     </div>
     ${access === null ? nothing : comers()}
     <section class="card"><details><summary>${t('set.config')}</summary><pre tabindex="0">${config}</pre></details></section>
