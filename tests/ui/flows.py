@@ -7,10 +7,16 @@ from typing import Any
 
 import pytest
 
+from robotd.contract.estimate import PoseState
+from robotd.contract.missions import DriveTo
+from robotd.core.clock import now_ns
 from robotd.core.errors import ServerError
+from robotd.core.pose import Odometry, Pose2, Twist2
 from tests.support.console_page import until
 from tests.ui.browser import DESK, NARROW, PHONE, axe_source, chromium, hold, open_page
 from tests.unit.gateway.rig import Opening
+from tests.unit.gateway.test_maps import PGM, YAML
+from tests.unit.server.conftest import an_estimate, whole_map
 
 pytestmark = [pytest.mark.real_clock, pytest.mark.shares_descriptors]
 PAGES = ("drive", "maps", "recordings", "health", "log", "settings")
@@ -219,6 +225,83 @@ async def test_axe_finds_nothing_on_any_page_in_any_theme(opening: Opening) -> N
                     found[f"{theme} {name} {violation['id']}"] = places
         assert page.complaints == []
     assert found == {}, json.dumps(found, indent=1)
+
+
+async def test_maps_come_in_are_renamed_and_go_out(opening: Opening) -> None:
+    async with opening() as rig, chromium() as browser:
+        page = await open_page(browser, rig, accept_downloads=True)
+        await page.evaluate("location.hash = '#/maps'")
+        files = [
+            {"name": name, "mimeType": "application/octet-stream", "buffer": data}
+            for name, data in (("lab.yaml", YAML), ("lab.pgm", PGM))
+        ]
+        await page.locator(".bring input[type=file]").set_input_files(files)
+        await wait_for(page, ".bring", " 3 cells of 5 cm")
+        await wait_for(page, ".bring .why", "50% of it are walls")
+        assert rig.control.calls == [], "it was looked at, and that is all"
+        await page.get_by_role("button", name="Store", exact=True).click()
+        await wait_for(page, ".notice", "lab is stored as version 1")
+        assert rig.control.calls == ["import lab of lab.yaml, lab.pgm 3 x 4"]
+        async with page.expect_download() as coming:
+            await page.get_by_role("link", name="Export").click()
+        assert (await coming.value).suggested_filename == "office-3.zip"
+        await page.locator(".bring input[type=file]").set_input_files(files[1:])
+        await page.get_by_label("Metres per pixel").fill("nonsense")
+        await page.get_by_label("Metres per pixel").press("Tab")
+        await wait_for(page, ".notice", "Refused: ")
+        assert [text for text in page.complaints if "400" not in text] == []
+
+
+async def _tell_odometry(control: Any) -> None:
+    """Tell it as a base does, for an armed one that is silent lets nobody drive."""
+    while True:
+        control.events.publish(Odometry(now_ns(), Pose2(0.0, 0.0, 0.0), Twist2(0.0, 0.0)))
+        await asyncio.sleep(0.2)
+
+
+async def test_going_localizing_and_exploring_are_prepared_and_started_by_a_second_press(opening: Opening) -> None:
+    async with opening() as rig, chromium() as browser:
+        control = rig.control
+        control.map_in_use = whole_map(generation=0, map_id="office-3")
+        control.events.publish(control.map_in_use)
+        control.events.publish(an_estimate(PoseState.LOCALIZED))
+        page = await open_page(browser, rig)
+        await wait_for(page, ".where", "localized")
+        driving = asyncio.create_task(_tell_odometry(control))
+        await hold(page, "Hold to arm", 1400)
+        await until(lambda: control.armed)
+        await wait_for(page, ".mode", "armed, idle")
+        canvas = page.locator("canvas")
+
+        async def begun(start: str) -> Any:
+            await page.get_by_role("button", name=start, exact=True).click()
+            await until(lambda: control.asked and not control.is_busy)
+            await wait_for(page, ".mode", "armed, idle")
+            return control.asked.pop()
+
+        await page.keyboard.press("g")
+        await page.keyboard.press("Enter")  # what is in the middle
+        await wait_for(page, ".acts", "3.20 m to (")
+        assert control.asked == [], "a way is shown, and nothing drives"
+        assert isinstance(await begun("Go"), DriveTo)
+        await page.get_by_role("button", name="Localize here").click()
+        box = await canvas.bounding_box()
+        await page.mouse.move(box["x"] + 200, box["y"] + 200)
+        await page.mouse.down()
+        await page.mouse.move(box["x"] + 260, box["y"] + 200, steps=4)
+        await page.mouse.up()
+        await wait_for(page, ".acts", "A disk of")
+        within = (await begun("Start")).within
+        assert within is not None
+        assert within.radius_m > 0.2
+        await page.get_by_role("button", name="Explore").click()
+        await page.get_by_label("Name").fill("lab")
+        assert (await begun("Start")).name == "lab"
+        await page.get_by_role("button", name="Explore").click()
+        await page.get_by_label("Name").fill("office")
+        assert (await begun("Resume")).resume
+        driving.cancel()
+        assert page.complaints == []
 
 
 async def test_without_a_script_there_is_one_button(opening: Opening) -> None:

@@ -41,12 +41,14 @@ from robotd.contract.requests import (
     MapLoad,
     MapSave,
     MapShow,
+    PlanTo,
     RecordStart,
     RecordStop,
     Renew,
     Stop,
 )
 from robotd.contract.topics import Topic
+from robotd.contract.ways import Way
 from robotd.core.broadcast import Broadcast
 from robotd.core.clock import now_ns
 from robotd.core.counted import Counted
@@ -114,8 +116,8 @@ class FakeControl:
             battery_v=24.5,
             bumpers_rad=(0.5,),
             mission_id=self.mission_id if self.is_busy else None,
-            map_id=None,
-            map_name=None,
+            map_id=None if self.map_in_use is None else self.map_in_use.map_id,
+            map_name=None if self.map_in_use is None else "office",
             recording=self._recording,
         )
 
@@ -182,6 +184,8 @@ class FakeControl:
             case MapDiscard():
                 self.calls.append("discard")
                 return Done()
+            case PlanTo(x_m, y_m):
+                return Way(((x_m, 0.0), (x_m, y_m)), 3.2)
             case MapImport():
                 is_last = request.offset_bytes + len(request.part) == request.size_bytes
                 self.calls.append(f"import {request.name} of {request.imported_from} {request.rows} x {request.cols}")
