@@ -276,6 +276,7 @@ async def test_going_localizing_and_exploring_are_prepared_and_started_by_a_seco
         async def begun(start: str) -> Any:
             await page.get_by_role("button", name=start, exact=True).click()
             await until(lambda: control.asked and not control.is_busy)
+            await page.locator(".acts-list").wait_for()  # nothing is being prepared any more
             await wait_for(page, ".mode", "armed, idle")
             return control.asked.pop()
 
