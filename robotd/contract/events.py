@@ -14,6 +14,7 @@ from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Odometry, Pose2
 from robotd.core.reading import ReadingStatus, Sweep
 
+# Not the grid's own constant: clients load this file, and nothing of the engine with it.
 _UNKNOWN = 128
 """The value of a cell of which nothing is known."""
 

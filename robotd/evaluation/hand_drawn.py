@@ -26,6 +26,8 @@ def hand_drawn(grid: OccupancyGrid) -> NDArray[np.uint8]:
     """Return the evidence ``uint8[rows, cols]`` of a map with the same walls, drawn by hand. O(cells + corners)."""
     cell_m, walls = grid.spec.resolution_m, grid.cells > NO_INFORMATION
     gap_cells = _GAP_M / cell_m
+    # Grown, and shrunk by as much: gaps close, and walls stay where they are. Outside counts as clear, so that
+    # a wall at the edge shrinks back from it, too.
     closed = ~grown_by_disk(~grown_by_disk(walls, gap_cells), gap_cells, outside=True)
     cells = np.where(walls | closed, _VACANT, grid.cells).astype(np.uint8)
     for loop in loops_of(closed):
@@ -38,6 +40,7 @@ def hand_drawn(grid: OccupancyGrid) -> NDArray[np.uint8]:
 
 def loops_of(mask: NDArray[np.bool_]) -> Iterator[Corners]:
     """Yield the borders of a set of cells, each a closed loop of corners, one step apart; none is told twice."""
+    # So that what reaches the edge has a border there.
     padded = np.pad(mask, 1).astype(np.int8)
     across, along = np.diff(padded, axis=0)[:, 1:-1], np.diff(padded, axis=1)[1:-1]
     # The set lies to the left of each step: along +x below it, -x above it, +y to its right, -y to its left.
@@ -66,6 +69,8 @@ def _followed(onward: dict[tuple[int, int], list[tuple[int, int]]], start: tuple
 
 def simplified(loop: Corners, off_cells: float) -> Corners:
     """Return the corners of a loop that are needed so that none lies farther beside it (Douglas and Peucker 1973)."""
+    # A loop has no ends to draw the first line between: its first corner and the one farthest from it stand for
+    # them.
     middle = int(np.hypot(*(loop - loop[0]).T).argmax())
     kept, pieces = {0, middle}, [(0, middle), (middle, len(loop))]
     closed = np.concatenate((loop, loop[:1]))

@@ -67,6 +67,8 @@ def _until_one_dies(
                     del under_way[future]  # only now: a batch that killed its process is asked again
                     yield from answers
         except BrokenProcessPool:
+            # Which of them it died of cannot be told: all are asked again, and the guilty one is known by its
+            # deaths.
             return deque(replace(batch, deaths=batch.deaths + 1) for batch in under_way.values())
         finally:
             pool.shutdown(wait=True, cancel_futures=True)

@@ -38,6 +38,7 @@ class Protocol:
         if self.kind is None:
             return grid, division
         worse = degrade(self.kind, grid, seed)
+        # The truth moves with the map: a map that is turned or scaled has its places elsewhere.
         moved = (
             replace(query, truth=None if query.truth is None else worse.pose(query.truth)) for query in division.queries
         )

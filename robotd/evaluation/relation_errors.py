@@ -34,6 +34,7 @@ class RelationErrors:
     @classmethod
     def of(cls, relations: Iterable[Relation], poses: Mapping[int, Pose2] | Sequence[Pose2]) -> "RelationErrors":
         """Compare where pairs of scans lie to each other with where they should; poses by number of the scan."""
+        # Pairs, not places: a heading that is off early must not count once more at every scan after it.
         offs = [
             relation.step.inverse() @ (poses[relation.one].inverse() @ poses[relation.other]) for relation in relations
         ]

@@ -41,6 +41,7 @@ class SurveyedLog:
 def readings_in_robot(scan: Scan, reach: Reach) -> Readings:
     """Return the beams of a scan that say something, in the frame of the robot."""
     met = scan.hit & (scan.ranges_m <= reach.range_max_m)
+    # A hit beyond what is believed says, as a miss does, that the beam was free so far.
     some, mount = met | scan.missed | scan.hit, scan.robot_from_laser
     rows = np.empty((int(some.sum()), 5))
     rows[:, 0] = scan.angles_rad[some] + mount.heading_rad
@@ -91,6 +92,7 @@ def surveyed(
             name = decision.placed.outcome.value if isinstance(decision, StopPlaced) else type(decision).__name__
             found.outcomes[name] += 1
         told(stop, decisions)
+    # Loops are solved some at a time: those since the last time still wait.
     if found.survey.unsolved:
         found.survey, _ = found.survey.reconciled()
     return found

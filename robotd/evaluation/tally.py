@@ -57,6 +57,7 @@ class Tally:
         self.near += result.is_near
         self.near_right += result.is_near and result.verdict is CaseVerdict.RIGHT
         if result.regions:
+            # All of the belief belongs to the last tenth.
             tenth = min(int(10 * result.belief), 9)
             self.said[tenth] += 1
             self.said_right[tenth] += result.is_best_right

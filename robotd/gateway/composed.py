@@ -62,6 +62,7 @@ async def gateway(settings: GatewaySettings) -> AsyncIterator[RunningGateway]:
         async with (
             AsyncClient(settings.robot.runtime_dir) as client,
             Asker(context, endpoints) as asker,
+            # A socket that nothing else uses: no answer that is long in coming stands before a stop's.
             Asker(context, endpoints) as stopper,
         ):
             fan = FanOut(Snapshot(), lambda: asker.ask(MapShow()))

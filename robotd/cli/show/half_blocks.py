@@ -51,11 +51,13 @@ def shrink(spec: GridSpec, occupancy: NDArray[np.uint8], columns: int) -> Shrunk
     columns = max(1, columns - _MARGIN)
     known = np.argwhere(occupancy != NO_INFORMATION)
     if not len(known):
+        # Of a map of which nothing is known one unknown cell is shown, not an empty picture.
         known = np.array([[0, 0], [0, 0]])
     (row_min, col_min), (row_max, col_max) = known.min(axis=0), known.max(axis=0)
     part = occupancy[row_min : row_max + 1, col_min : col_max + 1]
     step = -(-part.shape[1] // columns)
     rows, cols = (-(-side // step) for side in part.shape)
+    # Two rows share a character.
     rows += rows % 2
     padded = np.full((rows * step, cols * step), NO_INFORMATION, np.uint8)
     padded[: part.shape[0], : part.shape[1]] = part
@@ -63,6 +65,7 @@ def shrink(spec: GridSpec, occupancy: NDArray[np.uint8], columns: int) -> Shrunk
     highest, lowest = blocks.max(axis=(1, 3)), blocks.min(axis=(1, 3))
     strongest: NDArray[np.uint8] = np.where(highest > NO_INFORMATION, highest, lowest)
     left_m = spec.origin_x_m + float(col_min) * spec.resolution_m
+    # Of the padded cells: they were added at the top.
     top_m = spec.origin_y_m + (float(row_min) + rows * step) * spec.resolution_m
     return Shrunk(strongest[::-1], left_m, top_m, step * spec.resolution_m)
 
@@ -92,6 +95,7 @@ def draw(
         places_m: where else it may be, marked ``o``.
         hits_m: where a sweep met something, marked ``*``.
     """
+    # The last one on a character is seen: the robot rather than a candidate, and that rather than a hit.
     marks = {shrunk.place(*at): ("*", _REGION_STYLE) for at in hits_m}
     marks |= {shrunk.place(*at): ("o", _REGION_STYLE) for at in places_m}
     if robot is not None:

@@ -86,6 +86,7 @@ def _show(what: str, calibration: Calibration, arguments: argparse.Namespace) ->
     print_table(("constant", "was", "is", "give or take", "unit"), [_row(one) for one in calibration.found])
     for one in calibration.residuals:
         unit, factor = _SHOWN[one.unit]
+        # Where nothing is left over, the bars still need a scale.
         reach = max(float(abs(one.values).max()), 1e-9)
         bars = strip(one.values, reach, blocks=can_draw_blocks(out().encoding))
         out().print(f"{one.name}: -{factor * reach:.2f} |{bars}| {factor * reach:.2f} {unit}")
@@ -109,7 +110,9 @@ def _keep(calibration: Calibration, arguments: argparse.Namespace) -> None:
     try:
         text = file.read_text(encoding="utf-8")
         config.load(file)
+        # The text is changed and not made anew: what its owner wrote beside the values stays.
         changed = with_values(text, values, "before it was calibrated")
+        # Before it is written: with a file that is refused, no daemon would start any more.
         config.loads(changed, str(file))
     except UnicodeDecodeError as error:
         raise ConfigError("not UTF-8", file=str(file)) from error

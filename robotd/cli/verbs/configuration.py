@@ -88,6 +88,7 @@ def _probed(ports: Sequence[str], chosen: dict[str, dict[str, object]]) -> dict[
     Raises:
         RobotdError: nobody answered.
     """
+    # A port that was named is somebody's already.
     answers = who_answers([port for port in ports if port not in {one["port"] for one in chosen.values()}])
     remarks: dict[str, str] = {}
     for port, found in answers.items():
@@ -102,6 +103,7 @@ def _probed(ports: Sequence[str], chosen: dict[str, dict[str, object]]) -> dict[
         chosen[found.device] = {"port": port, "dialect": found.dialects[0]}
         if len(found.dialects) > 1:
             remarks[found.device] = f"It answers as {', '.join(found.dialects)} all do: say which it is."
+    # A scanner turns its own beam: there is no head, and nothing will ever answer for one.
     if chosen.get("rangefinder", {}).get("dialect") in SCANNERS:
         chosen.setdefault("pantilt", {"dialect": MOTORLESS})
     if not chosen:

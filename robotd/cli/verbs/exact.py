@@ -59,6 +59,7 @@ def _where(arguments: argparse.Namespace, asked: ExactQuestion, eps: Rational) -
     by_heading = zip(asked.headings_deg, asked.slices, strict=True)
     slices = [_slice(polygon_map, beams, heading_deg) for heading_deg, beams in by_heading]
     best = max(one.best for one in slices)
+    # A place that explains nothing is everywhere, and no answer.
     least = arguments.least_rank or max(1, best)
     found = [(one.heading_deg, region) for one in slices for region in regions(one.ranks, at_least(least))]
     found.sort(key=lambda place: -place[1].best_rank)

@@ -53,6 +53,7 @@ def _export(arguments: argparse.Namespace) -> int:
     files = export_map(stored.grid, entry.name, arguments.mode)
     directory: OutputPath = arguments.directory
     for name in files:
+        # All of them before the first is written: a picture without its yaml is no map.
         check(directory / name, _YAML if name.endswith(".yaml") else _IMAGE)
     for name, content in files.items():
         write(directory / name, content)

@@ -116,6 +116,8 @@ class TokenFile:
             found = self.path.stat()
         except OSError:
             return None
+        # The inode, too: each writing puts another file in its place, and two may fall within one tick of the
+        # file system's clock.
         return found.st_ino, found.st_mtime_ns, found.st_size
 
     def read(self) -> Tokens:
@@ -150,6 +152,7 @@ def write_private(path: Path, data: bytes) -> None:
         with os.fdopen(descriptor, "wb") as file:
             file.write(data)
             file.flush()
+            # Before the rename: else a power cut could leave the name with nothing behind it.
             os.fsync(file.fileno())
         if os.geteuid() == 0:  # made by an administrator, read by the gateway's own user
             owner = path.parent.stat()

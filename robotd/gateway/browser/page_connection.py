@@ -87,6 +87,7 @@ class PageConnection:
             self.say(protocol.problem(None, error))
             return
         if isinstance(said, protocol.StopNow):
+            # Not counted against the page: no limit stands before a stop.
             self._begin(self._stop(said))
             return
         self._count()
@@ -104,6 +105,7 @@ class PageConnection:
 
     async def end(self) -> None:
         """End what is under way: answers that nobody waits for. A stop goes on."""
+        # Those of a stop are among them, and what they wait for is shielded: the line of STOP goes on.
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
@@ -134,6 +136,7 @@ class PageConnection:
 
     async def _answered(self, request_id: int, work: Coroutine[Any, Any, object]) -> None:
         if self._under_way >= _AT_ONCE:
+            # Else Python complains of a coroutine that nobody ever awaited.
             work.close()
             self.say(
                 protocol.problem(request_id, ServerError("busy", f"{_AT_ONCE} requests of this page are under way"))
@@ -144,6 +147,7 @@ class PageConnection:
             self.say(protocol.result(request_id, await work))
         except ServerError as error:
             self.say(protocol.problem(request_id, error))
+        # The page waits for one answer to each request: without this one it would wait for ever.
         except RobotdError as error:
             self.say(protocol.problem(request_id, ServerError("internal", str(error))))
         finally:

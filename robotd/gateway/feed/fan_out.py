@@ -91,6 +91,7 @@ class FanOut:
 
     async def _hand_rank_on(self, frames: AsyncGenerator[Frame | Gap, None]) -> None:
         async for item in frames:
+            # The subscription ends with the last who looks, and with it the daemon's work.
             if not self._see_rank:
                 return
             if isinstance(item, Frame):
@@ -105,6 +106,7 @@ class FanOut:
         try:
             self.accept(HeardFrame.read(item))
         except (RobotdError, ValueError, KeyError, TypeError) as error:
+            # One message of a newer daemon must not end what all pages live by.
             log.warning("a message of the daemon was left out: %s", error)
 
     def accept(self, heard: HeardFrame) -> None:

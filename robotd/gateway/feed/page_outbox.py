@@ -134,6 +134,7 @@ class PageOutbox:
         while self._changes and self._changes[0] not in self._frames:
             self._changes.popleft()
         waiting = sum(len(self._frames[key]) for key in self._changes if key in self._frames)
+        # A whole map, or the word that there is none, makes all that waited before it needless.
         if heard.fields["whole"] or heard.fields["map_id"] is None:
             self._forget_changes()
         elif len(self._changes) >= MOST_CHANGES or waiting + len(heard.data) > MOST_CHANGE_BYTES:

@@ -82,5 +82,6 @@ class Snapshot:
             self.map.forget()
             self._last["map_changed"] = heard.data
             return
+        # It was the word that there is no map.
         self._last.pop("map_changed", None)
         self.map_gap = not self.map.accept(heard)

@@ -108,6 +108,7 @@ class FrontDoor:
             return self._by_ticket(request.match_info["ticket"])
         whence = address_of(request, self._house.settings.listen.trusted_proxies)
         scheme, secret = request.headers.get("Authorization", "").partition(" ")[::2]
+        # Its origin is not asked: no browser sends a token of its own accord, so no other site can let it.
         if scheme.lower() == "bearer" and route.needs is not Needs.NOBODY:
             return self._checked(self.by_token(secret, whence), route)
         check_origin(
@@ -159,6 +160,8 @@ class FrontDoor:
         if session is not None:
             return Person(session.token, session.role, whence, session.sha256)
         scheme, secret = request.headers.get("Authorization", "").partition(" ")[::2]
+        # Of those in memory, by which none is used up: nothing stands between a press and the stop, a disk
+        # neither.
         token = self._house.tokens.match(secret, unix_s()) if scheme.lower() == "bearer" else None
         if token is None:
             raise ServerError("not_signed_in", "to stop the robot sign in: robotctl stop does it on the robot itself")

@@ -37,6 +37,8 @@ async def serve(request: web.Request, house: House, person: Person | None) -> we
 async def _serve(socket: web.WebSocketResponse, connection: PageConnection, house: House) -> None:
     services = house.services
     connection.say(_hello(connection, house))
+    # Without a wait between: what comes from now on follows on what is greeted with, and nothing is missed or
+    # told twice.
     connection.outbox.greet(services.fan.join(connection))
     house.connections.add(connection)
     services.enter(connection)
@@ -50,6 +52,7 @@ async def _serve(socket: web.WebSocketResponse, connection: PageConnection, hous
         await connection.end()
         with contextlib.suppress(ConnectionError, TimeoutError):
             async with asyncio.timeout(1.0):
+                # A frame that closes has room for 123 bytes of a reason.
                 await socket.close(code=WSCloseCode.POLICY_VIOLATION, message=(connection.ended or "").encode()[:120])
 
 

@@ -120,6 +120,7 @@ def parse_world(text: str, *, file: str) -> World:
     except tomllib.TOMLDecodeError as error:
         line = re.search(r"at line (\d+)", str(error))
         raise ConfigError(str(error), file=file, line=int(line[1]) if line else None) from error
+    # tomllib calls itself for each bracket, and a file may have any number.
     except RecursionError:
         raise ConfigError("brackets within brackets without end", file=file) from None
     _refuse_unknown_keys(table, text, file)
@@ -132,6 +133,7 @@ def parse_world(text: str, *, file: str) -> World:
 
 
 def _refuse_unknown_keys(table: dict[str, Any], text: str, file: str) -> None:
+    # msgspec could refuse them, but knows neither the line nor the name that was meant.
     found: list[tuple[str, type]] = [(key, World) for key in table]
     found += [(f"start.{key}", Start) for key in _keys(table.get("start"))]
     walls = table.get("wall")
