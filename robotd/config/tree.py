@@ -98,6 +98,7 @@ def _check_device(device: str, settings: PortSettings) -> None:
 
 def _check_ports_differ(devices: dict[str, PortSettings]) -> None:
     owners: dict[str, str] = {}
+    # What has no line of its own has a port in name alone.
     with_lines = {name: settings for name, settings in devices.items() if line_format(name, settings) is not None}
     for device, settings in with_lines.items():
         owner = owners.setdefault(settings.port, device)

@@ -68,6 +68,7 @@ class Within:
         possible = [(name, ours) for name, ours in meant if self._holds(ours)]
         if not possible:
             return ""
+        # By ratio: 4 and 0.04 are equally far from 0.4.
         name, ours = min(possible, key=lambda item: abs(math.log(abs(item[1] / usual)))) if usual else possible[0]
         return f"; {name}? then {ours:.3g}"
 

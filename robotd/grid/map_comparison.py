@@ -50,6 +50,7 @@ def compare_maps(first: OccupancyGrid, second: OccupancyGrid) -> MapComparison:
 
 def kinds_of(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Return what cells are, ``uint8[rows, cols]``."""
+    # As signed numbers: the difference of unsigned ones is never below 0.
     kinds: NDArray[np.uint8] = (1 + np.sign(cells.astype(np.int16) - NO_INFORMATION)).astype(np.uint8)
     return kinds
 

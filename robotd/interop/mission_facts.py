@@ -93,6 +93,7 @@ class MissionFacts:
         return [span for span in self.missions.values() if span.last.phase is not MissionPhase.DONE]
 
     def _estimate(self, estimate: PoseEstimate) -> None:
+        # Without readings it is odometry's word, and nobody looked.
         if estimate.final and estimate.readings:
             self.looks.append(estimate)
         if not estimate.final:

@@ -94,4 +94,5 @@ def _chosen(reader: "AnyReader", scan_topic: str | None) -> _Topics:
 
 
 def _most(counts: Mapping[str, int]) -> str:
+    # By name where two said as much: the same bag is read the same way each time.
     return max(sorted(counts), key=lambda topic: counts[topic])

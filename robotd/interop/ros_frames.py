@@ -144,7 +144,7 @@ def _moves(ties: list[tuple[float, _Turn]]) -> bool:
 
 def _mount(turn: _Turn) -> Mount:
     up = float(turn[2, 2])
-    tilt_rad = 0.0 if abs(up) >= _LEVEL_COS else math.acos(min(1.0, abs(up)))
+    tilt_rad = 0.0 if abs(up) >= _LEVEL_COS else math.acos(abs(up))
     return Mount(_flat(turn), up < 0.0, tilt_rad)
 
 

@@ -88,6 +88,7 @@ class TfminiRangefinder(VendorDevice[Message]):
     async def shoot(self, *, timeout_s: float) -> Shot:
         """Take one reading; TransportError if the device is absent, any other failure is a result."""
         dialogue = self._talk()
+        # One at a time: a frame does not say which trigger it answers.
         async with self._shooting:
             try:
                 heard = await (self._fresh(timeout_s) if self._is_first else self._triggered(dialogue, timeout_s))
@@ -108,6 +109,7 @@ class TfminiRangefinder(VendorDevice[Message]):
         return self._instrument.implausible
 
     async def _triggered(self, dialogue: Dialogue[Message], timeout_s: float) -> Heard[Data]:
+        # All tries within the time that the caller has.
         heard = await dialogue.ask(
             TRIGGER, _is_data, timeout_s=min(_MEASURES_S, timeout_s / _TRIGGERS), tries=_TRIGGERS
         )

@@ -15,6 +15,7 @@ _AT_REST = 0
 
 def drive_board(plant: DrivePlant, boot_id: int) -> FirmwareBoard:
     """Return the board of a base."""
+    # C is given the address alone: handle and plant live as long as the board that keeps them.
     handle = ffi.new_handle(plant)
     names = ("advance", "command", "cut", "counts", "velocity", "bumpers", "battery_mv", "broken")
     hal = ffi.new("struct drive_hal *", _functions("drive", names, handle))

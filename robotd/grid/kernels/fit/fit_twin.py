@@ -116,6 +116,7 @@ def _fit(
     outlier_cells: float,
 ) -> NDArray[np.float64]:
     start, low, high = box[:3], box[3:6], box[6:]
+    # A side without width would be believed without end.
     half = np.maximum((high - low) / 2, 1e-9)
     belief = _PRIOR / (half * half)
     at = best = np.minimum(np.maximum(start, low), high)
@@ -130,6 +131,7 @@ def _fit(
                 found.normal + np.diag(belief), found.gradient + belief * moved, low - best, high - best
             )
         else:
+            # Too far: less of the same step, from the best so far.
             step = step / 4
         if width > outlier_cells:
             # Costs of different widths cannot be compared, so every narrowing begins with no least cost.
@@ -148,6 +150,7 @@ def _bounded_step(
     while free:
         rest = [-gradient[i] - sum((normal[i, j] * step[j] for j in range(3) if j not in free), 0.0) for i in free]
         found = _solved([[float(normal[i, j]) for j in free] for i in free], [float(value) for value in rest])
+        # As shares of the bounds: cells and radians cannot be compared.
         over = [
             max(low[i] - value, value - high[i]) / max(high[i] - low[i], 1e-12)
             for i, value in zip(free, found, strict=True)
@@ -182,6 +185,7 @@ def _judge(found: _Found) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     spread = max(found.squares / max(found.weight - HEADS_MIN, 1.0), LEAST_SPREAD_CELLS * LEAST_SPREAD_CELLS)
     together = _together(found.weights * found.beyond)
     known = found.normal / (spread * together)
+    # Where the readings say nothing the matrix would have no inverse.
     known = known + np.diag([1 / (sigma * sigma) for sigma in (UNKNOWN_CELLS, UNKNOWN_CELLS, UNKNOWN_RAD)])
     unit = np.eye(3).tolist()
     columns = [_solved(known.tolist(), column) for column in unit]

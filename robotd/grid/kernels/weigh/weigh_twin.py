@@ -11,6 +11,7 @@ from robotd.grid.kernels.weigh.weigh_kernel import AS_MAPPED, IN_UNKNOWN, IN_VAC
 
 _ASIDE = (-math.sqrt(2.0), 0.0, math.sqrt(2.0))
 _SHARE = (0.25, 0.5, 0.25)
+# 2 / (pi sqrt 3): Student's t with three degrees of freedom, at its middle.
 _PEAK = 0.36755259694786135
 _FAR = 8.0
 _STOPPED = 0.02
