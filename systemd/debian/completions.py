@@ -26,7 +26,8 @@ def script(shell: str) -> str:
         for action in parser._actions:  # noqa: SLF001  # no other way
             if action.type is Path or action.metavar == "FILE":
                 action.complete = shtab.FILE  # type: ignore[attr-defined]  # shtab reads it, argparse lets it be
-    return shtab.complete(whole, shell=shell)
+    text: str = shtab.complete(whole, shell=shell)
+    return text
 
 
 if __name__ == "__main__":
