@@ -9,11 +9,13 @@ import pytest
 
 from firmware_proto.common import BoardState, Fault, Hello, HelloReply
 from firmware_proto.framing import Deframer
+from robotd.config import Config
 from robotd.contract.device_status import LinkState
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.missions import Localize, MapStart
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.pose import Pose2
+from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects, Firmware
 from robotd.sim.faults.laid import cables
@@ -70,7 +72,7 @@ async def mission(directory: Path, firmware: Firmware) -> tuple[dict[str, list[H
     robot = SimulatedRobot(world, seed=2, dialects=Dialects(boards=firmware))
     taps = {device: Tapped(board) for device, board in robot.boards.items()}
     robot.boards.update(taps)
-    async with living(directory, robot) as it:
+    async with living(directory, robot, Config(sweep=SweepSettings(readings=150))) as it:
         await it.done(MapStart.of("office", world.stops_m[:1], world.start_pose))
         said = await it.done(Localize())
         estimate = [event for event in said if isinstance(event, PoseEstimate) and event.final][-1]
