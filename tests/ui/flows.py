@@ -286,12 +286,15 @@ async def test_going_localizing_and_exploring_are_prepared_and_started_by_a_seco
         assert control.asked == [], "a way is shown, and nothing drives"
         assert isinstance(await begun("Go"), DriveTo)
         await page.get_by_role("button", name="Localize here").click()
+        for name in ("log", "drive"):  # another page, and back: the canvas is another one then
+            await page.evaluate(f"location.hash = '#/{name}'")
+            await page.locator(f".page-{name}").wait_for()
         box = await canvas.bounding_box()
-        await page.mouse.move(box["x"] + 200, box["y"] + 200)
+        await page.mouse.move(box["x"] + 500, box["y"] + 400)
         await page.mouse.down()
-        await page.mouse.move(box["x"] + 260, box["y"] + 200, steps=4)
+        await page.mouse.move(box["x"] + 560, box["y"] + 400, steps=4)
         await page.mouse.up()
-        await wait_for(page, ".acts", "A disk of")
+        await wait_for(page, ".acts", " round (")
         within = (await begun("Start")).within
         assert within is not None
         assert within.radius_m > 0.2

@@ -71,10 +71,10 @@ async def figures(seconds: float) -> AsyncIterator[Figure]:
     async with house() as it, chromium() as browser:
         async for figure in _first_looks(it, browser):
             yield figure
-        async for figure in _while_mapping(it, browser, seconds):
-            yield figure
         yield await _scraped(it)
         yield await _gateway_stands_still(it, seconds)
+        async for figure in _while_mapping(it, browser, seconds):  # last: who is hostile has then guessed tokens
+            yield figure
 
 
 async def _first_looks(it: House, browser: Any) -> AsyncIterator[Figure]:
@@ -106,7 +106,7 @@ async def _cold(browser: Any, it: House) -> tuple[Any, list[Any]]:
     await context.close()
     page = await (await browser.new_context(viewport={"width": 1280, "height": 800}, storage_state=state)).new_page()
     asked: list[Any] = []
-    page.on("response", asked.append)
+    page.on("response", lambda answer: asked.append(answer))  # noqa: PLW0108  # Playwright marks what it is handed
     await page.goto(str(it.gateway.address))
     return page, asked
 

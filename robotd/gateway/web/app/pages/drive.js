@@ -22,7 +22,7 @@ export function drivePage(app) {
   return html`
     <h1 class="unseen">${t('page.drive')}</h1>
     <section class="map" aria-label=${t('page.drive')}>
-      <canvas tabindex="0" role="application" aria-label=${t('map.label')} ${ref((element) => mount(app, element))}></canvas>
+      <canvas tabindex="0" role="application" aria-label=${t('map.label')} ${ref(mounted(app))}></canvas>
       ${app.grid.placement === null && app.state.status !== null && app.state.status.map_id === null
         ? html`<div class="no-map"><p>${t('map.none')}</p><p class="quiet">${t('map.none_hint')}</p></div>` : nothing}
       <div class="map-tools">
@@ -59,6 +59,15 @@ function mount(app, element) {
   app.canvas.onLayers = () => app.look();
   app.canvas.draft = (pen) => draftOf(app).paint(pen);
   app.canvas.onPoint = (at) => tell(app, at);
+  draftOf(app).listen();
+}
+
+/** @type {((element: Element | undefined) => void) | null} */
+let mounting = null;
+/** The same function each time the page is drawn: another one would be told that the canvas is gone and here again. @param {App} app */
+function mounted(app) {
+  mounting ??= (element) => mount(app, element);
+  return mounting;
 }
 
 /** The map as it was looked at when another page was opened. @type {MapCanvas | null} */

@@ -27,7 +27,13 @@ export class Draft {
   begin(act) {
     this.cancel();
     this.act = act;
-    const { canvas } = this.app;
+    this.listen();
+    this.app.wake(true);
+  }
+
+  /** Take places from the canvas that is there now: it is another one after another page was open. */
+  listen() {
+    const { act, app: { canvas } } = this;
     if (canvas === null) return;
     if (act === 'go') canvas.onPick = (place) => this.aim(place);
     if (act === 'map') canvas.onPick = (place) => { this.stops = [...this.stops, place]; this.app.wake(true); };
@@ -35,7 +41,6 @@ export class Draft {
       canvas.onPick = (place) => this.circle(place, 1);
       canvas.onDrag = (from, to) => this.circle(from, Math.max(0.2, Math.hypot(to.x - from.x, to.y - from.y)));
     }
-    this.app.wake(true);
   }
 
   cancel() {
