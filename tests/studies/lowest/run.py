@@ -48,7 +48,7 @@ def main(tests: Sequence[str]) -> int:
     # Run where the source is: what was compiled in place serves every version of Python and NumPy.
     # An old version may use what newer ones around it call deprecated: whether it works is asked, not whether it will.
     old = ("-W", "ignore::DeprecationWarning", "-W", "ignore::PendingDeprecationWarning")
-    words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", *old, *(tests or TESTS)]
+    words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-o", "timeout=600", *old, *(tests or TESTS)]
     return subprocess.run([str(python), *words], cwd=ROOT, check=False).returncode
 
 

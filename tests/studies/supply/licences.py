@@ -20,6 +20,7 @@ ALLOWED = frozenset(
         "Python-2.0",
         "Zlib",
         "CC0-1.0",
+        "any-OSI",  # whichever one likes, of those that the OSI has approved
     }
 )
 """Those that ask for no more than to be named, or, as the MPL, for changes to the package itself."""

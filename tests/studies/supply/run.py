@@ -51,7 +51,7 @@ def installed_wheel() -> Path:
 
 def refused_licences(python: Path) -> list[str]:
     """Print each package with its licence; return those under one that is not allowed."""
-    said = subprocess.run([str(python), "-c", _METADATA], check=True, capture_output=True, text=True).stdout
+    said = subprocess.run([str(python), "-I", "-c", _METADATA], check=True, capture_output=True, text=True).stdout
     refused = []
     for one in sorted(json.loads(said), key=lambda each: str(each["name"]).lower()):
         licence = licence_of(one["expression"], one["classifiers"], one["text"])
