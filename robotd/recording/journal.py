@@ -76,22 +76,25 @@ class Journal(ABC):
         loop = asyncio._get_running_loop()  # noqa: SLF001  # public for loops; the other raises where there is none
         if isinstance(loop, TurnCountingLoop):
             if is_input(entry):
-                self._note_turns(entry.time_ns, loop)
+                self._note_turns(entry, loop)
             # Only the first: how the answer comes depends on when it was asked, not on what was asked after it.
             elif isinstance(entry, BytesEntry) and self._asked_turn is None:
                 self._asked_turn = loop.turn
         self.note(entry)
 
-    def _note_turns(self, time_ns: int, loop: TurnCountingLoop) -> None:
+    def _note_turns(self, entry: Entry, loop: TurnCountingLoop) -> None:
         """Note how many turns ago the last input came, unless its effects are over.
 
         What was asked in between is answered later, however many turns that takes; only a stop is asked for in the
-        same turn as it is noted, just before.
+        same turn as it is noted, just before. A stall, a line that broke, a client's wish answer nothing: they come in
+        their turn, whatever was asked.
         """
         before, self._input_turn = self._input_turn, loop.turn
         asked, self._asked_turn = self._asked_turn, None
         # A loop that rested since had nothing left to do: all effects were over, and the next input met none.
-        if before is None or loop.rested_at > before or asked not in {None, loop.turn}:
+        if before is None or loop.rested_at > before:
+            return
+        if isinstance(entry, BytesEntry) and asked not in {None, loop.turn}:
             return
         if loop.turn - before <= TURNS_MAX:
-            self.note(TurnEntry(time_ns, loop.turn - before))
+            self.note(TurnEntry(entry.time_ns, loop.turn - before))

@@ -39,7 +39,9 @@ class Lw20Rangefinder(LightwareRangefinder[Lw20Answer]):
         await dialogue.ask(lw20.LASER_ON if on else lw20.LASER_OFF, _named("lf"), timeout_s=ANSWER_S, tries=TRIES)
 
     async def _newest(self, dialogue: Dialogue[Lw20Answer], timeout_s: float) -> Shot:
-        heard = await dialogue.ask(lw20.FIRST_RETURN_RAW, _named("ldf", _RAW), timeout_s=timeout_s, tries=TRIES)
+        heard = await dialogue.ask(
+            lw20.FIRST_RETURN_RAW, _named("ldf", _RAW), timeout_s=timeout_s, tries=TRIES, late_s=0.0
+        )
         return self._shot(heard.time_ns, heard.message.number, None)
 
 

@@ -40,7 +40,7 @@ class LwnxRangefinder(LightwareRangefinder[Packet]):
 
     async def _newest(self, dialogue: Dialogue[Packet], timeout_s: float) -> Shot:
         request = lwnx.read(lwnx.DISTANCE)
-        heard = await dialogue.ask(request, _numbered(lwnx.DISTANCE), timeout_s=timeout_s, tries=TRIES)
+        heard = await dialogue.ask(request, _numbered(lwnx.DISTANCE), timeout_s=timeout_s, tries=TRIES, late_s=0.0)
         if (reading := heard.message.reading) is None:
             return self._shot(heard.time_ns, None, None)
         distance_cm, strength = reading

@@ -111,7 +111,7 @@ class TfminiRangefinder(VendorDevice[Message]):
     async def _triggered(self, dialogue: Dialogue[Message], timeout_s: float) -> Heard[Data]:
         # All tries within the time that the caller has.
         heard = await dialogue.ask(
-            TRIGGER, _is_data, timeout_s=min(_MEASURES_S, timeout_s / _TRIGGERS), tries=_TRIGGERS
+            TRIGGER, _is_data, timeout_s=min(_MEASURES_S, timeout_s / _TRIGGERS), tries=_TRIGGERS, late_s=0.0
         )
         assert isinstance(heard.message, Data)
         return Heard(heard.message, heard.time_ns)

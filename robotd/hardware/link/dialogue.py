@@ -30,7 +30,7 @@ M_co = TypeVar("M_co", covariant=True)
 
 _PIECES_MAX = 50
 """More than this since a request was given up, and the line counts as never quiet: one that streams, or is stuck."""
-_SILENCE_S = 1.0
+SILENCE_S = 1.0
 """So long an answer may stay out before the device is lost: as long as one that reports by itself may be silent, for
 one that gets no processor for a while, or whose line does not, is late and not gone."""
 
@@ -148,6 +148,7 @@ class Dialogue(Generic[M]):
         timeout_s: float,
         tries: int = 1,
         despite_stops: bool = False,
+        late_s: float = SILENCE_S,
     ) -> Heard[M]:
         """Send a request and return the message that settles it.
 
@@ -155,9 +156,10 @@ class Dialogue(Generic[M]):
             data: the request.
             settles: whether a message is its answer, a refusal included.
             timeout_s: how long a try may stay without it.
-            tries: how often the request is sent at least; 1 for whatever must not happen twice. One of a device that
-                is being served is repeated until its answer is late by :data:`_SILENCE_S`.
+            tries: how often the request is sent at least; 1 for whatever must not happen twice.
             despite_stops: a stop does not concern it: it asks, and moves nothing.
+            late_s: a request that may be repeated is, once the device is served, until its answer is so late; 0 for
+                what has a time of its own.
 
         Raises:
             LinkTimeout: no answer to any try.
@@ -167,7 +169,7 @@ class Dialogue(Generic[M]):
         # Before the lock: a stop that comes while this waits for its turn ends it, too.
         stops = self._stops
         async with self._one_at_a_time:
-            tries = self._enough(tries, timeout_s)
+            tries = self._enough(tries, timeout_s, late_s)
             for attempt in range(tries):
                 await self._settle_down()
                 self._check(self._stops if despite_stops else stops)  # against itself: no stop concerns it
@@ -213,14 +215,14 @@ class Dialogue(Generic[M]):
         """Put the stop on the wire from any thread, while the loop is stuck; never raises."""
         self._line.write_past_loop(data)
 
-    def _enough(self, tries: int, timeout_s: float) -> int:
+    def _enough(self, tries: int, timeout_s: float, late_s: float) -> int:
         """Return how often to send what may be repeated.
 
         By count, not by the clock: a replay, whose timers fire late, sends as many.
         """
         if tries == 1 or not self._is_served:
             return tries
-        return max(tries, 1 + math.ceil(_SILENCE_S / timeout_s))
+        return max(tries, 1 + math.ceil(late_s / timeout_s)) if late_s > 0.0 else tries
 
     async def until_lost(self, silence_s: float | None = None) -> NoReturn:
         """Wait until the line is lost, or nothing that is understood came for so long; raise why.

@@ -44,7 +44,8 @@ async def here_on(context: MissionContext, then: str) -> tuple[int, Pose2]:
     now = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
     pose = context.whereabouts.pose_of(now)
     if pose is None:
-        raise MissionError(f"the robot is not localized on this map; first: robotctl localize, then {then}")
+        first = "the robot is not localized on this map; first: robotctl localize"
+        raise MissionError(f"{first}, then {then}")
     return now.time_ns, pose
 
 

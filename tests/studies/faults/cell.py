@@ -22,8 +22,8 @@ from tests.support.states import STATES
 
 NOTICED_WITHIN_S = 1.1
 """A line may be silent for a second before it counts as lost."""
-VENDOR_NOTICED_WITHIN_S = 2.8
-"""Vendor devices speak when asked: they are asked after a second, up to three times."""
+VENDOR_NOTICED_WITHIN_S = 3.1
+"""Vendor devices speak when asked: they are asked after a second, and for another one at least."""
 REST_AFTER_STOP_S = 0.8
 """The ramp from cruising speed."""
 READY_AGAIN_S = 10.0
