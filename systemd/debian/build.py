@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from email.utils import formatdate
 from pathlib import Path
 
 PYTHON = "python3.11"
@@ -22,6 +23,12 @@ _MOVED = {
     "etc/tmpfiles.d": "usr/lib/tmpfiles.d",
 }
 """Where a package has what an administrator would put below /etc."""
+_CHANGES = """robotd ({version}) unstable; urgency=medium
+
+  * What changed stands in changelog.gz.
+
+ -- robotd developers <robotd@localhost.invalid>  {date}
+"""
 
 
 def run(*words: object) -> str:
@@ -85,6 +92,9 @@ def documents(root: Path, python: Path, version: str) -> None:
     doc = made / "doc/robotd"
     doc.mkdir(parents=True)
     (doc / "copyright").write_text((HERE / "copyright").read_text())
+    (doc / "changelog.Debian.gz").write_bytes(
+        gzip.compress(_CHANGES.format(version=version, date=formatdate()).encode(), 9, mtime=0)
+    )
     (doc / "changelog.gz").write_bytes(gzip.compress((HERE.parents[1] / "CHANGELOG.md").read_bytes(), 9, mtime=0))
     (made / "lintian/overrides").mkdir(parents=True)
     shutil.copy(HERE / "lintian-overrides", made / "lintian/overrides/robotd")

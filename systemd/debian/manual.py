@@ -22,7 +22,7 @@ def page(version: str) -> str:
         ".SH SYNOPSIS",
         ".B robotctl",
         ".I VERB",
-        "...",
+        "\\&...",
     ]
     for name, parser in whole_parser():
         text += [f'.SH "{name.upper()}"', *literal(parser.format_help())]
