@@ -46,7 +46,10 @@ class StopChosen:
     reason: str
     """For people."""
     candidates: tuple[CandidateStop, ...]
-    """Those that it was chosen from, the best first, up to twelve; empty of a stop that a client asked for."""
+    """Where it goes, then the others that it was chosen from, the best first, up to twelve; empty of a stop that a
+    client asked for."""
+    tour_m: tuple[tuple[float, float], ...] = ()
+    """Where it means to stop from now on to see all that is open by now, in order; each stop changes its mind."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,9 @@
 Stops cost more than metres: a sweep takes as long as ten metres of way. So candidates are judged by the ground that a
 whole sweep is expected to add, over the time that it takes to get there, turn, and sweep. Before all else a sweep must
 find its place on the map: candidates from which most beams end on known walls come first, however little they add.
+
+The best of them is not always where it goes next. Some of them together look behind all that is open, and are put in
+the order in which they wait least: what is near is finished before it leaves, unless something large waits for it.
 """
 
 import math
@@ -13,17 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.contract.ways import Point
-from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
 from robotd.core.rectangle import Rectangle
+from robotd.exploring.charted import Charted
+from robotd.exploring.cover import covering
 from robotd.exploring.openings import Opening, openings
-from robotd.exploring.outlook import Outlook, Views, facing_rad
+from robotd.exploring.order import best_order
+from robotd.exploring.outlook import Views, facing_rad
 from robotd.exploring.reasons import WhyEnded, WhyLeft
 from robotd.exploring.settings import ExploringSettings, Pace
 from robotd.exploring.tried import Tried
 from robotd.grid.distance import distance_transform
 from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.tables import NO_INFORMATION
 from robotd.planning.settings import PlanningSettings
 from robotd.planning.terrain import Terrain
 from robotd.planning.traversable import lone_hits
@@ -71,7 +75,9 @@ class Choice:
     """The next stop, or an end."""
 
     candidates: tuple[Candidate, ...]
-    """Those that the next stop was chosen from, the best first; it is the first, unless this is the end."""
+    """Those that the next stop was chosen from, the best first; but before them all the one that was chosen."""
+    tour_m: tuple[Point, ...]
+    """Where it means to stop, in order; empty at an end."""
     seen_m2: float
     """Free ground that was seen."""
     ending: WhyEnded | None
@@ -81,7 +87,7 @@ class Choice:
     @property
     def goal_m(self) -> Point | None:
         """Where to stop next; None at an end."""
-        return self.candidates[0].at_m if self.ending is None else None
+        return self.tour_m[0] if self.ending is None else None
 
 
 def choose(
@@ -104,60 +110,21 @@ def choose(
     lone = lone_hits(grid, hit)
     # As the planner: lone hits are gone round, and doubted only where nothing else is left.
     for doubted in (None, lone) if lone.any() else (None,):
-        known = _Known.of(grid, hit, lone, Terrain.of(grid, question.start, hit, doubted, planning), question)
+        known = Charted.of(
+            *(grid, hit, lone, Terrain.of(grid, question.start, hit, doubted, planning)),
+            robot=(question.start.x_m, question.start.y_m),
+            within=question.within,
+            cut_off_m=question.cut_off_m,
+            settings=settings,
+        )
         choice = _chosen(known, question, settings)
         if choice.ending is None:
             return choice
     return choice
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Known:
-    """What is known of a map when a choice is made."""
-
-    spec: GridSpec
-    free: NDArray[np.bool_]
-    unknown: NDArray[np.bool_]
-    ways: NDArray[np.float64]
-    """``float64[rows, cols]``: from the robot to each cell [cells]."""
-    outlook: Outlook
-    seen_m2: float
-
-    @classmethod
-    def of(
-        cls,
-        grid: OccupancyGrid,
-        hit: NDArray[np.bool_],
-        lone: NDArray[np.bool_],
-        ground: Terrain,
-        question: ChoiceQuestion,
-    ) -> "_Known":
-        # A wrong range in the air hides nothing; what bumps, or the planner goes round, need not be seen through.
-        walls = ((grid.cells > NO_INFORMATION) | hit) & ~lone
-        unknown = ~ground.free & ~walls & ~lone
-        spec, start = grid.spec, question.start
-        outlook = Outlook.on(spec, walls, unknown, question.within, question.cut_off_m)
-        seen_m2 = float(ground.free.sum()) * spec.resolution_m**2
-        ways = ground.ways_from(spec.cell_at(start.x_m, start.y_m))
-        return cls(spec, ground.free, unknown, ways, outlook, seen_m2)
-
-    def candidates(self, settings: ExploringSettings) -> NDArray[np.intp]:
-        """Return the cells of the lattice that the robot can go to and that lie within bounds, ``intp[n, 2]``."""
-        step = max(1, round(settings.lattice_m / self.spec.resolution_m))
-        # A lattice of the grid and not of the bounds: the same candidates come up at each choice, so that what
-        # was tried is recognized.
-        cells = np.argwhere(np.isfinite(self.ways[::step, ::step])) * step
-        return cells[_holds(self.outlook.within, self.points_m(cells))]
-
-    def points_m(self, cells: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Return the centres of cells, ``float64[n, 2]`` of x, y in the map frame."""
-        origin = np.array((self.spec.origin_x_m, self.spec.origin_y_m))
-        points: NDArray[np.float64] = origin + (cells[:, ::-1] + 0.5) * self.spec.resolution_m
-        return points
-
-
-def _chosen(known: _Known, question: ChoiceQuestion, settings: ExploringSettings) -> Choice:
-    cells = known.candidates(settings)
+def _chosen(known: Charted, question: ChoiceQuestion, settings: ExploringSettings) -> Choice:
+    cells = known.candidates(settings.lattice_m)
     places_m = known.points_m(cells)
     views = known.outlook.views(places_m, settings)
     # What was tried is left out by where it lies, not by what it sees: a place that showed nothing new will not
@@ -165,15 +132,31 @@ def _chosen(known: _Known, question: ChoiceQuestion, settings: ExploringSettings
     fresh = (views.opening_m > 0.0) & _apart(places_m, (*question.stops_m, *question.tried.in_vain_m), settings.apart_m)
     left = _left(known, question, settings)
     if not fresh.any():
-        return Choice((), known.seen_m2, WhyEnded.UNREACHABLE if left else WhyEnded.COMPLETE, left)
+        return Choice((), (), known.seen_m2, WhyEnded.UNREACHABLE if left else WhyEnded.COMPLETE, left)
     # Or the most that there is.
     overlap_min = min(settings.overlap_min, float(views.overlap[fresh].max()))
     which = np.flatnonzero(fresh & (views.overlap >= overlap_min))
-    ways_m = known.ways[cells[which, 0], cells[which, 1]] * known.spec.resolution_m
-    best = _ranked(places_m[which], views[which], ways_m, question)[: settings.shown]
+    ranked = _ranked(places_m[which], views[which], known.ways_m(cells[which]), question)
+    enough_m2 = min(settings.good_enough * known.seen_m2, settings.good_enough_max_m2)
     # Of all that is fresh, not of the chosen: a small addition near by must not hide a hall far away.
-    is_enough = views.area_m2[fresh].max() < settings.good_enough * known.seen_m2
-    return Choice(best, known.seen_m2, WhyEnded.GOOD_ENOUGH if is_enough else None, left)
+    if views.area_m2[fresh].max() < enough_m2:
+        return Choice(ranked[: settings.shown], (), known.seen_m2, WhyEnded.GOOD_ENOUGH, left)
+    tour_m = tuple(_point(places_m[which[at]]) for at in _tour(known, cells[which], views[which], question, enough_m2))
+    ranked = tuple(sorted(ranked, key=lambda one: one.at_m != tour_m[0]))
+    return Choice(ranked[: settings.shown], tour_m, known.seen_m2, None, left)
+
+
+def _tour(
+    known: Charted, cells: NDArray[np.intp], views: Views, question: ChoiceQuestion, enough_m2: float
+) -> tuple[int, ...]:
+    """Return which of some cells look behind all that is open, in the order in which to stop there."""
+    pace = question.pace
+    cover = covering(
+        views.behind_m2, known.ways_m(cells), lambda which: known.ways_between_m(cells, which), pace, enough_m2
+    )
+    # By a length that stands for what each sees: by the area itself, the largest would nearly always come first.
+    weights = np.sqrt(views.area_m2[list(cover.places)]).tolist()
+    return tuple(cover.places[at] for at in best_order(cover.ways_m / pace.speed_mps + pace.sweep_s, weights))
 
 
 def _ranked(
@@ -188,7 +171,7 @@ def _ranked(
     scores = views.area_m2 / np.array(seconds)
     return tuple(
         Candidate(
-            (float(places_m[at, 0]), float(places_m[at, 1])),
+            _point(places_m[at]),
             float(scores[at]),
             float(views.area_m2[at]),
             float(views.opening_m[at]),
@@ -199,7 +182,7 @@ def _ranked(
     )
 
 
-def _left(known: _Known, question: ChoiceQuestion, settings: ExploringSettings) -> tuple[Left, ...]:
+def _left(known: Charted, question: ChoiceQuestion, settings: ExploringSettings) -> tuple[Left, ...]:
     """Return the openings that are left, and why each is."""
     near = distance_transform(np.isfinite(known.ways)) * known.spec.resolution_m <= _NEAR_M
     robot = known.spec.cell_at(question.start.x_m, question.start.y_m)
@@ -219,11 +202,8 @@ def _why(opening: Opening, in_vain_m: tuple[Point, ...]) -> WhyLeft:
     return WhyLeft.IN_VAIN if is_tried else WhyLeft.HIDDEN
 
 
-def _holds(within: Rectangle, points_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which points lie within bounds, ``bool[n]``."""
-    low, high = (within.west_m, within.south_m), (within.east_m, within.north_m)
-    holds: NDArray[np.bool_] = np.all((points_m >= low) & (points_m <= high), axis=1)
-    return holds
+def _point(place_m: NDArray[np.float64]) -> Point:
+    return float(place_m[0]), float(place_m[1])
 
 
 def _apart(places_m: NDArray[np.float64], from_m: Iterable[Point], apart_m: float) -> NDArray[np.bool_]:

@@ -4,7 +4,8 @@ A beam is *open* if it ends in the unknown before the cut-off, and so do its nei
 needs to pass: slits, as wrong ranges leave them, are no openings. What lies beyond the bounds is not asked about.
 Behind an opening lies ground that a stop would see, up to where the map knows on: the shadow of a table is small,
 however wide it is open. How much of it is seen, is expected: a beam gets ``s`` farther into the unknown with a chance
-of ``exp(-unknown_per_m * s)``.
+of ``exp(-s / depth)``, and an opening is taken to be as deep as it is wide: what is narrow is a niche, or a wall that
+was seen at too flat an angle, more often than a room.
 """
 
 import math
@@ -30,10 +31,13 @@ class Views:
     """Terrain that a stop is expected to add, ``float64[n]``."""
     overlap: NDArray[np.float64]
     """Share of the beams that end on known walls, ``float64[n]``."""
+    behind_m2: NDArray[np.float64]
+    """The terrain by where it begins, ``float64[n, stretches]``: a column for each stretch of the border that is seen
+    from any of the places."""
 
     def __getitem__(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> "Views":
         """Return those of some of the places."""
-        return Views(self.opening_m[which], self.area_m2[which], self.overlap[which])
+        return Views(self.opening_m[which], self.area_m2[which], self.overlap[which], self.behind_m2[which])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,18 +85,21 @@ class Outlook:
         reach_m = np.minimum(self.cut_off_m, _way_out_m(places_m, ahead, self.within))
         # By half a cell: at the bounds themselves, rounding decides nothing.
         ends_before = ways_m + 0.5 * self.spec.resolution_m < reach_m
-        open_ = _broad((stops == BLOCKS) & ends_before, ways_m * settings.step_rad, settings.opening_min_m)
+        widths_m = _widths_m((stops == BLOCKS) & ends_before, ways_m * settings.step_rad)
+        open_ = widths_m >= settings.opening_min_m
         known_m = np.where(open_, ways_m, 0.0)
-        area_m2 = np.zeros_like(ways_m)
         at, beam = np.nonzero(open_)
         entered_m = places_m[at] + ahead[beam] * ways_m[open_, None]
         # As far as the map knows on: a beam that comes out on known ground has not found a hall.
         ends_m = np.minimum(ways_m[open_] + self._unknown_m(entered_m, ahead[beam]), reach_m[open_])
-        area_m2[open_] = _expected(ways_m[open_], ends_m, settings.unknown_per_m)
+        depths_m = np.minimum(widths_m[open_], settings.depth_max_m)
+        area_m2 = _expected(ways_m[open_], ends_m, depths_m) * settings.step_rad
+        behind_m2 = _by_stretch(at, np.floor(entered_m / settings.stretch_m), area_m2, len(places_m))
         return Views(
             known_m.sum(axis=1) * settings.step_rad,
-            area_m2.sum(axis=1) * settings.step_rad,
+            behind_m2.sum(axis=1),
             ((stops == ENDS) & (ways_m < self.cut_off_m)).mean(axis=1),
+            behind_m2,
         )
 
     def _cast(
@@ -142,25 +149,38 @@ def _way_out_m(places_m: NDArray[np.float64], ahead: NDArray[np.float64], within
     return nearest
 
 
-def _broad(open_: NDArray[np.bool_], widths_m: NDArray[np.float64], least_m: float) -> NDArray[np.bool_]:
-    """Return which open beams are of a run, going round, that is so wide; all ``[places, beams]``."""
+def _widths_m(open_: NDArray[np.bool_], across_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how wide the run of open beams, going round, is that each is of, 0 of the others; ``[places, beams]``."""
     places, beams = open_.shape
     # Twice round, so that each run is somewhere in one piece; where all beams are open, it is one that long.
     twice = np.concatenate((open_, open_), axis=1)
     run = np.cumsum(~twice, axis=1) + (2 * beams + 1) * np.arange(places)[:, None]
-    weights = np.where(twice, np.concatenate((widths_m, widths_m), axis=1), 0.0)
+    weights = np.where(twice, np.concatenate((across_m, across_m), axis=1), 0.0)
     sums = np.bincount(run.ravel(), weights.ravel(), minlength=(2 * beams + 1) * places)[run]
-    broad: NDArray[np.bool_] = np.maximum(sums[:, :beams], sums[:, beams:]) >= least_m
-    return open_ & broad
+    # And where all are, it was counted twice.
+    widths_m = np.minimum(np.maximum(sums[:, :beams], sums[:, beams:]), weights[:, :beams].sum(axis=1, keepdims=True))
+    return np.where(open_, widths_m, 0.0)
 
 
-def _expected(ways_m: NDArray[np.float64], reach_m: NDArray[np.float64], per_m: float) -> NDArray[np.float64]:
-    """Return the integral from ``way`` to ``reach`` of ``s exp(-per_m (s - way)) ds``: ground a radian, in m2."""
+def _expected(
+    ways_m: NDArray[np.float64], reach_m: NDArray[np.float64], depth_m: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the integral from ``way`` to ``reach`` of ``s exp(-(s - way) / depth) ds``: ground a radian, in m2."""
     beyond_m = np.maximum(reach_m - ways_m, 0.0)
     # In closed form: a sum over cells of each beam would cost as much as casting it.
-    left = np.exp(-per_m * beyond_m)
-    expected: NDArray[np.float64] = ways_m * (1.0 - left) / per_m + (1.0 - left * (1.0 + per_m * beyond_m)) / per_m**2
+    left = np.exp(-beyond_m / depth_m)
+    expected: NDArray[np.float64] = ways_m * depth_m * (1.0 - left) + depth_m * (depth_m - left * (depth_m + beyond_m))
     return expected
+
+
+def _by_stretch(
+    at: NDArray[np.intp], squares: NDArray[np.float64], area_m2: NDArray[np.float64], places: int
+) -> NDArray[np.float64]:
+    """Return what beams from places are expected to see by the square where each enters the unknown."""
+    _, stretches = np.unique(squares, axis=0, return_inverse=True)
+    count = int(stretches.max(initial=-1)) + 1
+    sums_m2 = np.bincount(at * count + stretches.reshape(-1), area_m2, minlength=places * count)
+    return sums_m2.astype(np.float64).reshape(places, count)
 
 
 _ALONG = 1e-12

@@ -16,13 +16,17 @@ class ExploringSettings:
     """Cast round each candidate."""
     opening_min_m: float = 0.6
     """Nothing narrower is an opening: the robot would not pass, and wrong ranges leave many slits."""
-    overlap_min: float = 0.4
+    overlap_min: float = 0.65
     """Share of the beams that must end on known walls, where any candidate has as many: the sweep must find its place.
     """
-    unknown_per_m: float = 0.3
-    """How soon a beam into the unknown meets something, as far as anybody can tell."""
+    depth_max_m: float = 2.0
+    """However wide an opening is, a beam into it meets something after this, on average, as far as anybody can tell."""
+    stretch_m: float = 0.5
+    """The border is told apart by squares of this side: which stop looks behind which of them."""
     good_enough: float = 0.02
     """Share of what was seen; if no stop is expected to add more, it is enough."""
+    good_enough_max_m2: float = 1.0
+    """It is not, if one is expected to add this much: that may be a door, however large the building is."""
     shown: int = 12
     """This many candidates are told, the best first."""
 

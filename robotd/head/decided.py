@@ -67,6 +67,7 @@ def chosen(choice: Choice) -> Chosen:
             CandidateStop(*one.at_m, one.score, one.area_m2, one.opening_m, one.overlap, one.way_m)
             for one in choice.candidates
         ),
+        tour_m=choice.tour_m,
         seen_m2=choice.seen_m2,
         left=tuple(LeftOpen(*one.opening.at_m, one.opening.width_m, one.why.value) for one in choice.left),
     )

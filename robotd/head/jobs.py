@@ -326,6 +326,7 @@ class Chosen(msgspec.Struct, frozen=True):
     ending: str | None
     """Why there is nowhere; None unless ``goal_m`` is None."""
     candidates: tuple[CandidateStop, ...]
+    tour_m: tuple[Point, ...]
     seen_m2: float
     left: tuple[LeftOpen, ...]
 

@@ -18,7 +18,7 @@ from robotd.contract.explored import ExploringEnded
 from robotd.contract.missions import Explore
 from robotd.contract.requests import Arm
 from robotd.core.broadcast import Subscription
-from robotd.core.clock import run_virtual
+from robotd.core.clock import NS_PER_S, now_ns, run_virtual
 from robotd.core.pose import Pose2
 from robotd.grid.footprints import dilate
 from robotd.grid.tables import NO_INFORMATION
@@ -53,6 +53,8 @@ class Expedition:
     """By how much a stop of the map is off at most, in the end."""
     stops: int
     way_m: float
+    took_s: float
+    """In the robot's own time."""
     tour_stops: int
     """Of somebody who knows the map, see :func:`offline_tour`."""
     tour_way_m: float
@@ -62,7 +64,7 @@ class Expedition:
         """Say it in a line."""
         seen = f"{self.ending}, {self.seen_share:.1%} seen, worst pose {1000 * self.worst_m:.0f} mm"
         tour = f"{self.stops} stops ({self.tour_stops}), {self.way_m:.1f} m ({self.tour_way_m:.1f})"
-        return f"{self.world} {self.seed}: {seen}, {tour}"
+        return f"{self.world} {self.seed}: {seen}, {tour}, {self.took_s:.0f} s"
 
 
 def expedition(world: World, seed: int) -> Expedition:
@@ -75,8 +77,10 @@ async def _explored(world: World, seed: int) -> Expedition:
     desk = Desk(head_settings(config))
     truths: dict[int, Pose2] = {}
     async with _living(config, robot, desk) as (daemon, events):
+        began_ns = now_ns()
         mission_id = daemon.control.start(Explore.of(world.name, world.start_pose), _LEASE_S)
         ended, last = await _followed(events, mission_id, robot, truths)
+        took_s = (now_ns() - began_ns) / NS_PER_S
         place = daemon.supervisor.whereabouts.map_in_use
         assert place is not None  # the mission began one
         held = desk.map(place.ref)
@@ -90,6 +94,7 @@ async def _explored(world: World, seed: int) -> Expedition:
         worst_m=_worst_m(held, truths),
         stops=len(truths),
         way_m=0.0 if ended is None else ended.way_m,
+        took_s=took_s,
         tour_stops=tour.stops,
         tour_way_m=tour.way_m,
     )

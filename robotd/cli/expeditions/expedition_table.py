@@ -21,6 +21,7 @@ def print_expeditions(done: Sequence[Expedition]) -> None:
         "of a tour",
         "way\n[m]",
         "of a tour",
+        "time\n[s]",
     )
     table = Table(*headers, box=None, header_style="bold")
     for column in table.columns[1:]:
@@ -36,6 +37,7 @@ def print_expeditions(done: Sequence[Expedition]) -> None:
             f"{robots[0].tour_stops}",
             f"{median(one.way_m for one in robots):.1f}, {max(one.way_m for one in robots):.1f}",
             f"{robots[0].tour_way_m:.1f}",
+            f"{median(one.took_s for one in robots):.0f}, {max(one.took_s for one in robots):.0f}",
         )
     out().print(table)
     out().print("  of several robots the median, then the worst; the tour is of somebody who knows the map")

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import msgspec
 
 from robotd.contract.events import MissionPhase
-from robotd.contract.explored import CandidateStop, ExploringEnded, StopChosen
+from robotd.contract.explored import ExploringEnded, StopChosen
 from robotd.contract.missions import Explore
 from robotd.contract.ways import Hindrance, Point
 from robotd.core.clock import NS_PER_S, now_ns
@@ -83,7 +83,7 @@ async def run_exploring(context: MissionContext, place: MapInUse, mission: Explo
     # One choice at a time, on the map as it is after the last stop: a tour planned ahead would be of a map that
     # is no more.
     while (chosen := await exploring.choose()).goal_m is not None:
-        await exploring.visit(chosen.goal_m, _reason(chosen), chosen.candidates)
+        await exploring.visit(chosen.goal_m, _reason(chosen), chosen)
     if mission.returns:
         await exploring.go_back()
     return exploring.end(chosen)
@@ -129,12 +129,15 @@ class Exploring:
             return _ended_by(WhyEnded.BUDGET, chosen)
         return chosen
 
-    async def visit(self, goal_m: Point, reason: str, candidates: tuple[CandidateStop, ...] = ()) -> None:
+    async def visit(self, goal_m: Point, reason: str, chosen: Chosen | None = None) -> None:
         """Go to a place and look round there; if it is not reached, say so, and do not try it again."""
+        candidates, tour_m = ((), ()) if chosen is None else (chosen.candidates, chosen.tour_m)
         journey, (x_m, y_m) = self.journey, goal_m
         if journey.is_spent(self.mission):
             return
-        self.context.publish(StopChosen(now_ns(), self.place.map_id, journey.stops, x_m, y_m, reason, candidates))
+        self.context.publish(
+            StopChosen(now_ns(), self.place.map_id, journey.stops, x_m, y_m, reason, candidates, tour_m)
+        )
         self.report.at(MissionPhase.DRIVING, journey.stops, f"to ({x_m:.2f}, {y_m:.2f}) m: {reason}")
         hindrance = await self._reach(goal_m)
         # Not reached is no failure of the mission: a chair in a doorway must not cost the rest of the house.
@@ -201,6 +204,8 @@ def _ended_by(ending: WhyEnded, chosen: Chosen) -> Chosen:
 
 def _reason(chosen: Chosen) -> str:
     best = chosen.candidates[0]
+    first = f"; first of {len(chosen.tour_m)} stops that see all that is open" if len(chosen.tour_m) > 1 else ""
     return (
-        f"{best.area_m2:.1f} m2 more expected after {best.way_m:.1f} m, {best.overlap:.0%} of the beams on known walls"
+        f"{best.area_m2:.1f} m2 more expected after {best.way_m:.1f} m, "
+        f"{best.overlap:.0%} of the beams on known walls{first}"
     )

@@ -72,7 +72,8 @@ async def _driven(
         # Round what it met it goes with open eyes: a corner between two beams is soon a bump.
         ahead_rad = {*along_rad, *bearings_about(0.0)} if met_m else along_rad
         # Where the first piece begins, it has just made a stop, and knows where it is.
-        readings = await context.sweeper.glance(sorted({*ahead_rad, *_ALL_ROUND} if number else ahead_rad))
+        wanted_rad = sorted({*ahead_rad, *_ALL_ROUND} if number else ahead_rad)
+        readings = await context.sweeper.glance(wanted_rad, clockwise=number % 2 == 1)
         if number:
             here = known = await _found_again(context, place, known, here, readings)
         # After it was found again: what is met is told on the map from there, and by wheels alone it would lie

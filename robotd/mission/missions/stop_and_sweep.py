@@ -168,15 +168,18 @@ class Sweeper:
             await self._check_enough(taken.readings)
         await self.robot.rangefinder.switch_laser(on=False)
 
-    async def glance(self, bearings_rad: Sequence[float]) -> tuple[RangeReading, ...]:
-        """Take a few readings where the robot stands, bearings ascending; what is beyond the head's reach is left out.
+    async def glance(self, bearings_rad: Sequence[float], *, clockwise: bool = False) -> tuple[RangeReading, ...]:
+        """Take a few readings where the robot stands, given ascending; what is beyond the head's reach is left out.
+
+        Who looks again and again does so there and back, or the head turns all the way for nothing.
 
         Raises:
             DeviceError, LinkTimeout, TransportError: as :meth:`sweep`.
         """
         limits = await self.robot.pantilt.limits()
-        lag_rad = self._lag_rad(clockwise=False)
-        seen_rad = [rad for rad in bearings_rad if limits.pan_min_rad <= rad - lag_rad <= limits.pan_max_rad]
+        lag_rad = self._lag_rad(clockwise=clockwise)
+        in_order = reversed(bearings_rad) if clockwise else bearings_rad
+        seen_rad = [rad for rad in in_order if limits.pan_min_rad <= rad - lag_rad <= limits.pan_max_rad]
         start = await self.hold.through(lambda: standing(self.robot, self.settings.settle_s, self.driving))
         await self.robot.rangefinder.switch_laser(on=True)
         await self._take_up_play(seen_rad[0], lag_rad)

@@ -40,6 +40,7 @@ def test_views_are_what_each_beam_says(cells: bytes, within: Rectangle | None, b
         assert views.opening_m[number] == pytest.approx(opening_m, abs=1e-9)
         assert views.area_m2[number] == pytest.approx(area_m2, rel=1e-3, abs=1e-6)
         assert views.overlap[number] == pytest.approx(overlap)
+    assert views.behind_m2.sum(axis=1) == pytest.approx(views.area_m2)
 
 
 def _by_beams(
@@ -51,11 +52,13 @@ def _by_beams(
     opening_m = area_m2 = 0.0
     for k, (way_m, _, reach_m, end_m) in enumerate(beams):
         run = _run(is_open, k)
-        if sum(beams[one][0] * SETTINGS.step_rad for one in run) < SETTINGS.opening_min_m:
+        width_m = sum(beams[one][0] * SETTINGS.step_rad for one in run)
+        if width_m < SETTINGS.opening_min_m:
             continue
+        depth_m = min(SETTINGS.depth_max_m, width_m)
         opening_m += way_m * SETTINGS.step_rad
         lengths_m = np.linspace(way_m, max(way_m, min(end_m, reach_m)), 2001)
-        chance = np.exp(-SETTINGS.unknown_per_m * (lengths_m - way_m))
+        chance = np.exp(-(lengths_m - way_m) / depth_m)
         area_m2 += float(np.trapezoid(lengths_m * chance, lengths_m)) * SETTINGS.step_rad
     overlap = sum(stop == ENDS and way_m < CUT_OFF_M for way_m, stop, _, _ in beams) / len(beams)
     return opening_m, area_m2, overlap
@@ -101,6 +104,33 @@ def _cast(
 
 def _inside(points_m: NDArray[np.float64], within: Rectangle) -> NDArray[np.bool_]:
     return np.array([within.west_m < x < within.east_m and within.south_m < y < within.north_m for x, y in points_m])
+
+
+def test_what_lies_behind_the_border_is_told_apart_by_where_it_begins() -> None:
+    """A room with a door to the west and one to the east: from the middle each promises as much."""
+    walls, unknown = np.zeros((40, 60), np.bool_), np.ones((40, 60), np.bool_)
+    walls[[5, -6], 20:40] = walls[5:-5, [20, 39]] = True
+    walls[15:25, [20, 39]] = unknown[5:-5, 20:40] = False
+    outlook = Outlook.on(GridSpec(0.1, 0.0, 0.0, (40, 60)), walls, unknown, None, 6.0)
+    views = outlook.views(np.array([(3.0, 2.0), (2.3, 0.8)]), ExploringSettings(stretch_m=3.0))
+    west, east = views.behind_m2.T
+    assert west[0] == pytest.approx(east[0], rel=0.05)
+    assert west[0] > 0.5
+    assert west[1] == 0.0
+    assert east[1] > 0.0
+
+
+def test_what_is_narrow_promises_little_and_a_door_more_than_next_to_nothing() -> None:
+    expected_m2 = []
+    for cells in (6, 9, 14):
+        walls, unknown = np.zeros((40, 60), np.bool_), np.ones((40, 60), np.bool_)
+        walls[[5, -6], 20:40] = walls[5:-5, [20, 39]] = True
+        walls[16 : 16 + cells, 39] = unknown[5:-5, 20:40] = False
+        outlook = Outlook.on(GridSpec(0.1, 0.0, 0.0, (40, 60)), walls, unknown, None, 6.0)
+        expected_m2.append(outlook.views(np.array([(3.5, 2.0)]), ExploringSettings()).area_m2[0])
+    assert expected_m2[0] < 0.8
+    assert expected_m2[1] > ExploringSettings().good_enough_max_m2
+    assert expected_m2[2] > 1.5 * expected_m2[1]
 
 
 def test_a_small_shadow_promises_little_and_open_ground_much() -> None:
