@@ -49,6 +49,12 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
 
 
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with what takes long or waits for real time: at the end it would keep one worker busy, and none else."""
+    items.sort(key=lambda item: not any(item.get_closest_marker(name) for name in ("slow", "real_clock")))
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     """Run ``async def`` tests on a virtual clock, or on the real one if marked ``real_clock``."""
