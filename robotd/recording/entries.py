@@ -16,6 +16,9 @@ SILENCES_ARE_NOTED = "silences"
 LINE_BROKE = "line_broke"
 """A cause: a read from the line of ``device`` failed for a ``reason``."""
 
+STALL = "stall"
+"""A cause: the loop stood still."""
+
 
 @dataclass(frozen=True, slots=True)
 class RecordingHeader:

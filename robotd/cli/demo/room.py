@@ -17,6 +17,7 @@ from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import bold, command_line
+from robotd.client import Client
 from robotd.config import Config
 from robotd.contract.events import MapChanged
 from robotd.contract.missions import DriveTo, Explore, Localize, MapStart, PriorHeading
@@ -136,10 +137,23 @@ def _carried_off(parts: Rig, console: Console, name: str) -> Trial:
 
 def _localize_at(parts: Rig, console: Console, probe_m: tuple[float, float]) -> Trial:
     console.print(f"Driving to ({probe_m[0]:.1f}, {probe_m[1]:.1f}) m and looking round:")
-    follow(console, parts.client, DriveTo(*probe_m))
+    follow(console, parts.client, DriveTo(*reachable(parts.client, console, probe_m)))
     (sweep,), estimate = follow(console, parts.client, Localize())
     assert estimate is not None  # a localization that is done has one
     return Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)
+
+
+def reachable(client: Client, console: Console, probe_m: tuple[float, float]) -> tuple[float, float]:
+    """Return a place, or if the map the robot made has none there, the nearest that it can drive to.
+
+    One wrong range, which nothing has looked through since, is an obstacle on the map: to be found somewhere near
+    shows as much.
+    """
+    way = client.plan_to(*probe_m)
+    if way.nearest_m is None:
+        return probe_m
+    console.print(f"  {way.message}: it goes there")
+    return way.nearest_m
 
 
 def _draw(

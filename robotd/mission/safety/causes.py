@@ -20,9 +20,9 @@ from robotd.mission.safety.hold import Stall
 from robotd.mission.safety.holding import Holding
 from robotd.mission.safety.mode_table import Occasion
 from robotd.mission.safety.stopper import Stopper
+from robotd.recording.entries import STALL
 from robotd.recording.journal import Journal
 
-STALL = "stall"
 LEASE = "lease"
 GO_ON = "go_on"
 GIVE_UP = "give_up"

@@ -1,12 +1,16 @@
 """What a demonstration does with what earlier ones left."""
 
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
+from rich.console import Console
 
 from robotd.cli.demo.rig import FINISHED, UNFINISHED, explained
-from robotd.cli.demo.room import fresh
+from robotd.cli.demo.room import fresh, reachable
 from robotd.cli.outputs import DEMO_MARK
+from robotd.client import Client
+from robotd.contract.ways import Hindrance, Way
 from robotd.mission.safety.hold import TOO_BUSY
 from robotd.sim.hosting.pace import SLOWED
 
@@ -66,6 +70,19 @@ def test_a_demonstration_that_fails_on_a_busy_machine_says_so_once(reason: str, 
     words = explained(reason, None, log)
     assert words.startswith(reason)
     assert words.count(TOO_BUSY) == 1
+
+
+@pytest.mark.parametrize(
+    ("way", "goes_to_m"),
+    [
+        (Way(((1.0, 2.0),), 2.2), (1.0, 2.0)),
+        (Way((), 0.0, Hindrance.OBSTACLE, "the goal lies in an obstacle", (0.8, 1.7)), (0.8, 1.7)),
+        (Way((), 0.0, Hindrance.NO_WAY, "no way leads to the goal"), (1.0, 2.0)),
+    ],
+)
+def test_where_a_wrong_range_lies_on_the_place_it_goes_next_to_it(way: Way, goes_to_m: tuple[float, float]) -> None:
+    client = Mock(spec=Client, plan_to=lambda x_m, y_m: way)
+    assert reachable(client, Console(quiet=True), (1.0, 2.0)) == goes_to_m
 
 
 def test_what_has_another_cause_is_not_blamed_on_the_machine() -> None:

@@ -13,7 +13,7 @@ from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.recording.encoding import decode, encode
-from robotd.recording.entries import BytesEntry, CauseEntry, Entry, RecordingHeader, TurnEntry
+from robotd.recording.entries import STALL, BytesEntry, CauseEntry, Entry, RecordingHeader, TurnEntry
 from robotd.recording.journal import Journal
 from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback
@@ -115,7 +115,7 @@ def test_what_is_asked_between_two_inputs_tells_them_apart() -> None:
     assert not any(isinstance(entry, TurnEntry) for entry in run_virtual(main()))
 
 
-def test_what_answers_nothing_comes_in_its_turn_whatever_was_asked_before() -> None:
+def test_a_stall_comes_in_its_turn_whatever_was_asked_before() -> None:
     """A line that broke, a write that failed with it, and a stall a turn later: the mission is told of all three."""
 
     async def main() -> list[Entry]:
@@ -123,7 +123,7 @@ def test_what_answers_nothing_comes_in_its_turn_whatever_was_asked_before() -> N
         journal.line_broke("drive", now_ns(), "write: Input/output error")
         journal.bytes_passed("drive", Direction.TO_BOARD, now_ns(), b"stop")
         await asyncio.sleep(0)
-        journal.cause(now_ns(), "stall", {})
+        journal.cause(now_ns(), STALL, {})
         return journal.entries
 
     *_, turn, stall = run_virtual(main())
