@@ -60,7 +60,7 @@ class ErrorRadii:
 
     @property
     def widest(self) -> float:
-        """By how much a head that counts on the last level may lie aside, if there can be no level more."""
+        """By how much a head that counts on the last level may lie off, if there can be no level more."""
         return math.sqrt(max(0.0, self.cells[0] ** 2 * _STEP ** (2 * _LEVELS_MAX - 1) - self.cells[0] ** 2))
 
     @property

@@ -54,7 +54,7 @@ def _at_odds(settings: LocalizationSettings, spec: GridSpec, sweep: SweepFacts) 
     if step_rad > most_rad > 0.0:
         yield (
             f"localization.heading_step_rad = {step_rad:g} is too coarse for readings of {sweep.reach_m:g} m: half a"
-            f" step puts their ends farther aside than any error radius reaches; take {_rounded_down(most_rad):g}"
+            f" step puts their ends farther to the side than any error radius reaches; take {_rounded_down(most_rad):g}"
         )
     apart_rad = math.tau / sweep.readings
     if sweep.between_beams is BetweenBeams.SEEN and apart_rad > APART_MAX_RAD:

@@ -110,7 +110,7 @@ def _keep(calibration: Calibration, arguments: argparse.Namespace) -> None:
     try:
         text = file.read_text(encoding="utf-8")
         config.load(file)
-        # The text is changed and not made anew: what its owner wrote beside the values stays.
+        # The text is changed and not written again: what its owner wrote beside the values stays.
         changed = with_values(text, values, "before it was calibrated")
         # Before it is written: with a file that is refused, no daemon would start any more.
         config.loads(changed, str(file))

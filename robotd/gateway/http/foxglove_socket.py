@@ -3,7 +3,7 @@
 import contextlib
 from typing import TYPE_CHECKING
 
-from aiohttp import WSCloseCode, WSMsgType, web
+from aiohttp import WSCloseCode, web
 
 from robotd.contract.topics import Frame
 from robotd.core.clock import NS_PER_S, now_ns
@@ -14,7 +14,7 @@ from robotd.gateway.browser.foxglove_protocol import SUBPROTOCOLS
 from robotd.gateway.browser.page_connection import Person
 from robotd.gateway.house import House
 from robotd.gateway.http.route import Needs, Route
-from robotd.gateway.http.socket_duties import Item, first_of, write
+from robotd.gateway.http.socket_duties import Item, first_of, read, write
 
 if TYPE_CHECKING:
     from robotd.gateway.browser.foxglove_app import FoxgloveApp
@@ -53,25 +53,13 @@ async def _serve(socket: web.WebSocketResponse, app: "FoxgloveApp", house: House
             await socket.send_bytes(caught)
 
     try:
-        await first_of(_read(socket, app), write(app, send))
+        await first_of(read(socket, app, "this robot tells, and takes nothing"), write(app, send))
     finally:
         fan.leave(app)
         house.connections.discard(app)
         house.dropped_messages += app.outbox.dropped
         with contextlib.suppress(ConnectionError, TimeoutError):
             await socket.close(code=WSCloseCode.POLICY_VIOLATION, message=(app.ended or "").encode()[:120])
-
-
-async def _read(socket: web.WebSocketResponse, app: "FoxgloveApp") -> None:
-    async for message in socket:
-        if message.type is not WSMsgType.TEXT:
-            app.finish("this robot tells, and takes nothing")
-            return
-        try:
-            app.take(message.data)
-        except ServerError as error:
-            app.finish(error.message)
-            return
 
 
 async def ticket(_: web.Request, house: House, person: Person | None) -> web.StreamResponse:

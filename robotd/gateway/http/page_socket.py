@@ -4,7 +4,7 @@ import asyncio
 import contextlib
 from functools import partial
 
-from aiohttp import WSCloseCode, WSMsgType, web
+from aiohttp import WSCloseCode, web
 
 from robotd import __version__
 from robotd.contract.requests import REQUESTS
@@ -15,7 +15,7 @@ from robotd.gateway.browser.liveness import EVERY_S
 from robotd.gateway.browser.page_connection import PageConnection, Person
 from robotd.gateway.house import House
 from robotd.gateway.http.route import Needs, Route
-from robotd.gateway.http.socket_duties import Item, first_of, write
+from robotd.gateway.http.socket_duties import Item, first_of, read, write
 
 
 async def serve(request: web.Request, house: House, person: Person | None) -> web.StreamResponse:
@@ -43,7 +43,11 @@ async def _serve(socket: web.WebSocketResponse, connection: PageConnection, hous
     house.connections.add(connection)
     services.enter(connection)
     try:
-        await first_of(_read(socket, connection), write(connection, partial(_send, socket)), _question(connection))
+        await first_of(
+            read(socket, connection, "a page sends text"),
+            write(connection, partial(_send, socket)),
+            _question(connection),
+        )
     finally:
         services.fan.leave(connection)
         house.connections.discard(connection)
@@ -70,18 +74,6 @@ def _hello(connection: PageConnection, house: House) -> str:
         patience_s=house.settings.watching.patience_s,
         unattended=house.settings.watching.unattended,
     )
-
-
-async def _read(socket: web.WebSocketResponse, connection: PageConnection) -> None:
-    async for message in socket:
-        if message.type is not WSMsgType.TEXT:
-            connection.finish("a page sends text")
-            return
-        try:
-            connection.take(message.data)
-        except ServerError as error:
-            connection.finish(error.message)
-            return
 
 
 async def _send(socket: web.WebSocketResponse, item: Item) -> None:

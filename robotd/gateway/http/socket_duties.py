@@ -2,8 +2,11 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable, Coroutine
-from typing import Any
+from typing import Any, Protocol
 
+from aiohttp import WSMsgType, web
+
+from robotd.core.errors import ServerError
 from robotd.core.together import ended
 from robotd.gateway.house import Connected
 
@@ -27,6 +30,29 @@ async def write(connection: Connected, send: Callable[[Item], Awaitable[None]]) 
             except (TimeoutError, ConnectionError):
                 connection.finish("it reads nothing")
                 return
+
+
+class Taking(Protocol):
+    """Who is at the far end, as far as it says things."""
+
+    def take(self, text: str) -> None:
+        """Take what it says; ServerError ends it."""
+
+    def finish(self, reason: str) -> None:
+        """Let it end, and be told why."""
+
+
+async def read(socket: web.WebSocketResponse, connection: Taking, only_text: str) -> None:
+    """Take what the far end says, until it ends or says what may not be said; ``only_text`` tells who sends bytes."""
+    async for message in socket:
+        if message.type is not WSMsgType.TEXT:
+            connection.finish(only_text)
+            return
+        try:
+            connection.take(message.data)
+        except ServerError as error:
+            connection.finish(error.message)
+            return
 
 
 async def first_of(*duties: Coroutine[Any, Any, None]) -> None:

@@ -98,7 +98,7 @@ class BoardDrive(BoardDevice):
         """Acknowledge latched faults; see :meth:`BoardDevice.clear_faults`."""
         if self._is_distrusted:
             # The counts from before the lie lead nowhere: odometry goes on from the next ones, without a jump.
-            self._odometer.start_anew()
+            self._odometer.start_again()
         await super().clear_faults()
 
     def _moved(self, report: OdometryReport) -> None:

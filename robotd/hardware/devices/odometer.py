@@ -26,7 +26,7 @@ class Odometer:
         self.counts = (0, 0)
         """What was counted of translation and rotation since then; it does not wrap."""
 
-    def start_anew(self) -> None:
+    def start_again(self) -> None:
         """Take the next counts, whatever they are, for those of where the base is."""
         self._seen = None
 
@@ -70,9 +70,9 @@ class JudgedOdometer:
         """What was counted of translation and rotation since the base was first seen."""
         return self._odometer.counts
 
-    def start_anew(self) -> None:
+    def start_again(self) -> None:
         """Believe the next counts: somebody has looked at the base since."""
-        self._odometer.start_anew()
+        self._odometer.start_again()
 
     def update(self, boot_id: int, translate_counts: int, rotate_counts: int, time_ns: int) -> Pose2:
         """Return the pose after a report of counts and the time at which they were measured.

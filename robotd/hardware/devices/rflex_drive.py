@@ -207,7 +207,7 @@ class RflexDrive(VendorDevice[Message]):
 
     async def _acknowledge(self, dialogue: Dialogue[Message]) -> None:
         if IMPLAUSIBLE in self._health.faults:
-            self._odometer.start_anew()
+            self._odometer.start_again()
 
     def _counts(self, twist: Twist2) -> tuple[float, float]:
         return twist.speed_mps * self._scales.counts_per_m, twist.turn_radps * self._scales.counts_per_rad

@@ -207,7 +207,7 @@ class RwiDrive(VendorDevice[Message]):
         """End the errors that the base has latched: after a servo or current error it runs no motor before."""
         dialogue.post(command("EA", 0))
         if IMPLAUSIBLE in self._health.faults:
-            self._odometer.start_anew()
+            self._odometer.start_again()
 
     async def _ask(self, dialogue: Dialogue[Message], mnemonic: str) -> Heard[RwiAnswer]:
         def settles(message: Message) -> bool:

@@ -24,8 +24,8 @@ to quarter cells, and readings of one r share one grown map.
 Look at it on the centre lines of the grid's columns (rows, if d is nearer to them), from the first line ahead of all
 its starts to the last that all its beams cross before they are ``rho - eps`` long. The true beam crosses each of
 these lines in a free cell, for it meets no obstacle before ``rho* >= rho - eps``; that cell is in the *window* of
-cells of the line that the fan meets; it lies no farther aside from the one before than the fan is steep; and if it
-does lie aside, the beam left that one by its side or by its front, so that one of these two neighbours is free. So
+cells of the line that the fan meets; it lies no farther beside the one before than the fan is steep; and if it
+does lie beside it, the beam left that one by its side or by its front, so that one of these two neighbours is free. So
 there is a path of free cells through the windows, one on each line, by such steps; if beams start at the axis, it
 begins at p. E are the cells from which there is none: a wall, however thin, even one of cells that touch at corners,
 cuts the whole fan. The true cell is not one of them.

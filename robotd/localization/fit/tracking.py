@@ -47,7 +47,7 @@ class TrackingSettings:
     unblocked_within_m: float = 0.2
     """...and none on its way, unless so near to its end. With 0.1 m beams that graze walls went missing by the dozen in
     two real buildings; with 0.2 m and ``blocked_by`` 2 the right pose explained 64 to 99 % of the readings, the best
-    one within 0.3 m of a place 2 m aside at most 57 %."""
+    one within 0.3 m of a place 2 m off at most 57 %."""
     blocked_by: int = 2
     """How many cells a beam must meet to be stopped, 1 or 2; 2 lets it graze along a wall."""
     settled_share: float = 0.87

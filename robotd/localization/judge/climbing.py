@@ -1,7 +1,7 @@
 """Uphill to the pose of greatest likelihood, from many poses at once.
 
-A likelihood by cells has no slope to follow, so neighbouring poses are tried: forward, aside and turned, in steps that
-are halved when none is better.
+A likelihood by cells has no slope to follow, so neighbouring poses are tried: forward, sideways and turned, in steps
+that are halved when none is better.
 """
 
 from dataclasses import dataclass

@@ -21,7 +21,7 @@ class ErrorModel:
     map_sigma_m: Annotated[float, Within(0.0, 1.0, "m")] = 0.03
     """How far walls lie from where the map has them, one standard deviation, along a beam and across it."""
     map_sigma_rad: Annotated[float, Within(0.0, 0.5, "rad")] = 0.004
-    """How far the map-maker's headings were off: walls far away lie aside."""
+    """How far the map-maker's headings were off: walls far away lie to the side."""
     map_sharpness_sigma: Annotated[float, Within(0.0, 10.0)] = 0.11
     """How much likelier a place may seem only because the map happens to show it more sharply: standard deviation of
     the logarithm, for each independent reading; so it was between simulated rooms that are alike."""

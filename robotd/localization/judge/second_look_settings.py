@@ -33,8 +33,8 @@ class SecondLookSettings:
     """What the readings say for the best place, rather than any other, must be this many standard errors above 0: by
     chance the wrong one of two places that are alike in truth reaches that once in ten times."""
     contrast_beside_min: Annotated[float, Within(0.0, 100.0)] = 1.28
-    """The same for places that see the same walls, a step aside or a few degrees turned: along a corridor, or on coarse
-    cells, belief alone chose between them."""
+    """The same for places that see the same walls, a step to the side or a few degrees turned: along a corridor, or on
+    coarse cells, belief alone chose between them."""
     on_walls_min: Annotated[float, Within(0.0, 1.0, "of 1")] = 0.9
     """Where fewer of the hits end on walls, the robot may look at ground that nobody has mapped, which resembles some
     wall of any building; then ``contrast_off_walls_min`` counts."""

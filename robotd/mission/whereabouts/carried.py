@@ -29,7 +29,7 @@ class Sure:
     """When one place that is left is taken for the place."""
 
     doubt_max: float
-    """What lies aside of it and nowhere may have this share of the belief, beside its own."""
+    """Places beside it, and *nowhere*, may have this share of the belief together."""
     is_proof: bool
     """Whether regions are proven: then belief has no say."""
 
@@ -118,7 +118,7 @@ class Carried:
         # A corridor is one region as well, and no place.
         if reach_m > _UNIQUE_M or not extent.holds(region.pose):
             return False
-        # What lies aside is told of the best place alone, and this may be another: do the walls hold it there?
+        # The belief beside a place is told of the best one alone, and this may be another: do the walls hold it there?
         if max(region.covariance[0][0], region.covariance[1][1]) > _HELD_M**2:
             return False
         doubt = left.belief_aside + left.belief_nowhere

@@ -17,7 +17,7 @@ SPEC = GridSpec(0.05, 0.0, 0.0, SHAPE)
     st.tuples(st.integers(0, 89), st.integers(1, 40)),
     st.tuples(st.integers(0, 109), st.integers(1, 40)),
 )
-def test_a_field_that_was_updated_is_as_if_made_anew(
+def test_a_field_that_was_updated_is_as_if_made_whole(
     seed: int, share: float, rows: tuple[int, int], cols: tuple[int, int]
 ) -> None:
     random = np.random.default_rng(seed)
@@ -27,9 +27,9 @@ def test_a_field_that_was_updated_is_as_if_made_anew(
     window = CellWindow(rows[0], min(90, sum(rows)), cols[0], min(110, sum(cols)))
     walls[window.slices] = random.random(window.shape) < 3 * share
     blocking[window.slices] = random.random(window.shape) < 3 * share
-    updated, anew = field.updated(walls, blocking, window), WallField.of(SPEC, walls, blocking)
-    np.testing.assert_array_equal(updated.codes, anew.codes)
-    np.testing.assert_array_equal(updated.skips, anew.skips)
+    updated, whole = field.updated(walls, blocking, window), WallField.of(SPEC, walls, blocking)
+    np.testing.assert_array_equal(updated.codes, whole.codes)
+    np.testing.assert_array_equal(updated.skips, whole.skips)
     np.testing.assert_array_equal(field.codes, before[0])
     np.testing.assert_array_equal(field.skips, before[1])
 

@@ -124,7 +124,7 @@ def test_counts_that_jumped_for_good_are_believed_once_somebody_has_looked() -> 
     odometer.update(1, 2000, 0, 2 * S)
     with refused:
         odometer.update(1, 900_000, 0, 3 * S)
-    odometer.start_anew()
+    odometer.start_again()
     assert odometer.update(1, 900_000, 0, 4 * S).x_m == pytest.approx(1.0)
     assert odometer.update(1, 901_000, 0, 5 * S).x_m == pytest.approx(2.0)
 
