@@ -12,7 +12,7 @@ ONLY ?=
 ROOT ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help console ui-test console-bench load demo demo-real demo-busy test bench bench-peers paper conservative exact docs deb arm lowest supply faults interop replay-many liars fuzz safety stops heads heart lag worlds senses truth firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help console ui-test console-bench load demo demo-real demo-busy test bench bench-peers paper conservative exact docs deb arm lowest supply faults interop replay-many liars fuzz safety stops heads heart lag worlds senses spread truth firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -94,6 +94,9 @@ worlds: .venv/.dev  ## Whether whole daemons map hard worlds and find themselves
 
 truth: .venv/.dev  ## All ways to ask of all logs in ROBOTD_DATA, by robotctl eval: writes docs/truth/<date>.md (hours; make truth SHARE=0.1)
 	@$(BIN)/python -m tests.studies.truth.run $(if $(SHARE),--share $(SHARE)) $(if $(ONLY),--only $(ONLY))
+
+spread: .venv/.dev  ## A thousand short recordings asked by one worker and by two, ended, killed, resumed: the same answers, how soon (an hour; COUNT=100)
+	@$(BIN)/python -m tests.studies.spread.run $(if $(COUNT),--count $(COUNT)) $(if $(ONLY),--only "$(ONLY)")
 
 senses: .venv/.dev  ## How few readings tell where it is, which of two equal rooms it is, and whether being carried off shows (minutes; PLACES=20)
 	@$(BIN)/python -m tests.studies.senses.run $(if $(PLACES),--places $(PLACES) --twins $(PLACES) --carried $(PLACES)) $(if $(CUTOFF),--cutoff $(CUTOFF))

@@ -42,10 +42,18 @@ class Reading:
         Raises:
             RecordingError: it cannot be read, or no scan in it is whole.
         """
-        log = read_log(path, fov_rad=self.fov_rad, scan_topic=self.scan_topic).believed_to(self.range_max_m)
+        log = self.reread(path)
         for remark in log.remarks():
             complain(f"{path}: {remark}")
         return log
+
+    def reread(self, path: Path) -> RecordedLog:
+        """Read a log of which everything was said before.
+
+        Raises:
+            RecordingError: it cannot be read, or no scan in it is whole.
+        """
+        return read_log(path, fov_rad=self.fov_rad, scan_topic=self.scan_topic).believed_to(self.range_max_m)
 
 
 def reading_arguments(parser: argparse.ArgumentParser, range_max_m: float | None = None) -> None:

@@ -1,10 +1,11 @@
-"""Cases that an earlier run answered, by the lines that it wrote: a run that was ended goes on where it was."""
+"""What an earlier run answered, by the lines that it wrote: a run that was ended goes on where it was."""
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
+from robotd.evaluation.map_facts import MapFacts
 from robotd.evaluation.result import CaseKey, CaseResult
 
 
@@ -12,17 +13,21 @@ from robotd.evaluation.result import CaseKey, CaseResult
 class Answered:
     """Results, found again by their keys; of another program, other settings or another map none has the same key."""
 
-    results: dict[CaseKey, CaseResult]
+    results: dict[CaseKey, CaseResult] = field(default_factory=dict)
+    maps: dict[str, MapFacts] = field(default_factory=dict)
+    """What was told of maps, by the digest that results on them have, too."""
 
     @classmethod
     def of_lines(cls, lines: Iterable[str]) -> "Answered":
-        """Read JSON lines; what is no result is passed over, and so is a line that a kill cut off."""
-        results = map(CaseResult.of_document, _documents(lines))
-        return cls({result.key: result for result in results})
-
-    def part(self, keys: Iterable[CaseKey]) -> dict[CaseKey, CaseResult]:
-        """Return those of some cases."""
-        return {key: self.results[key] for key in keys if key in self.results}
+        """Read JSON lines; what is neither result nor report is passed over, and so is a line that a kill cut off."""
+        answered = cls()
+        for document in _documents(lines):
+            if "verdict" in document:
+                result = CaseResult.of_document(document)
+                answered.results[result.key] = result
+            elif "map" in document and "settings" in document:
+                answered.maps[document["settings"]] = MapFacts.of_document(document["map"])
+        return answered
 
 
 def _documents(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
@@ -31,5 +36,5 @@ def _documents(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
             document = json.loads(line)
         except ValueError:
             continue
-        if isinstance(document, dict) and "verdict" in document:
+        if isinstance(document, dict):
             yield document

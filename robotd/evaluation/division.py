@@ -10,7 +10,7 @@ Cases are chosen by a seeded generator; nothing is known beforehand.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,49 +48,69 @@ class Division:
     """In the order in which they were drawn."""
 
 
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """Which scans of a log make the map, and which are left to ask, by their numbers."""
+
+    for_map: range
+    to_ask: range
+
+    @classmethod
+    def interleaved(cls, scans: int) -> "Cut":
+        """Cut a log into even scans and odd ones."""
+        numbers = _numbers(scans)
+        return cls(numbers[::2], numbers[1::2])
+
+    @classmethod
+    def halves(cls, scans: int) -> "Cut":
+        """Cut a log in the middle."""
+        numbers = _numbers(scans)
+        middle = (len(numbers) + 1) // 2
+        return cls(numbers[:middle], numbers[middle:])
+
+
 def interleaved(log: RecordedLog, cases: int, seed: int) -> Division:
     """Divide a log: even scans make the map, at most ``cases`` of the odd ones are asked."""
-    numbered = _numbered(log)
-    return _division([scan for _, scan in numbered[::2]], numbered[1::2], cases, seed)
+    return _division(log, Cut.interleaved(len(log.scans)), cases, seed)
 
 
 def halves(log: RecordedLog, cases: int, seed: int) -> Division:
     """Divide a log: its first half makes the map, at most ``cases`` of the second are asked."""
-    numbered = _numbered(log)
-    middle = (len(numbered) + 1) // 2
-    return _division([scan for _, scan in numbered[:middle]], numbered[middle:], cases, seed)
+    return _division(log, Cut.halves(len(log.scans)), cases, seed)
 
 
 def elsewhere(log: RecordedLog, building: RecordedLog, cases: int, seed: int) -> Division:
     """Ask at most ``cases`` of the odd scans of a log of the map that another building's even ones make."""
-    chosen = _chosen(_numbered(log)[1::2], cases, seed)
-    queries = tuple(Query(number, scan, None, is_near=False) for number, scan in chosen)
-    return Division(tuple(scan for _, scan in _numbered(building)[::2]), queries)
+    chosen = _chosen(Cut.interleaved(len(log.scans)).to_ask, cases, seed)
+    queries = tuple(Query(number, log.scans[number], None, is_near=False) for number in chosen)
+    return Division(_scans(building, Cut.interleaved(len(building.scans)).for_map), queries)
 
 
-_Numbered = Sequence[tuple[int, Scan]]
-
-
-def _numbered(log: RecordedLog) -> _Numbered:
-    numbered = tuple(enumerate(log.scans))
+def _numbers(scans: int) -> range:
     # In a long log neighbours are all but alike: a map of every fourth is as good, and made in a quarter of the time.
-    return numbered[::_OF_MANY_EVERY] if len(numbered) > _MANY_SCANS else numbered
+    return range(0, scans, _OF_MANY_EVERY if scans > _MANY_SCANS else 1)
 
 
-def _chosen(scans: _Numbered, cases: int, seed: int) -> _Numbered:
-    if not scans:
+def _scans(log: RecordedLog, numbers: Iterable[int]) -> tuple[Scan, ...]:
+    return tuple(log.scans[number] for number in numbers)
+
+
+def _chosen(numbers: range, cases: int, seed: int) -> Sequence[int]:
+    if not numbers:
         return ()
-    order = np.random.default_rng(seed).choice(len(scans), min(cases, len(scans)), replace=False)
-    return tuple(scans[index] for index in order)
+    order = np.random.default_rng(seed).choice(len(numbers), min(cases, len(numbers)), replace=False)
+    return [numbers[index] for index in order]
 
 
-def _division(map_scans: Sequence[Scan], others: _Numbered, cases: int, seed: int) -> Division:
+def _division(log: RecordedLog, cut: Cut, cases: int, seed: int) -> Division:
+    map_scans = _scans(log, cut.for_map)
     known = [scan.laser_pose for scan in map_scans]
     queries = (
         Query(number, scan, scan.laser_pose, is_near=_is_near(scan.laser_pose, known))
-        for number, scan in _chosen(others, cases, seed)
+        for number in _chosen(cut.to_ask, cases, seed)
+        for scan in (log.scans[number],)
     )
-    return Division(tuple(map_scans), tuple(queries))
+    return Division(map_scans, tuple(queries))
 
 
 def _is_near(pose: Pose2, known: Sequence[Pose2]) -> bool:

@@ -3,38 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
-from robotd.core.grid_spec import GridSpec
+from robotd.evaluation.map_facts import MapFacts
 from robotd.evaluation.tally import Tally
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.tables import NO_INFORMATION
 from robotd.logs.scan import PoseSource
-
-
-@dataclass(frozen=True, slots=True)
-class MapFacts:
-    """What is told of the map that the cases were sought on."""
-
-    spec: GridSpec
-    vacant_cells: int
-    occupied_cells: int
-    digest: str
-
-    @classmethod
-    def of(cls, grid: OccupancyGrid) -> "MapFacts":
-        """Count its cells."""
-        vacant, occupied = int((grid.cells < NO_INFORMATION).sum()), int((grid.cells > NO_INFORMATION).sum())
-        return cls(grid.spec, vacant, occupied, grid.digest())
-
-    def document(self) -> dict[str, Any]:
-        """Return it for programs."""
-        return {
-            "rows": self.spec.rows,
-            "cols": self.spec.cols,
-            "resolution_m": self.spec.resolution_m,
-            "vacant_cells": self.vacant_cells,
-            "occupied_cells": self.occupied_cells,
-            "digest": self.digest,
-        }
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,6 +14,8 @@ class LogReport:
 
     log: str
     protocol: str
+    settings: str
+    """Digest of everything that the answers depend on but the log, as in their keys."""
     scans: int
     """Scans in the log."""
     map_scans: int
@@ -70,6 +43,7 @@ class LogReport:
         return {
             "log": self.log,
             "protocol": self.protocol,
+            "settings": self.settings,
             "scans": self.scans,
             "poses": self.poses.value,
             "damaged_lines": self.damaged_lines,

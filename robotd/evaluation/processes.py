@@ -1,84 +1,75 @@
-"""A scheduler of this machine: cases in batches, over processes that are replaced when they die."""
+"""A schedule over processes of this machine, which are replaced when they die."""
 
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass, replace
-from itertools import chain, islice
+from dataclasses import dataclass
+from itertools import islice
 from multiprocessing import get_context
-from typing import Generic, TypeVar
+from typing import Generic
 
 from robotd.core.errors import RobotdError
+from robotd.evaluation.schedule import AHEAD, Answer, Case, Schedule
 
-BATCH = 8
-"""Cases sent at a time: a few seconds of work, against a map that is packed once for each batch."""
 _DEATHS_MAX = 3
-"""A batch that processes died of more often is what kills them."""
-
-Case = TypeVar("Case")
-Answer = TypeVar("Answer")
+"""A case that processes died of more often is what kills them."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Batch(Generic[Case]):
-    cases: tuple[Case, ...]
+@dataclass(slots=True, eq=False)
+class _UnderWay(Generic[Case, Answer]):
+    case: Case
+    future: Future[Answer] | None = None
     deaths: int = 0
     """How many processes died of it, or beside it."""
 
+    @property
+    def is_answered(self) -> bool:
+        return self.future is not None and self.future.done() and self.future.exception() is None
 
-def over_processes(workers: int) -> Callable[[Callable[[Case], Answer], Iterable[Case]], Iterator[Answer]]:
-    """Return a ``map`` over ``workers`` processes; results come as they are ready, not in order.
 
-    No more cases are taken than are under way, so neither they nor the results pile up. A process that dies (no memory,
-    a signal) costs its batch's time and nothing else. Raises RobotdError where a batch kills every process it meets.
+def over_processes(workers: int) -> Schedule:
+    """Return a schedule over ``workers`` processes.
+
+    A process that dies (no memory, a signal) costs the time of its case and nothing else. Raises RobotdError where a
+    case kills every process it meets.
     """
 
-    def spread(job: Callable[[Case], Answer], cases: Iterable[Case]) -> Iterator[Answer]:
-        left: deque[_Batch[Case]] = deque()
-        source = _batches(cases)
+    def spread(job: Callable[[Case], Answer], cases: Iterable[Case], /) -> Iterator[Answer]:
+        window: deque[_UnderWay[Case, Answer]] = deque()
+        source = iter(cases)
         while True:
-            left = yield from _until_one_dies(job, chain(left, source), workers)
-            if not left:
+            yield from _until_one_dies(job, source, window, workers)
+            if not window:
                 return
-            if max(batch.deaths for batch in left) > _DEATHS_MAX:
+            if max(under_way.deaths for under_way in window) > _DEATHS_MAX:
                 raise RobotdError(f"processes died {_DEATHS_MAX + 1} times over the same cases")
 
     return spread
 
 
 def _until_one_dies(
-    job: Callable[[Case], Answer], batches: Iterator[_Batch[Case]], workers: int
-) -> Generator[Answer, None, deque[_Batch[Case]]]:
-    """Work through batches, and return those that were under way when a process died."""
-    under_way: dict[Future[list[Answer]], _Batch[Case]] = {}
+    job: Callable[[Case], Answer], source: Iterator[Case], window: deque[_UnderWay[Case, Answer]], workers: int
+) -> Iterator[Answer]:
+    """Answer cases; what is under way when a process dies stays in the window."""
     # Spawned: a fork copies locks that threads of this process hold, and nobody would ever let go of them.
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         try:
             while True:
-                # Two a worker: one under way and one at hand, so that none is idle while its answers are read.
-                for batch in islice(batches, 2 * workers - len(under_way)):
-                    under_way[pool.submit(_answers, job, batch.cases)] = batch
-                if not under_way:
-                    return deque()
-                done, _ = wait(under_way, return_when=FIRST_COMPLETED)
-                for future in done:
-                    answers = future.result()
-                    del under_way[future]  # only now: a batch that killed its process is asked again
-                    yield from answers
+                window.extend(map(_UnderWay, islice(source, AHEAD * workers - len(window))))
+                for under_way in window:
+                    under_way.future = under_way.future or pool.submit(job, under_way.case)
+                if not window:
+                    return
+                assert window[0].future is not None
+                answer = window[0].future.result()
+                window.popleft()
+                yield answer
         except BrokenProcessPool:
-            # Which of them it died of cannot be told: all are asked again, and the guilty one is known by its
-            # deaths.
-            return deque(replace(batch, deaths=batch.deaths + 1) for batch in under_way.values())
+            # Which of them it died of cannot be told: all that have no answer are asked again, and the guilty one is
+            # known by its deaths.
+            for under_way in window:
+                if not under_way.is_answered:
+                    under_way.future, under_way.deaths = None, under_way.deaths + 1
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _answers(job: Callable[[Case], Answer], cases: tuple[Case, ...]) -> list[Answer]:
-    return [job(case) for case in cases]
-
-
-def _batches(cases: Iterable[Case]) -> Iterator[_Batch[Case]]:
-    iterator = iter(cases)
-    while batch := tuple(islice(iterator, BATCH)):
-        yield _Batch(batch)

@@ -1,12 +1,9 @@
 """A protocol as typed: how a log is divided, whose map it is asked of, and what is done to that map."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from robotd.evaluation.degrade import KINDS, degrade
-from robotd.evaluation.division import Division, elsewhere, halves, interleaved
-from robotd.evaluation.recorded import Reach, map_of
-from robotd.grid.occupancy import OccupancyGrid
-from robotd.grid.settings import GridSettings
+from robotd.evaluation.degrade import KINDS
+from robotd.evaluation.division import Cut, Division, elsewhere, halves, interleaved
 from robotd.logs.scan import RecordedLog
 
 
@@ -25,29 +22,16 @@ class Protocol:
         word, _, kind = self.name.partition("=")
         return kind if word == "degrade" else None
 
-    def map_and_queries(
-        self, log: RecordedLog, reach: Reach, settings: GridSettings, *, cases: int, seed: int
-    ) -> tuple[OccupancyGrid, Division]:
-        """Make the map, and draw what is asked of it.
-
-        Raises:
-            ValueError: the map would be larger than any map.
-        """
-        division = self._divide(log, cases, seed)
-        grid = map_of(division.map_scans, reach, settings)
-        if self.kind is None:
-            return grid, division
-        worse = degrade(self.kind, grid, seed)
-        # The truth moves with the map: a map that is turned or scaled has its places elsewhere.
-        moved = (
-            replace(query, truth=None if query.truth is None else worse.pose(query.truth)) for query in division.queries
-        )
-        return worse.grid, Division(division.map_scans, tuple(moved))
-
-    def _divide(self, log: RecordedLog, cases: int, seed: int) -> Division:
+    def divide(self, log: RecordedLog, cases: int, seed: int) -> Division:
+        """Draw what makes the map, and what is asked of it."""
         if self.building is not None:
             return elsewhere(log, self.building, cases, seed)
         return halves(log, cases, seed) if self.name == "half" else interleaved(log, cases, seed)
+
+    def asked(self, scans: int, cases: int) -> int:
+        """Return how many scans of a log of this length are asked, without drawing them."""
+        cut = Cut.halves(scans) if self.name == "half" else Cut.interleaved(scans)
+        return min(cases, len(cut.to_ask))
 
 
 WORDS = ("interleaved", "half", "other=LOG", *(f"degrade={kind}" for kind in KINDS))

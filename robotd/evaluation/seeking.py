@@ -1,16 +1,18 @@
-"""Seek one scan on a map, by the same localizer as the daemon's: the piece of work that a scheduler hands out.
+"""Seek one scan on a map, by the same localizer as the daemon's: the work that a schedule hands out.
 
-A scheduler has to offer ``map(job, queries)`` and nothing else: the built-in one, that of a pool of processes, that of
-a cluster. So a job and its queries can be pickled, and what a job makes ready is found again by the next query in the
-same process, though every batch brings a copy of its own.
+A job and its queries can be pickled. A job brings what its map is made of, not the map: each process makes it once.
 """
 
 import hashlib
 import time
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from robotd.core.errors import RecordingError
+from robotd.evaluation.degrade import Degraded
 from robotd.evaluation.division import Query
+from robotd.evaluation.last_made import LastMade
+from robotd.evaluation.map_facts import MapFacts
+from robotd.evaluation.map_recipe import MapRecipe
 from robotd.evaluation.recorded import Reach, readings_of
 from robotd.evaluation.result import CaseKey, CaseResult
 from robotd.grid.occupancy import OccupancyGrid
@@ -19,9 +21,6 @@ from robotd.localization.judge.judgement import Judgement
 from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
-
-Map = Callable[["Seeking", Iterable[Query]], Iterable[CaseResult]]
-"""What a scheduler offers; in the order of the queries or in any other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,29 +36,46 @@ class SeekingSettings:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Seeking:
-    """All cases of one log: a query in, a result out."""
+    """All cases of one log, asked in one way: a query in, a result out."""
 
     log: str
-    grid: OccupancyGrid
+    protocol: str
+    recipe: MapRecipe
     settings: SeekingSettings
     seed: int
     commit: str
-    protocol: str
     digest: str
     """Of settings and map."""
 
     @classmethod
     def of(
-        cls, log: str, grid: OccupancyGrid, settings: SeekingSettings, *, seed: int, commit: str, protocol: str
+        cls, log: str, recipe: MapRecipe, settings: SeekingSettings, *, seed: int, commit: str, protocol: str
     ) -> "Seeking":
         """Return the job of a log."""
         # How many threads share the work changes no answer.
-        told = f"{settings.reach} {settings.localization} {settings.judgement} {settings.error_model} {grid.digest()}"
-        return cls(log, grid, settings, seed, commit, protocol, hashlib.sha256(told.encode()).hexdigest()[:16])
+        told = f"{settings.reach} {settings.localization} {settings.judgement} {settings.error_model} {recipe.digest()}"
+        digest = hashlib.sha256(told.encode()).hexdigest()[:16]
+        return cls(log, protocol, recipe, settings, seed, commit, digest)
+
+    @property
+    def grid(self) -> OccupancyGrid:
+        """The map, as it is after what is done to it."""
+        return self._made.map.grid
+
+    @property
+    def facts(self) -> MapFacts:
+        """What is told of the map."""
+        return self._made.facts
 
     def __call__(self, query: Query) -> CaseResult:
-        """Seek a scan, nothing known."""
-        ready_map, settings = _ready_map_of(self), self.settings
+        """Seek a scan, nothing known.
+
+        Raises:
+            RecordingError: the log makes no map.
+        """
+        # The truth moves with the map: a map that is turned or scaled has its places elsewhere.
+        query = replace(query, truth=query.truth and self._made.map.pose(query.truth))
+        ready_map, settings = self._ready_map, self.settings
         readings = readings_of(query.scan, settings.reach)
         # Both: what compares versions on a busy machine, and what a robot would wait.
         cpu_s, wall_s = time.process_time(), time.perf_counter()
@@ -76,19 +92,29 @@ class Seeking:
         """Return by what the result of a query is known."""
         return CaseKey(self.log, query.number, self.seed, self.digest, self.commit, self.protocol)
 
+    @property
+    def _made(self) -> "_Made":
+        return _made.of(self.digest, self._make)
 
-def run(job: Seeking, queries: Iterable[Query], map_: Map = map) -> Iterator[CaseResult]:
-    """Yield the results as the scheduler hands them over; nothing of them is kept."""
-    yield from map_(job, queries)
+    @property
+    def _ready_map(self) -> ReadyMap:
+        settings = self.settings
+        return _ready.of(self.digest, lambda: ReadyMap.of(self.grid, settings.localization, settings.error_model))
+
+    def _make(self) -> "_Made":
+        try:
+            made = self.recipe.made()
+        except ValueError as error:
+            raise RecordingError(f"{self.log}: no map can be made of it: {error}") from error
+        return _Made(made, MapFacts.of(made.grid))
 
 
-_ready: dict[str, ReadyMap] = {}
-"""The latest job's map by the job's digest: a map is made ready once a process, not once a batch."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _Made:
+    map: Degraded
+    facts: MapFacts
 
 
-def _ready_map_of(job: Seeking) -> ReadyMap:
-    if job.digest not in _ready:
-        settings = job.settings
-        _ready.clear()  # a process that works through a thousand logs keeps one map
-        _ready[job.digest] = ReadyMap.of(job.grid, settings.localization, settings.error_model)
-    return _ready[job.digest]
+_made: LastMade[_Made] = LastMade()
+_ready: LastMade[ReadyMap] = LastMade()
+"""Apart from the map itself: who only draws it needs no ready one."""

@@ -1,5 +1,6 @@
 """What evaluation promises: the protocol to the letter, cases that mean the same in any process, bounded memory."""
 
+import math
 import pickle
 import subprocess
 import sys
@@ -12,12 +13,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robotd.core.pose import Pose2
 from robotd.core.reading import ReadingStatus
 from robotd.evaluation.division import Query, elsewhere, halves, interleaved
+from robotd.evaluation.map_recipe import MapRecipe
 from robotd.evaluation.recorded import Reach, map_of, readings_of
 from robotd.evaluation.result import CaseResult
-from robotd.evaluation.seeking import Seeking, SeekingSettings, run
+from robotd.evaluation.seeking import Seeking, SeekingSettings
 from robotd.evaluation.verdict import CaseVerdict
+from robotd.evaluation.which_program import program
 from robotd.grid.settings import GridSettings
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement
@@ -27,6 +31,7 @@ from robotd.logs.scan import RecordedLog
 from tests.support.recorded_room import drive_lines
 
 REACH = Reach(range_max_m=4.0, clear_m=3.0)
+CELLS = GridSettings(rows=1, cols=1, raise_alpha=0.5, lower_alpha=0.9)
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +73,7 @@ def test_a_beam_of_range_zero_says_nothing() -> None:
 
 
 def test_the_map_holds_every_hit_where_the_log_has_it(log: RecordedLog) -> None:
-    grid = map_of(log.scans, REACH, GridSettings(rows=1, cols=1, raise_alpha=0.5, lower_alpha=0.9))
+    grid = map_of(log.scans, REACH, CELLS)
     occupied = np.argwhere(grid.cells > 200)
     x_m, y_m = np.array([grid.spec.centre_of(row, col) for row, col in occupied]).T
     assert (x_m.min(), x_m.max(), y_m.min(), y_m.max()) == pytest.approx((0.0, 5.0, 0.0, 3.0), abs=0.06)
@@ -96,18 +101,23 @@ def test_a_query_is_near_where_a_scan_of_the_map_was_taken_nearby(log: RecordedL
 def test_on_another_buildings_map_nothing_is_right(log: RecordedLog, job: Seeking) -> None:
     queries = elsewhere(log, log, 3, 0).queries
     assert [query.truth for query in queries] == [None] * 3
-    verdicts = {result.verdict for result in run(job, queries)}
+    verdicts = {result.verdict for result in map(job, queries)}
     assert CaseVerdict.RIGHT not in verdicts
     assert CaseVerdict.WRONG_AND_SURE in verdicts  # it was its own map after all, so it is sure
 
 
+def job_of(log: RecordedLog, **others: Any) -> Seeking:
+    """The even scans make the map; ``others`` of the recipe, or of what is localized by."""
+    recipe = MapRecipe(interleaved(log, 4, 0).map_scans, REACH, CELLS, None, 0)
+    judged = SeekingSettings(REACH, LocalizationSettings(), Judgement(), ErrorModel(), 1)
+    recipe = replace(recipe, **{name: value for name, value in others.items() if hasattr(recipe, name)})
+    judged = replace(judged, **{name: value for name, value in others.items() if hasattr(judged, name)})
+    return Seeking.of("room.log", recipe, judged, seed=0, commit=program(), protocol="interleaved")
+
+
 @pytest.fixture
 def job(log: RecordedLog) -> Seeking:
-    grid = map_of(
-        interleaved(log, 4, 0).map_scans, REACH, GridSettings(rows=1, cols=1, raise_alpha=0.5, lower_alpha=0.9)
-    )
-    judged = SeekingSettings(REACH, LocalizationSettings(), Judgement(), ErrorModel(), 1)
-    return Seeking.of("room.log", grid, judged, seed=0, commit="none", protocol="interleaved")
+    return job_of(log)
 
 
 def timeless(result: CaseResult) -> CaseResult:
@@ -115,7 +125,7 @@ def timeless(result: CaseResult) -> CaseResult:
 
 
 def in_another_process(job: Seeking, queries: Iterable[Query]) -> list[CaseResult]:
-    """Be a scheduler: send all of it out by bytes, and get it back so."""
+    """Be a schedule: send all of it out by bytes, and get it back so."""
     code = (
         "import pickle, sys; job, *queries = pickle.load(sys.stdin.buffer);"
         "pickle.dump([*map(job, queries)], sys.stdout.buffer)"
@@ -129,25 +139,30 @@ def in_another_process(job: Seeking, queries: Iterable[Query]) -> list[CaseResul
 
 def test_cases_mean_the_same_in_processes_of_their_own(log: RecordedLog, job: Seeking) -> None:
     queries = interleaved(log, 4, 0).queries
-    elsewhere = list(run(job, queries, in_another_process))
-    assert [timeless(result) for result in elsewhere] == [timeless(result) for result in run(job, queries)]
+    elsewhere = in_another_process(job, queries)
+    assert [timeless(result) for result in elsewhere] == [timeless(result) for result in map(job, queries)]
     assert len({result.key for result in elsewhere}) == len(queries)
 
 
-def test_a_key_changes_with_whatever_the_answer_depends_on(job: Seeking) -> None:
-    settings = replace(job.settings, localization=replace(job.settings.localization, range_error_m=0.2))
-    other_map = Seeking.of(job.log, job.grid, job.settings, seed=0, commit="none", protocol="interleaved")
-    other_map.grid.cells[0, 0] ^= 1
-    digests = {
-        job.digest,
-        Seeking.of(job.log, job.grid, settings, seed=0, commit="none", protocol="interleaved").digest,
-    }
-    digests.add(Seeking.of(job.log, other_map.grid, job.settings, seed=0, commit="none", protocol="interleaved").digest)
-    threads = Seeking.of(
-        job.log, job.grid, replace(job.settings, threads=7), seed=0, commit="none", protocol="interleaved"
-    )
-    assert len(digests) == 3
-    assert threads.digest in digests
+def test_a_key_changes_with_whatever_the_answer_depends_on(log: RecordedLog, job: Seeking) -> None:
+    moved = replace(log.scans[0], robot_pose=Pose2(0.0, 0.0, 0.5))
+    shorter = replace(log.scans[0], ranges_m=log.scans[0].ranges_m - 0.01)
+    others: list[dict[str, Any]] = [
+        {"localization": LocalizationSettings(range_error_m=0.2)},
+        {"scans": (moved, *job.recipe.scans[1:])},
+        {"scans": (shorter, *job.recipe.scans[1:])},
+        {"kind": "blurred"},
+        {"grid": replace(CELLS, resolution_m=0.1)},
+    ]
+    digests = {job.digest, *(job_of(log, **other).digest for other in others)}
+    assert len(digests) == 1 + len(others)
+    assert job_of(log, threads=7).digest == job.digest
+
+
+def test_the_truth_is_turned_with_the_map(log: RecordedLog) -> None:
+    turned, query = job_of(log, kind="turned-30deg"), interleaved(log, 1, 0).queries[0]
+    assert query.truth is not None
+    assert turned(query).truth == Pose2(0.0, 0.0, math.radians(30.0)) @ query.truth
 
 
 def test_a_result_is_small_and_comes_back_whole(log: RecordedLog, job: Seeking) -> None:

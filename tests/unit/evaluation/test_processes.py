@@ -10,6 +10,7 @@ import pytest
 from robotd.core.errors import RobotdError
 from robotd.evaluation import processes
 from robotd.evaluation.processes import over_processes
+from robotd.evaluation.schedule import AHEAD
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("no_tracker_is_left")]
 
@@ -36,12 +37,12 @@ def dies(number: int) -> int:
     return number
 
 
-def test_every_case_is_answered_once() -> None:
-    assert sorted(over_processes(2)(double, range(100))) == [2 * number for number in range(100)]
+def test_every_case_is_answered_once_and_in_order() -> None:
+    assert list(over_processes(2)(double, range(100))) == [2 * number for number in range(100)]
 
 
 def test_a_killed_process_is_replaced_and_nothing_is_lost(tmp_path: Path) -> None:
-    answers = sorted(over_processes(2)(DiesOnce(tmp_path / "mark", 13), range(40)))
+    answers = list(over_processes(2)(DiesOnce(tmp_path / "mark", 13), range(40)))
     assert answers == [2 * number for number in range(40)]
 
 
@@ -61,5 +62,5 @@ def test_no_more_cases_are_taken_than_are_under_way() -> None:
 
     answers = over_processes(1)(double, source())
     next(answers)
-    assert len(taken) <= 4 * processes.BATCH
+    assert len(taken) == AHEAD
     answers.close()  # type: ignore[attr-defined]  # a generator
