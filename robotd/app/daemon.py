@@ -163,9 +163,11 @@ async def _keep_last(daemon: Daemon) -> None:
 
 
 def _halt(daemon: Daemon, reason: str) -> None:
-    daemon.robot.stop_now()
-    if daemon.supervisor.mode not in {Mode.DISARMED, Mode.FAULT}:  # a timer that fails may fail again and again
-        daemon.control.halt(Stop(reason))
+    # Noted like any other stop, for a replay must say it, too; but once: a timer that fails may fail again and again.
+    supervisor, stop = daemon.supervisor, Stop.because(reason)
+    is_known = supervisor.mode is Mode.FAULT or (supervisor.mode, supervisor.reason) == (Mode.DISARMED, stop.reason)
+    if not is_known:
+        daemon.control.halt(stop)
 
 
 async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoReturn]", ending: Ending) -> None:

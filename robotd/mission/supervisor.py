@@ -97,6 +97,11 @@ class Supervisor:
         return self._current.mode
 
     @property
+    def reason(self) -> str:
+        """Why it is in this mode."""
+        return self._current.reason
+
+    @property
     def status(self) -> Status:
         """The whole robot in one look."""
         place = self.whereabouts.map_in_use

@@ -93,6 +93,8 @@ class Session:
         self._is_unlearned = False
         """Whether it was logged already: a clock that cannot learn is news once, not each second."""
         self._lost: RobotdError | None = None
+        self._pinging: asyncio.Handle
+        """Of what comes next: the next ping, or that the last one could not be sent."""
 
     async def __aenter__(self) -> Self:
         self._reader = asyncio.create_task(self._read(), name=f"{self.device} reader")
@@ -163,11 +165,27 @@ class Session:
             RemoteProtocolError: the board restarted, or somebody else opened a session with it.
         """
         self._serving = True
-        while not self._reader.done():
+        unsaid: asyncio.Future[Exception] = asyncio.get_running_loop().create_future()
+        self._ping_again(unsaid)
+        try:
+            # No timer here: a ping that falls due as the line breaks must not hasten the end by a turn, or a replay,
+            # whose timers fire later, would hear of it in another order.
+            await asyncio.wait({self._reader, unsaid}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._pinging.cancel()
+        if self._reader.done():
+            self._reader.result()
+        raise unsaid.result()
+
+    def _ping_again(self, unsaid: "asyncio.Future[Exception]") -> None:
+        loop = asyncio.get_running_loop()
+        self._pinging = loop.call_later(_PING_EVERY_S, self._ping_again, unsaid)
+        try:
             self.post(_ping())
-            await asyncio.wait({self._reader}, timeout=_PING_EVERY_S)
-        self._reader.result()
-        raise AssertionError("the reader only ends with an error")
+        except Exception as error:
+            # A turn later, as the reader hears of a line that is lost.
+            self._pinging.cancel()
+            self._pinging = loop.call_soon(unsaid.set_result, error)
 
     # Requests
 

@@ -8,7 +8,9 @@ import pytest
 from robotd.app.callbacks import stopping_on_errors
 from robotd.app.daemon import _halt
 from robotd.contract.modes import Mode
-from robotd.contract.requests import Arm
+from robotd.contract.requests import Arm, Stop
+from robotd.core.errors import RobotdError
+from robotd.recording.entries import CommandEntry
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
 from tests.support.living import living
@@ -52,3 +54,20 @@ async def test_the_daemon_disarms_for_it_once_and_lives(tmp_path: Path, caplog: 
         assert (status.mode, status.reason) == (Mode.DISARMED, "internal error: KeyError('a mistake')")
         assert it.daemon.supervisor.halts == 1
         await it.daemon.control.perform(Arm())
+
+
+async def test_a_stop_for_it_is_noted_even_while_nothing_is_armed_and_gives_up_an_arming(tmp_path: Path) -> None:
+    async with living(tmp_path, SimulatedRobot(load_world("office"), seed=4)) as it:
+        await it.daemon.control.perform(Stop("enough"))
+        arming = asyncio.create_task(it.daemon.control.perform(Arm()))
+        await asyncio.sleep(0)  # the first device is asked
+        for _ in range(3):
+            _halt(it.daemon, "no client can be heard")
+        with pytest.raises(RobotdError, match="stopped"):
+            await arming
+        noted = [entry for entry in it.journal.remembered if isinstance(entry, CommandEntry)]
+    assert [(entry.name, entry.arguments.get("reason")) for entry in noted[-3:]] == [
+        ("stop", "enough"),
+        ("arm", None),
+        ("stop", "no client can be heard"),
+    ]
