@@ -8,7 +8,6 @@ from robotd.core.clock import TurnCountingLoop
 from robotd.hardware.link.tap import Direction
 from robotd.recording.entries import (
     LINE_BROKE,
-    STALL,
     BytesEntry,
     CauseEntry,
     CommandEntry,
@@ -87,16 +86,15 @@ class Journal(ABC):
         """Note how many turns ago the last input came, unless its effects are over.
 
         What was asked in between is answered later, however many turns that takes; only a stop is asked for in the
-        same turn as it is noted, just before. A stall answers nothing, and the loop finds it by itself: it comes in its
-        turn, whatever was asked.
+        same turn as it is noted, just before. All but bytes answer nothing: a client's wish, a stall, a silence come in
+        their turn, whatever was asked.
         """
         before, self._input_turn = self._input_turn, loop.turn
         asked, self._asked_turn = self._asked_turn, None
         # A loop that rested since had nothing left to do: all effects were over, and the next input met none.
         if before is None or loop.rested_at > before:
             return
-        is_stall = isinstance(entry, CauseEntry) and entry.name == STALL
-        if not is_stall and asked not in {None, loop.turn}:
+        if isinstance(entry, BytesEntry) and asked not in {None, loop.turn}:
             return
         if loop.turn - before <= TURNS_MAX:
             self.note(TurnEntry(entry.time_ns, loop.turn - before))

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import TracebackType
-from typing import NoReturn, Self, TypeVar
+from typing import Any, NoReturn, Self, TypeVar
 
 from firmware_proto.common import Arm, BoardState, BoardStatus, Ping, Pong, Result
 from firmware_proto.dictionary import TELEMETRY_END, TELEMETRY_START
@@ -167,10 +167,11 @@ class Session:
         self._serving = True
         unsaid: asyncio.Future[Exception] = asyncio.get_running_loop().create_future()
         self._ping_again(unsaid)
+        ends: set[asyncio.Future[Any]] = {self._reader, unsaid}
         try:
             # No timer here: a ping that falls due as the line breaks must not hasten the end by a turn, or a replay,
             # whose timers fire later, would hear of it in another order.
-            await asyncio.wait({self._reader, unsaid}, return_when=asyncio.FIRST_COMPLETED)
+            await asyncio.wait(ends, return_when=asyncio.FIRST_COMPLETED)
         finally:
             self._pinging.cancel()
         if self._reader.done():

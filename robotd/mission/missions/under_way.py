@@ -66,8 +66,8 @@ class MissionUnderWay:
         """Of the mission that is under way, or was last."""
         self._lease: Lease | None = None
         self._commander: Commander | None = None
-        self._stopped_by = ""
-        """Why the mission that is ending, or ended last, was stopped."""
+        self._stopped_by: str | None = None
+        """Why the mission that is ending, or ended last, was stopped; None if it was not."""
 
     @property
     def is_busy(self) -> bool:
@@ -115,6 +115,7 @@ class MissionUnderWay:
         # Bound to this number: the lease of a mission that has ended must not stop the next one.
         lease = self._lease = self._make_lease(lease_s, lambda: self.lease_expired(number))
         self._row = row
+        self._stopped_by = None
         self._commander = Commander(client, mission.kind, now_ns(), lease_s)
         # Before the task takes its first step: who asks for the status at once is told that a mission is under
         # way.
@@ -144,8 +145,10 @@ class MissionUnderWay:
         # Cancelled from within, it could not tell its last word.
         if self._task is None or self._task is asyncio.current_task():
             return
-        if not self._task.done() and not self._task.cancelling():
-            self._stopped_by = reason  # what comes while it ends does not explain why it ends
+        # What comes while it ends does not explain why it ends. Not asked of the task: one whose time for an answer has
+        # just run out is being cancelled, too, and not because of that.
+        if not self._task.done() and self._stopped_by is None:
+            self._stopped_by = reason
         # Said again even if it is ending already: a step that swallowed the first cancellation must not go on.
         self._task.cancel()
 
@@ -184,4 +187,4 @@ class MissionUnderWay:
         """Take the lease back; a mission may be cancelled before its first step, and that is an end too."""
         lease.end()
         if task.cancelled():
-            report.at(MissionPhase.STOPPED, message=self._stopped_by)
+            report.at(MissionPhase.STOPPED, message=self._stopped_by or "")

@@ -1,5 +1,7 @@
 """The supervisor allows motion to whom it should, as long as it should, and says how everything ended."""
 
+import asyncio
+
 import pytest
 
 from robotd.contract.device_status import LinkState
@@ -119,6 +121,17 @@ async def test_what_a_lost_drive_said_last_is_not_shown_as_if_it_were_now() -> N
         assert (r.supervisor.status.battery_v or 0.0) > 0.0
         r.drive.change(**GONE)
         assert (r.supervisor.status.battery_v, r.supervisor.status.bumpers_rad) == (None, ())
+
+
+async def test_a_stop_explains_the_end_even_if_a_time_for_an_answer_has_just_run_out() -> None:
+    async with rig(talking=False) as r:
+        r.use_map()
+        number = r.supervisor.mission.start(DriveTo(1.0, 0.0, Legs.STRAIGHT), 100.0)
+        await turns()
+        (mission,) = [task for task in asyncio.all_tasks() if task.get_name() == f"mission {number}"]
+        mission.cancel()  # as a timeout does, a turn before it raises TimeoutError
+        await r.supervisor.stop("enough")
+        assert (await r.end_of_mission()).message == "enough"
 
 
 async def test_an_error_of_ours_stops_the_robot_before_it_ends_the_daemon(monkeypatch: pytest.MonkeyPatch) -> None:

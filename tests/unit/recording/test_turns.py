@@ -1,6 +1,7 @@
 """Two inputs whose effects interleave: a replay interleaves them as they did."""
 
 import asyncio
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from robotd.hardware.link.tapped import TappedLine
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.recording.encoding import decode, encode
-from robotd.recording.entries import STALL, BytesEntry, CauseEntry, Entry, RecordingHeader, TurnEntry
+from robotd.recording.entries import STALL, BytesEntry, Entry, RecordingHeader, TurnEntry
 from robotd.recording.journal import Journal
 from robotd.recording.moments import run_recorded
 from robotd.recording.playback import Playback
@@ -115,21 +116,28 @@ def test_what_is_asked_between_two_inputs_tells_them_apart() -> None:
     assert not any(isinstance(entry, TurnEntry) for entry in run_virtual(main()))
 
 
-def test_a_stall_comes_in_its_turn_whatever_was_asked_before() -> None:
-    """A line that broke, a write that failed with it, and a stall a turn later: the mission is told of all three."""
-
+@pytest.mark.parametrize(
+    "note",
+    [
+        lambda journal: journal.cause(now_ns(), STALL, {}),  # three broken lines, and a mission that is told of both
+        lambda journal: journal.command(now_ns(), "clear", {}),  # after a stop that ended an arming
+        lambda journal: journal.line_broke("drive", now_ns(), "write: Input/output error"),
+        lambda journal: journal.computed(now_ns(), "insert", 0),
+    ],
+    ids=["stall", "command", "broken line", "computed"],
+)
+def test_what_answers_nothing_comes_in_its_turn_whatever_was_asked_before(note: Callable[[Journal], None]) -> None:
     async def main() -> list[Entry]:
         journal = MemoryJournal()
-        journal.line_broke("drive", now_ns(), "write: Input/output error")
+        journal.command(now_ns(), "stop", {})
         journal.bytes_passed("drive", Direction.TO_BOARD, now_ns(), b"stop")
         await asyncio.sleep(0)
-        journal.cause(now_ns(), STALL, {})
+        note(journal)
         return journal.entries
 
-    *_, turn, stall = run_virtual(main())
+    *_, turn, _ = run_virtual(main())
     assert isinstance(turn, TurnEntry)
     assert turn.turns == 1
-    assert isinstance(stall, CauseEntry)
 
 
 def test_turns_are_written_and_read() -> None:

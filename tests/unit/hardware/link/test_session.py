@@ -310,7 +310,7 @@ async def turns_until_the_end(lost_after_s: float) -> int:
     loop = asyncio.get_running_loop()
     assert isinstance(loop, TurnCountingLoop)
     async with bench(BoardKind.DRIVE) as b:
-        lost_turn = loop.create_future()
+        lost_turn: asyncio.Future[int] = loop.create_future()
         serving_ = asyncio.create_task(b.session.serve())
         await asyncio.sleep(0)  # pings fall due by whole seconds from here
 
