@@ -48,6 +48,8 @@ EXIT_CONFIG = 78
 EXIT_INTERRUPTED = 130
 """What a shell says of a program that SIGINT ended."""
 
+_ENDING = Stop("the daemon is ending")
+
 log = logging.getLogger(__name__)
 
 
@@ -126,7 +128,7 @@ async def run(config: Config) -> int:
         _show_gauges(daemon.supervisor.counted, head)
         # From here on a signal has something to stop; before, the default ends the program, which has opened
         # nothing yet.
-        ending = Ending(daemon.robot.stop_now)
+        ending = Ending(partial(daemon.control.halt, _ENDING))
         # Longer than all the rest: the last map must be made into files.
         thinking = asyncio.create_task(head.run(), name="head")
         try:
@@ -203,7 +205,7 @@ async def _serve(config: Config, daemon: Daemon, thinking: "asyncio.Task[NoRetur
         notifier.stopping()
         # First the mission, then the clients, then the lines: who is served last could otherwise ask for motion
         # in between.
-        await daemon.control.perform(Stop("the daemon is ending"))
+        await daemon.control.perform(_ENDING)
         if not daemon.control.keeping.is_needed:  # nobody waits for what is computed
             thinking.cancel()
         await _cancelled(serving, *(parts[device.name] for device in daemon.robot.devices))
@@ -218,8 +220,9 @@ async def _as_long_as(task: "asyncio.Task[NoReturn]") -> NoReturn:
 
 def _stop_if_failed(daemon: Daemon, task: "asyncio.Task[None]") -> None:
     """Stop before the others are told to end, which they do as they come."""
-    if not task.cancelled() and task.exception() is not None:
-        daemon.robot.stop_now()
+    error = None if task.cancelled() else task.exception()
+    if error is not None:
+        _halt(daemon, f"internal error: {error!r}")
 
 
 async def _cancelled(*tasks: "asyncio.Task[None]") -> None:

@@ -28,14 +28,19 @@ _SIGNALLED = 128
 class Ending:
     """Stops the robot when a signal comes, asks the program to end, and hastens it when another one comes."""
 
-    def __init__(self, stop_now: Callable[[], None]) -> None:
-        """Begin to hear signals, on the running loop, for the running task; what nohup ignores stays so."""
+    def __init__(self, stop: Callable[[], None]) -> None:
+        """Begin to hear signals, on the running loop, for the running task; what nohup ignores stays so.
+
+        Args:
+            stop: called at each signal; stops the robot, notes it and ends the mission, all at once: no step of the
+                mission may follow a stop, in life as in a replay.
+        """
         self.asked = asyncio.Event()
         self.reason = ""
         self.exit_code = 0
         self.is_hastened = False
         """Whether a second signal came: what is still waited for is given up."""
-        self._stop_now = stop_now
+        self._stop = stop
         self._main = asyncio.current_task()
         for number in (*_ON_REQUEST, *_OTHERS):
             if number is not signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:
@@ -43,7 +48,12 @@ class Ending:
 
     def _told(self, number: signal.Signals) -> None:
         # Before it is even looked at which signal it is, and again for each that follows.
-        self._stop_now()
+        try:
+            self._stop()
+        finally:  # whatever it meets, the end was asked for
+            self._end(number)
+
+    def _end(self, number: signal.Signals) -> None:
         if self.asked.is_set():
             self.is_hastened = True
             if self._main is not None:

@@ -30,6 +30,7 @@ from robotd.head.compute import Compute
 from robotd.head.head import Head
 from robotd.maps.store import MapStore
 from robotd.mission.whereabouts.keeping import Keeping
+from robotd.recording.entries import CommandEntry
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import read
 from robotd.sim.buildings.world import load_world
@@ -148,7 +149,11 @@ async def test_sigterm_stops_the_robot_first_and_completes_the_recording(
         await asyncio.sleep(0.05)
         assert BoardState.ARMED not in {own_board(robot, name).state for name in robot.boards}
     (recording,) = (short / "recordings").iterdir()
-    assert read(recording).complete
+    recorded = read(recording)
+    assert recorded.complete
+    # Noted where the signal came, not when the daemon comes to its end: a step of a mission may be taken between.
+    asked = [entry.name for entry in recorded.entries if isinstance(entry, CommandEntry)]
+    assert asked == ["arm", "stop", "stop"]
 
 
 @pytest.mark.real_clock
@@ -175,6 +180,8 @@ async def test_an_error_in_the_daemon_itself_stops_the_robot(short: Path, monkey
         monkeypatch.setattr(daemon.supervisor.whereabouts, "moved", fail)
         with pytest.raises(ExceptionGroup):
             await asyncio.wait_for(running, 5.0)
+        assert daemon.control.status.reason.startswith("internal error: ")
+        assert "a mistake of ours" in daemon.control.status.reason
         await asyncio.sleep(0.05)
         assert BoardState.ARMED not in {own_board(robot, name).state for name in robot.boards}
 
