@@ -7,7 +7,7 @@ import os
 import pytest
 
 from firmware_proto.common import BoardKind
-from robotd.core.clock import now_ns
+from robotd.core.clock import TurnCountingLoop, now_ns
 from robotd.core.errors import TransportError
 from robotd.hardware.link.clock_sync import ClockSync
 from robotd.hardware.link.tapped import TappedLine
@@ -66,3 +66,26 @@ async def test_a_ping_that_cannot_be_sent_or_used_costs_the_session_and_the_next
         assert not task.done()
         task.cancel()
         await asyncio.wait({task})
+
+
+async def turns_until_the_end(lost_after_s: float) -> int:
+    """Return how many turns of the loop after the line is lost the session says so."""
+    loop = asyncio.get_running_loop()
+    assert isinstance(loop, TurnCountingLoop)
+    async with bench(BoardKind.DRIVE) as b:
+        lost_turn: asyncio.Future[int] = loop.create_future()
+        serving_ = asyncio.create_task(b.session.serve())
+        await asyncio.sleep(0)  # pings fall due by whole seconds from here
+
+        def break_down() -> None:
+            b.line.close()
+            lost_turn.set_result(loop.turn)
+
+        loop.call_later(lost_after_s, break_down)
+        with pytest.raises(TransportError):
+            await serving_
+        return loop.turn - lost_turn.result()
+
+
+async def test_a_ping_that_falls_due_as_the_line_breaks_does_not_hasten_the_end() -> None:
+    assert await turns_until_the_end(1.0) == await turns_until_the_end(0.5)

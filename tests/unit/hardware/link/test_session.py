@@ -13,7 +13,7 @@ from firmware_proto.framing import RawFrame, encode_frame
 from firmware_proto.pantilt_messages import Aim, Limits, ReadLimits
 from firmware_proto.rangefinder_messages import SetLaser, Shoot, Shot
 from firmware_proto.schema import REPLY, Message
-from robotd.core.clock import NS_PER_S, TurnCountingLoop, now_ns
+from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError, TransportError
 from robotd.hardware.link.clock_sync import ClockSync
 from robotd.hardware.link.handshake import Terms, shake_hands
@@ -303,29 +303,6 @@ async def test_stop_on_a_dead_line_raises_nothing() -> None:
     async with bench(BoardKind.DRIVE) as b:
         b.line.close()
         b.session.stop_now()
-
-
-async def turns_until_the_end(lost_after_s: float) -> int:
-    """Return how many turns of the loop after the line is lost the session says so."""
-    loop = asyncio.get_running_loop()
-    assert isinstance(loop, TurnCountingLoop)
-    async with bench(BoardKind.DRIVE) as b:
-        lost_turn: asyncio.Future[int] = loop.create_future()
-        serving_ = asyncio.create_task(b.session.serve())
-        await asyncio.sleep(0)  # pings fall due by whole seconds from here
-
-        def break_down() -> None:
-            b.line.close()
-            lost_turn.set_result(loop.turn)
-
-        loop.call_later(lost_after_s, break_down)
-        with pytest.raises(TransportError):
-            await serving_
-        return loop.turn - lost_turn.result()
-
-
-async def test_a_ping_that_falls_due_as_the_line_breaks_does_not_hasten_the_end() -> None:
-    assert await turns_until_the_end(1.0) == await turns_until_the_end(0.5)
 
 
 async def test_a_silent_board_ends_the_session_after_a_second() -> None:
