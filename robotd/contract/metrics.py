@@ -4,7 +4,7 @@ from itertools import accumulate
 
 import msgspec
 
-from robotd.core.counted import BOUNDS_S, Counted
+from robotd.core.counted import BOUNDS_S, Counted, Distribution
 
 
 class Sample(msgspec.Struct, frozen=True):
@@ -26,6 +26,11 @@ class Buckets(msgspec.Struct, frozen=True):
     """How many values were no more than each bound, and at last how many there were."""
     sum: float
 
+    @classmethod
+    def of(cls, name: str, labels: dict[str, str], one: Distribution) -> "Buckets":
+        """Return a distribution under its name."""
+        return cls(name, labels, BOUNDS_S, tuple(accumulate(one.counts)), one.total)
+
 
 class Metrics(msgspec.Struct, frozen=True):
     """Everything that was counted, by name and labels."""
@@ -41,7 +46,7 @@ class Metrics(msgspec.Struct, frozen=True):
             tuple(Sample(name, dict(labels), value) for (name, labels), value in sorted(counted.counters.items())),
             tuple(Sample(name, dict(labels), read()) for (name, labels), read in counted.gauges.items()),
             tuple(
-                Buckets(name, dict(labels), BOUNDS_S, tuple(accumulate(one.counts)), one.total)
+                Buckets.of(name, dict(labels), one)
                 for (name, labels), one in sorted(counted.distributions.items(), key=lambda item: item[0])
             ),
         )

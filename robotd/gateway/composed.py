@@ -83,6 +83,7 @@ async def gateway(settings: GatewaySettings) -> AsyncIterator[RunningGateway]:
                 finally:
                     running.cancel()
                     await asyncio.gather(running, return_exceptions=True)
+                    house.made.forget()
             # Pages that went with their server have ended their missions: that is said before the socket closes.
             await services.stop_line.end()
 

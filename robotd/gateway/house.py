@@ -15,6 +15,7 @@ from robotd.gateway.browser.page_connection import Person
 from robotd.gateway.browser.services import Services
 from robotd.gateway.console_files import ConsoleFiles
 from robotd.gateway.feed.page_outbox import PageOutbox
+from robotd.gateway.made_files import MadeFiles
 from robotd.gateway.settings import GatewaySettings
 
 NO_TOKEN = "no token: nobody could sign in; make one, with: robotctl gateway token new NAME --role operator"
@@ -71,6 +72,10 @@ class House:
         self.dropped_messages = 0
         """Left out for browsers that are gone; those of the others are in their outboxes."""
         self.files = ConsoleFiles()
+        self.made = MadeFiles()
+        self.showing = asyncio.Lock()
+        """Held while a stored map is asked for: of one client the daemon takes two such requests at a time, and a page
+        of cards asks for many."""
         self.importing = asyncio.Lock()
         """Held while a map of another program is read, which takes hundreds of megabytes: one at a time has to do."""
 

@@ -13,7 +13,7 @@ from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
 
-from tests.ui.browser import SIZES, chromium, hold, shot
+from tests.ui.browser import PAGES, SIZES, THEMES, chromium, hold, shot, show
 
 ROOT = Path(__file__).parents[2]
 ALL = ROOT / "build" / "pictures"
@@ -26,7 +26,6 @@ IN_THE_DOCUMENTATION = (
     "maps-desk-dark",
     "health-desk-dark",
 )
-PAGES = ("drive", "maps", "recordings", "health", "log", "settings")
 STOPS_M = ((1.8, 0.0), (3.8, 1.0), (3.7, 3.1), (2.3, 4.2))
 _MINUTES = 10 * 60.0
 
@@ -65,7 +64,7 @@ async def main() -> None:
         await shot(page, ALL / "drive-desk-dark.png")
         await _show_a_way(page)
         await page.evaluate("robotd.command('map_save')")
-        for theme in ("dark", "light", "contrast"):
+        for theme in THEMES:
             await page.evaluate(f"localStorage.setItem('robotd.theme', '{theme}'); location.reload()")
             await page.locator(".mode.idle").wait_for(timeout=60_000)
             for size in SIZES:
@@ -85,7 +84,7 @@ async def _map_the_room(page: Any) -> None:
     await _idle(page)
     await page.get_by_role("button", name="Make a map").click()
     await page.get_by_label("Name").fill("laboratory")
-    canvas = page.locator("canvas")
+    canvas = page.locator(".view")
     box = await canvas.bounding_box()
     for x, y in STOPS_M:  # an empty map shows its origin in the middle, a metre in 60 pixels
         await canvas.click(position={"x": box["width"] / 2 + 60 * x, "y": box["height"] / 2 - 60 * y})
@@ -96,7 +95,7 @@ async def _map_the_room(page: Any) -> None:
 
 async def _show_a_way(page: Any) -> None:
     await page.get_by_role("button", name="Go here").click()
-    canvas = page.locator("canvas")
+    canvas = page.locator(".view")
     await page.keyboard.press("1")
     await page.keyboard.press("6")
     place = await page.evaluate("robotd.canvas.pixel({x: 3.5, y: 0.5})")
@@ -115,8 +114,7 @@ async def _idle(page: Any) -> None:
 
 async def _every_page(page: Any, ending: str) -> None:
     for name in PAGES:
-        await page.evaluate(f"location.hash = '#/{name}'")
-        await page.locator(f".page-{name}").wait_for()
+        await show(page, name)
         await page.wait_for_timeout(1200)
         if not (ALL / f"{name}-{ending}.png").exists() or name != "drive" or ending != "desk-dark":
             await shot(page, ALL / f"{name}-{ending}.png")

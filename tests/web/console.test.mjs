@@ -4,10 +4,14 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { crc32 } from 'node:zlib';
 
+import { compared, KINDS } from '../../robotd/gateway/web/app/map/compare.js';
 import { Grid, unpacked } from '../../robotd/gateway/web/app/map/grid.js';
 import { distances } from '../../robotd/gateway/web/app/map/overlays.js';
 import { boundsOf, colours, paint } from '../../robotd/gateway/web/app/map/paint.js';
+import { tilesIn } from '../../robotd/gateway/web/app/map/tiles.js';
 import { fitted, toMap, toPixel, zoomed } from '../../robotd/gateway/web/app/map/view.js';
+import { boundOf } from '../../robotd/gateway/web/app/pages/health/counted.js';
+import { placed } from '../../robotd/gateway/web/app/pages/maps/stored-picture.js';
 import { Stopping } from '../../robotd/gateway/web/app/parts/stopping.js';
 import { accept, hear, nothing } from '../../robotd/gateway/web/app/state/store.js';
 import { hindrance, silent } from '../../robotd/gateway/web/app/state/silence.js';
@@ -234,4 +238,67 @@ test('a plan of an earlier mission, which a page that joins is told, is not draw
   accept(state, told('mission', 'plan', { mission_id: 7, stops: [] }), 0);
   accept(state, told('mission', 'mission_progress', { mission_id: 7, phase: 'started' }), 0);
   assert.equal(state.plan.mission_id, 7);
+});
+
+test('a pose that is no number is no place', () => {
+  const state = greeted(0);
+  accept(state, told('pose_estimate', { time_ns: 0, state: 'localized', best: { x_m: NaN, y_m: 2, heading_rad: 0 }, regions: [], final: true }), 0);
+  assert.equal(state.pose.best, null);
+  assert.equal(state.way.length, 0);
+});
+
+test('two maps are compared where they lie, whatever their cells', () => {
+  const map = (resolution_m, origin_x_m, cells) => ({ label: '', rows: 1, cols: cells.length, resolution_m, origin_x_m, origin_y_m: 0, cells: Uint8Array.from(cells) });
+  const coarse = map(0.2, 0, [0, 255]), fine = map(0.1, 0.1, [0, 128, 255, 255]);
+  const { cols, kinds } = compared(coarse, fine);
+  // From 0 to 0.5 m, a tenth each: beside each other as the first and the second say.
+  assert.equal(cols, 5);
+  assert.deepEqual([...kinds].slice(0, cols).map((kind) => KINDS[kind]), ['seen_first', 'free', 'wall_first', 'wall', 'wall_second']);
+});
+
+test('a yaml says where a picture lies, or is none', () => {
+  assert.deepEqual(placed('image: a.pgm\nresolution: 0.05\norigin: [-1.5, 2.0, 0.0]\n'), { resolution_m: 0.05, origin_x_m: -1.5, origin_y_m: 2 });
+  for (const yaml of ['', 'resolution: 0.05\n', 'resolution: nan\norigin: [0, 0, 0]\n', 'resolution: 0.05\norigin: [a, 0, 0]\n']) assert.throws(() => placed(yaml), TypeError);
+});
+
+test('how late a loop is, is told by the bound that nearly all lie within', () => {
+  const buckets = (counts) => ({ name: 'loop_lag_seconds', bounds: [0.001, 0.01, 0.1], counts, sum: 1 });
+  assert.equal(boundOf(buckets([90, 99, 100, 100]), 0.99), 0.01);
+  assert.equal(boundOf(buckets([0, 0, 0, 3]), 0.99), Infinity);
+  assert.equal(boundOf(buckets([0, 0, 0, 0]), 0.99), null);
+});
+
+test('only tiles that are seen are drawn, those in the middle first', () => {
+  const place = { rows: 4096, cols: 4096, resolution_m: 0.05, origin_x_m: -102.4, origin_y_m: -102.4, map_id: 'm' };
+  const side = 512 * 0.05;
+  assert.deepEqual(tilesIn(place, { x0: -1, y0: -1, x1: 1, y1: 1 }).sort((a, b) => a - b), [27, 28, 35, 36]);
+  assert.equal(tilesIn(place, { x0: -1e6, y0: -1e6, x1: 1e6, y1: 1e6 }).length, 64);
+  assert.equal(tilesIn(place, { x0: 500, y0: 500, x1: 600, y1: 600 }).length, 0);
+  assert.equal(tilesIn(place, { x0: -1.5 * side, y0: 0.1, x1: 1.5 * side, y1: 0.2 })[0], 35, 'the nearest to the middle');
+});
+
+test('what becomes of a mission is kept, each step once', () => {
+  const state = greeted(0);
+  const step = (phase, stop, message) => accept(state, told('mission_progress', { time_ns: 0, mission_id: 1, kind: 'explore', phase, stop, stops: 9, message }), 0);
+  step('started', 0, ''); step('driving', 0, '1 m'); step('driving', 0, '2 m'); step('driving', 1, ''); step('done', 1, '');
+  accept(state, told('stop_chosen', { time_ns: 0, map_id: 'm', stop: 1, candidates: [], tour_m: [], reason: 'it is near' }), 0);
+  accept(state, told('exploring_ended', { time_ns: 0, map_id: 'm', left: [] }), 0);
+  assert.deepEqual(state.happenings.map(({ event, fields }) => fields.phase ?? event), ['started', 'driving', 'driving', 'done', 'stop_chosen', 'exploring_ended']);
+  assert.equal(state.choice, null);
+});
+
+test('a recorded session ends as the robot ended, whatever frames come twice', async () => {
+  const ends = async (frames) => {
+    const state = greeted(0), grid = new Grid();
+    for (const data of frames) {
+      const told = readFrame(Uint8Array.from(Buffer.from(data, 'base64')).buffer);
+      accept(state, told, 0);
+      if (told.event === 'map_changed') await grid.accept(told.fields);
+    }
+    const { best } = state.pose;
+    return { map: crc32(grid.cells), best: [best.x_m, best.y_m, best.heading_rad], mission: [state.mission.mission_id, state.mission.kind, state.mission.phase], mode: state.status.mode };
+  };
+  const wanted = { map: vectors.session_map_crc, best: vectors.session_best, mission: vectors.session_mission, mode: vectors.session_mode };
+  assert.deepEqual(await ends(vectors.session), wanted);
+  assert.deepEqual(await ends([...vectors.session, ...vectors.session.slice(-20)]), wanted);
 });

@@ -3,12 +3,17 @@
 import base64
 import json
 import sys
+import tempfile
 import zlib
 from pathlib import Path
 
 import numpy as np
 
-from robotd.contract.topics import Topic, encode_frame
+from robotd.app.replaying import replay_events
+from robotd.contract.estimate import PoseEstimate
+from robotd.contract.events import Event, MapChanged, MissionProgress, Status
+from robotd.contract.topics import Topic, encode_frame, to_wire
+from tests.support.recorded_session import laid_together, record_session
 
 ROWS, COLS = 700, 530
 SEED = 7
@@ -43,12 +48,37 @@ def vectors() -> dict[str, object]:
         "origin_y_f32le": b"",
     }
     return {
+        **_session(),
         "pose": _socket(Topic.POSE, 412, pose),
         "whole": _socket(Topic.MAP, 1, {"event": "map_changed", **whole}),
         "change": _socket(Topic.MAP, 2, {"event": "map_changed", **change}),
         "readings": _socket(Topic.SWEEP, 9, readings),
         "sum_before": int(cells.astype(np.int64).sum()),
         "crc_after": zlib.crc32(cells_after.tobytes()),
+    }
+
+
+def _session() -> dict[str, object]:
+    """A recorded robot that maps a stop and finds itself: all that it tells, and what that comes to."""
+    told: list[Event] = []
+    with tempfile.TemporaryDirectory() as directory:
+        replay_events(record_session(Path(directory)), told.append)
+    frames = []
+    for seq, event in enumerate(told):
+        topic, fields = to_wire(event)
+        frames.append(_socket(topic, seq, fields))
+    estimates = [event for event in told if isinstance(event, PoseEstimate)]
+    missions = [event for event in told if isinstance(event, MissionProgress)]
+    statuses = [event for event in told if isinstance(event, Status)]
+    best = estimates[-1].best
+    assert best is not None
+    cells = laid_together([event for event in told if isinstance(event, MapChanged)])
+    return {
+        "session": frames,
+        "session_map_crc": zlib.crc32(cells.tobytes()),
+        "session_best": [best.x_m, best.y_m, best.heading_rad],
+        "session_mission": [missions[-1].mission_id, missions[-1].kind, str(missions[-1].phase)],
+        "session_mode": statuses[-1].mode,
     }
 
 

@@ -52,6 +52,10 @@ def check_origin(method: str, headers: Mapping[str, str], scheme: str, *, is_soc
     # way.
     if origin is None:
         raise ServerError("wrong_origin", "a request that changes something says its Origin, or brings a bearer token")
-    found = urlsplit(origin)
-    if (found.scheme, found.netloc.lower()) != (scheme, (host or "").lower()):
+    try:
+        found = urlsplit(origin)
+        is_ours = (found.scheme, found.netloc.lower()) == (scheme, (host or "").lower())
+    except ValueError:  # no address at all
+        is_ours = False
+    if not is_ours:
         raise ServerError("wrong_origin", f"a page of {origin} made this request, and this is {scheme}://{host}")

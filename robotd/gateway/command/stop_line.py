@@ -10,6 +10,7 @@ from collections import deque
 from robotd.contract.answers import Done
 from robotd.contract.requests import Stop
 from robotd.core.clock import NS_PER_S, now_ns
+from robotd.core.counted import Distribution
 from robotd.core.errors import RobotdError, ServerError
 from robotd.gateway.command.asker import Asks
 
@@ -17,7 +18,6 @@ AGAIN_S = 0.1
 GIVEN_UP_S = 3.0
 _AT_ONCE = 32
 """Stops under way at a time, each repeated; who presses meanwhile shares the answer of the last."""
-_TIMES = 256
 
 
 class StopLine:
@@ -27,10 +27,14 @@ class StopLine:
         """Stop over an ``asker`` that nobody else uses."""
         self._asker = asker
         self._under_way: deque[asyncio.Task[float]] = deque()
-        self.seconds: deque[float] = deque(maxlen=_TIMES)
-        """How long the last ones took."""
-        self.confirmed = 0
+        self.seconds = Distribution()
+        """How long those took that were confirmed."""
         self.unconfirmed = 0
+
+    @property
+    def confirmed(self) -> int:
+        """How many the daemon confirmed."""
+        return sum(self.seconds.counts)
 
     async def stop(self, reason: str) -> float:
         """Stop the robot; return after how many seconds the daemon said that it had.
@@ -59,7 +63,9 @@ class StopLine:
                 waiting.add(asyncio.create_task(self._asker.ask(request, GIVEN_UP_S - took_s)))
                 done, waiting = await asyncio.wait(waiting, timeout=AGAIN_S, return_when=asyncio.FIRST_COMPLETED)
                 if any(task.exception() is None for task in done):
-                    return self._note((now_ns() - begun_ns) / NS_PER_S)
+                    took_s = (now_ns() - begun_ns) / NS_PER_S
+                    self.seconds.take(took_s)
+                    return took_s
                 if done:  # nobody is there, or it was refused: not at once again, or this loop would spin
                     await asyncio.sleep(AGAIN_S / 4)
         finally:
@@ -68,11 +74,6 @@ class StopLine:
             await asyncio.gather(*waiting, return_exceptions=True)
         self.unconfirmed += 1
         raise ServerError("not_confirmed", "the daemon did not confirm the stop: use the emergency stop on the robot")
-
-    def _note(self, took_s: float) -> float:
-        self.confirmed += 1
-        self.seconds.append(took_s)
-        return took_s
 
     def _ended(self, task: "asyncio.Task[float]") -> None:
         self._under_way.remove(task)

@@ -19,6 +19,9 @@ from robotd.gateway.http.socket_duties import Item, first_of, read, write
 if TYPE_CHECKING:
     from robotd.gateway.browser.foxglove_app import FoxgloveApp
 
+_HEARTBEAT_S = 15.0
+"""A robot that stands tells next to nothing, and a proxy cuts what is idle. Pages are asked questions."""
+
 
 async def serve(request: web.Request, house: House, person: Person | None) -> web.StreamResponse:
     """Serve an app for as long as it lives."""
@@ -28,7 +31,9 @@ async def serve(request: web.Request, house: House, person: Person | None) -> we
 
     house.crowd.enter(person.session)
     try:
-        socket = web.WebSocketResponse(protocols=SUBPROTOCOLS, max_msg_size=LONGEST_TEXT, compress=False, timeout=1.0)
+        socket = web.WebSocketResponse(
+            protocols=SUBPROTOCOLS, max_msg_size=LONGEST_TEXT, compress=False, timeout=1.0, heartbeat=_HEARTBEAT_S
+        )
         await socket.prepare(request)
         await _serve(socket, FoxgloveApp(person, house.services), house)
         return socket

@@ -1,5 +1,6 @@
 """Every request comes through here: is it for us, by whom, may they, and what must every answer say."""
 
+import hashlib
 import ipaddress
 import logging
 from collections.abc import Awaitable, Callable
@@ -53,9 +54,20 @@ def scheme_of(request: web.Request, trusted: tuple[str, ...]) -> str:
     return request.scheme
 
 
+def path_of(request: web.Request, trusted: tuple[str, ...]) -> str:
+    """Return the path of the console as the browser sees it: a proxy may have put it below another one."""
+    prefix = request.headers.get("X-Forwarded-Prefix", "").rstrip("/")
+    return f"{prefix}/" if request.remote in trusted and prefix.startswith("/") else "/"
+
+
 def cookie_name(house: House, request: web.Request) -> str:
-    """Return what our cookie is called: other robots on this host, behind other ports, have theirs."""
-    return f"robotd_{house.settings.listen.port or request.url.port}"
+    """Return what our cookie is called: other robots on this host, behind other ports or paths, have theirs.
+
+    By its path too, though a browser goes by that itself: below ours it sends the cookie of ``/`` as well.
+    """
+    path = path_of(request, house.settings.listen.trusted_proxies)
+    below = "" if path == "/" else f"_{hashlib.sha256(path.encode()).hexdigest()[:12]}"
+    return f"robotd_{house.settings.listen.port or request.url.port}{below}"
 
 
 class FrontDoor:

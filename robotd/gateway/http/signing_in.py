@@ -10,7 +10,7 @@ from robotd.core.errors import ServerError
 from robotd.gateway.access.tokens import SECRET_LENGTH
 from robotd.gateway.browser.page_connection import Person
 from robotd.gateway.house import House, unix_s
-from robotd.gateway.http.front_door import FrontDoor, address_of, cookie_name, scheme_of
+from robotd.gateway.http.front_door import FrontDoor, address_of, cookie_name, path_of, scheme_of
 from robotd.gateway.http.route import Needs, Route
 
 _YEAR_S = 365 * 86400
@@ -53,7 +53,7 @@ async def sign_in(request: web.Request, house: House, _: Person | None) -> web.S
         cookie_name(house, request),
         cookie,
         max_age=_YEAR_S,  # the session ends sooner; who was signed in within a day may still stop
-        path=_path_of(request, house.settings.listen.trusted_proxies),
+        path=path_of(request, house.settings.listen.trusted_proxies),
         secure=scheme_of(request, house.settings.listen.trusted_proxies) == "https",
         httponly=True,
         samesite="Strict",
@@ -77,12 +77,6 @@ async def who(_: web.Request, house: House, person: Person | None) -> web.Stream
     if person is None:
         raise ServerError("not_signed_in", "sign in first")
     return web.json_response({"name": person.name, "role": person.role, "robot": house.settings.robot.name})
-
-
-def _path_of(request: web.Request, trusted: tuple[str, ...]) -> str:
-    """Return the path of the console as the browser sees it: a proxy may have put it below another one."""
-    prefix = request.headers.get("X-Forwarded-Prefix", "").rstrip("/")
-    return f"{prefix}/" if request.remote in trusted and prefix.startswith("/") else "/"
 
 
 ROUTES = (

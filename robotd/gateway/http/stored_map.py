@@ -23,4 +23,5 @@ async def stored_map(request: web.Request, house: House) -> MapChanged:
     name, version = request.match_info["name"], request.match_info["version"]
     if not _NAME.fullmatch(name) or not version.isdecimal() or len(version) > 9:
         raise ServerError("not_found", f"no map {name[:64]} {version[:9]}")
-    return await house.services.asker.ask(MapShow(name, int(version)))
+    async with house.showing:
+        return await house.services.asker.ask(MapShow(name, int(version)))

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from robotd import __version__
 from robotd.contract.metric_families import MetricFamily
+from robotd.contract.metrics import Buckets
 from robotd.core.clock import now_ns
 from robotd.gateway.house import House
 
@@ -23,11 +24,10 @@ def of_gateway(house: House) -> Iterator[MetricFamily]:
     signed = (((("result", "done"),), float(house.sign_ins)), ((("result", "refused"),), float(house.refused_sign_ins)))
     yield MetricFamily("gateway_sign_ins", "counter", "Tokens that were tried.", signed)
     stops = house.services.stop_line
+    took = Buckets.of("gateway_stop_seconds", {}, stops.seconds)
+    yield MetricFamily("gateway_stop_seconds", "histogram", "Until a stop was confirmed.", (), (took,))
     told = (((("confirmed", "yes"),), float(stops.confirmed)), ((("confirmed", "no"),), float(stops.unconfirmed)))
     yield MetricFamily("gateway_stops", "counter", "Stops that were asked for here.", told)
-    if stops.seconds:
-        worst = (((), max(stops.seconds)),)
-        yield MetricFamily("gateway_stop_seconds_max", "gauge", "Until a stop was confirmed, of late.", worst)
 
 
 def _total(name: str, meaning: str, count: int) -> MetricFamily:

@@ -46,11 +46,21 @@ class GatewayRig:
             yield session
 
 
-async def _tell(control: FakeControl) -> None:
+@contextlib.asynccontextmanager
+async def telling(control: FakeControl) -> AsyncIterator[None]:
     """Tell the status as a robot does: often, and whatever happens."""
-    while True:
-        control.events.publish(control.status)
-        await asyncio.sleep(0.2)
+
+    async def tell() -> None:
+        while True:
+            control.events.publish(control.status)
+            await asyncio.sleep(0.2)
+
+    task = asyncio.create_task(tell())
+    try:
+        yield
+    finally:
+        task.cancel()
+        await asyncio.wait((task,))
 
 
 Opening = Callable[..., contextlib.AbstractAsyncContextManager[GatewayRig]]
@@ -61,26 +71,21 @@ def opening(tmp_path: Path, serving: Serving) -> Opening:
     """``async with opening() as rig``: a robot, its front and a gateway."""
 
     @contextlib.asynccontextmanager
-    async def open_(**driving: Any) -> AsyncIterator[GatewayRig]:
+    async def open_(trusted_proxies: tuple[str, ...] = (), **driving: Any) -> AsyncIterator[GatewayRig]:
         state = tmp_path / "state"
         made = {role.value: make_token(f"some {role}", role, 0.0) for role in Role}
         TokenFile(state / "tokens.json").write(Tokens(tuple(token for _, token in made.values())))
         recordings = tmp_path / "recordings"
         recordings.mkdir()
         settings = GatewaySettings(
-            ListenSettings(port=0, allowed_hosts=("robot.lab",)),
+            ListenSettings(port=0, allowed_hosts=("robot.lab",), trusted_proxies=trusted_proxies),
             RobotSettings("dusty", str(tmp_path), str(recordings)),
             WatchingSettings(**driving),
             AccessSettings(state_dir=str(state)),
         )
-        async with serving() as control, gateway(settings) as running:
+        async with serving() as control, gateway(settings) as running, telling(control):
             house, address = running.house, running.address
-            telling = asyncio.create_task(_tell(control))
             await until(lambda: house.services.fan.snapshot.status)
-            try:
-                yield GatewayRig(house, URL(address), {role: secret for role, (secret, _) in made.items()}, control)
-            finally:
-                telling.cancel()
-                await asyncio.wait((telling,))
+            yield GatewayRig(house, URL(address), {role: secret for role, (secret, _) in made.items()}, control)
 
     return open_

@@ -2,6 +2,8 @@
 
 import json
 import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,8 @@ from robotd.contract.events import Status
 from robotd.contract.metric_families import MetricFamily, of_metrics, of_pose, of_status
 from robotd.contract.metrics import Buckets, Metrics, Sample
 from robotd.contract.modes import Mode
+from robotd.core.counted import Counted
+from robotd.gateway.metrics.exposition_http import exposition
 
 EXAMPLES = Path(__file__).parents[3] / "docs" / "examples" / "prometheus"
 GATEWAY = Path(__file__).parents[3] / "robotd" / "gateway" / "metrics" / "gateway_families.py"
@@ -50,3 +54,20 @@ def test_no_line_is_mixed_with_another_kind() -> None:
     families = {family.name: family for family in of_status(STATUS)}
     assert families["line_frames"].samples == (((("line", "drive"),), 1.0),)
     assert families["line_events"].samples == (((("line", "drive"), ("event", "crc_errors")), 2.0),)
+
+
+def test_promtool_finds_nothing_to_complain_of() -> None:
+    promtool = shutil.which("promtool")
+    if promtool is None:
+        pytest.skip("promtool is not installed here: it is in Debian's package prometheus")
+    counted = Counted()
+    counted.count("stops_total", cause="stop")
+    counted.observe("loop_lag_seconds", 0.01)
+    families = [*of_status(STATUS), of_pose("lost"), *of_metrics(Metrics.of(counted))]
+    text, _ = exposition(families, "")
+    checked = subprocess.run([promtool, "check", "metrics"], input=text, capture_output=True, check=False)
+    assert (checked.returncode, checked.stderr) == (0, b"")
+    rules = subprocess.run(
+        [promtool, "check", "rules", EXAMPLES / "robotd.rules.yml"], capture_output=True, check=False
+    )
+    assert rules.returncode == 0, rules.stdout

@@ -1,5 +1,6 @@
 """Maps leave a gateway as other programs' files, and come as such; what is no map is said in words."""
 
+import asyncio
 import io
 import zipfile
 from typing import Any
@@ -52,6 +53,17 @@ async def test_a_stored_map_is_a_picture(opening: Opening) -> None:
         for name in ("office/x.png", "..%2F..%2Fa/1.png", "none/1.png", "office/99999999999.png"):
             async with session.get(URL(f"{rig.address}api/maps/{name}", encoded=True)) as answer:
                 assert answer.status == 404, name
+
+
+async def test_a_page_of_cards_has_all_its_pictures_though_the_daemon_shows_two_maps_at_a_time(
+    opening: Opening,
+) -> None:
+    async def picture(session: aiohttp.ClientSession, version: int) -> int:
+        async with session.get(f"api/maps/office/{version}.png?small") as answer:
+            return answer.status
+
+    async with opening() as rig, rig.browser("viewer") as session:
+        assert await asyncio.gather(*(picture(session, version) for version in range(1, 9))) == [200] * 8
 
 
 async def test_a_stored_map_leaves_as_files_and_comes_back_as_it_was(opening: Opening) -> None:

@@ -37,11 +37,14 @@ from robotd.contract.requests import (
     GetMetrics,
     GetStatus,
     ListMaps,
+    MapDelete,
     MapDiscard,
     MapLoad,
+    MapRename,
     MapSave,
     MapShow,
     PlanTo,
+    RecordDelete,
     RecordStart,
     RecordStop,
     Renew,
@@ -65,15 +68,18 @@ R = TypeVar("R")
 SPEC = GridSpec(0.05, -1.0, -2.0, (40, 60))
 
 
-def _entry(name: str, version: int, digest: str, created_unix_ns: int) -> MapEntryInfo:
+def stored_entry(name: str, version: int, digest: str, created_unix_ns: int) -> MapEntryInfo:
     return MapEntryInfo(name, version, digest, created_unix_ns, 40, 60, 0.05)
 
 
 def stored_map(name: str, version: int | None) -> MapChanged:
-    """What is in the store of the fake robot."""
+    """What is in the store of the fake robot: of version 2 all is free."""
     if name != "office":
         raise MapError(f"there is no map {name!r}")
-    return whole_map(generation=0, map_id=f"office-{version or 3}")
+    stored = whole_map(generation=0, map_id=f"office-{version or 3}")
+    if version == 2:
+        stored.values[:] = 20
+    return stored
 
 
 class FakeControl:
@@ -94,6 +100,7 @@ class FakeControl:
         self.halted = asyncio.Event()
         self.armed = False
         self.map_in_use: MapChanged | None = None
+        self.stored = [stored_entry("office", 3, "d2", 6)]
         self.mission_id = 0
         self.asked: list[Mission] = []
         self.leases_s: list[float] = []
@@ -177,10 +184,10 @@ class FakeControl:
                 return stored_map(name, version)
             case MapSave(name):
                 self.calls.append(f"save {name}")
-                return _entry(name or "unnamed", 4, "d1", 5)
+                return stored_entry(name or "unnamed", 4, "d1", 5)
             case MapLoad(name, version, robot_in_map):
                 self.calls.append(f"load {name} {version} {robot_in_map.pose if robot_in_map else None}")
-                return _entry(name, version or 3, "d2", 6)
+                return stored_entry(name, version or 3, "d2", 6)
             case MapDiscard():
                 self.calls.append("discard")
                 return Done()
@@ -189,10 +196,20 @@ class FakeControl:
             case MapImport():
                 is_last = request.offset_bytes + len(request.part) == request.size_bytes
                 self.calls.append(f"import {request.name} of {request.imported_from} {request.rows} x {request.cols}")
-                return MapImported(7, _entry(request.name, 1, "d3", 0) if is_last else None)
+                return MapImported(7, stored_entry(request.name, 1, "d3", 0) if is_last else None)
             case ListMaps():
-                return MapList((_entry("office", 3, "d2", 6),))
-        raise AssertionError(f"{request} is for the server alone")
+                return MapList(tuple(self.stored))
+        return self._of_removals(request)
+
+    def _of_removals(self, request: Request[Any]) -> Done:
+        match request:
+            case MapDelete(name, version) | MapRename(name, version):
+                self.calls.append(f"{request.cmd} {name} {version}")
+            case RecordDelete(path):
+                self.calls.append(f"record_delete {path}")
+            case _:
+                raise AssertionError(f"{request} is for the server alone")
+        return Done()
 
     async def _arm(self) -> Done:
         self.calls.append("arm")
@@ -230,12 +247,12 @@ class FakeControl:
         if self._mission is not None:
             self._mission.cancel()
 
-    def _progress(self, mission_id: int, phase: MissionPhase, message: str = "") -> None:
-        self.events.publish(MissionProgress(now_ns(), mission_id, "localize", phase, 0, 1, message))
+    def _progress(self, mission_id: int, mission: Mission, phase: MissionPhase, message: str = "") -> None:
+        self.events.publish(MissionProgress(now_ns(), mission_id, mission.kind, phase, 0, 1, message))
 
     async def _run(self, mission_id: int, mission: Mission) -> None:
         try:
-            self._progress(mission_id, MissionPhase.STARTED)
+            self._progress(mission_id, mission, MissionPhase.STARTED)
             for taken in (1, 2, 3):
                 self.events.publish(SweepProgress(now_ns(), 0, taken, 3, taken, 0, 0))
             for event in _results_of(mission):
@@ -243,9 +260,9 @@ class FakeControl:
             self.events.publish(an_estimate(PoseState.AMBIGUOUS))
             await self.release.wait()
             self.events.publish(an_estimate(PoseState.LOCALIZED))
-            self._progress(mission_id, MissionPhase.DONE, "found")
+            self._progress(mission_id, mission, MissionPhase.DONE, "found")
         except asyncio.CancelledError:
-            self._progress(mission_id, MissionPhase.STOPPED, self._stop_reason)
+            self._progress(mission_id, mission, MissionPhase.STOPPED, self._stop_reason)
             raise
         finally:
             if self._lease is not None:

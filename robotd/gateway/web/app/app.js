@@ -9,6 +9,8 @@ import { t } from './texts/texts.js';
 
 /** The panel is drawn no more often than this: people do not read faster. */
 const DRAW_MS = 150;
+/** What comes often and is drawn nowhere on the map. */
+const BESIDE_MAP = new Set(['odometry', 'log', 'range_measured', 'sweep_progress']);
 
 export class App {
   state = nothing();
@@ -46,9 +48,13 @@ export class App {
     this.canvas = null;
   }
 
-  /** Draw the page soon. */
+  /** Draw the page and the map soon. */
   wake(isUrgent = false) {
     this.canvas?.wake();
+    this.#wakePage(isUrgent);
+  }
+
+  #wakePage(isUrgent = false) {
     if (this.#wanted && !isUrgent) return;
     this.#wanted = true;
     const wait = isUrgent ? 0 : Math.max(0, DRAW_MS - (performance.now() - this.#drawn));
@@ -133,7 +139,8 @@ export class App {
     accept(this.state, frame, performance.now());
     if (frame.event === 'rank_map') rankOverlay(frame.fields).then((rank) => { if (this.canvas !== null) this.canvas.rank = rank; this.wake(); }, () => {});
     if (frame.event === 'map_changed') this.grid.accept(frame.fields).then(() => this.wake());
-    this.wake();
+    if (BESIDE_MAP.has(frame.event)) this.#wakePage();
+    else this.wake();
   }
 
   /** @param {any} said */
@@ -142,7 +149,7 @@ export class App {
     else if (said.type === 'problem') this.notice('refused', t('refused', { message: said.message }));
     else hear(this.state, said, performance.now());
     if (said.type === 'hello') this.#begin();
-    if (said.type !== 'question') this.wake();
+    if (said.type !== 'question') this.#wakePage();
   }
 
   /** @param {Partial<import('./types').State>} changes */

@@ -1,32 +1,34 @@
 // The console: sign in, listen, draw.
 import { App } from './app.js';
 import { bindKeys } from './keys.js';
-import { page, raiseStop } from './parts/frame.js';
+import { page } from './parts/frame.js';
 import { signInFromAddress } from './parts/sign-in.js';
+import { guardStop, raiseStop } from './parts/stop-place.js';
 import { applyTheme, theme } from './parts/theme.js';
 
 const TICK_MS = 250;
 
 applyTheme(theme());
 const root = /** @type {HTMLElement} */ (document.getElementById('root'));
-const app = new App(root, page, () => raiseStop());
+const app = new App(root, page, raiseStop);
 // For whoever looks at the page from its own tools.
 Object.assign(globalThis, { robotd: app });
 
 addEventListener('hashchange', () => open_());
 document.addEventListener('visibilitychange', () => watchHidden());
 bindKeys(app);
+guardStop(app);
 setInterval(() => app.wake(), TICK_MS); // ages grow though nothing comes
 start();
 
 async function start() {
   await signInFromAddress(app);
   open_();
+  // Not one after the other: a page on a slow network shows its robot a round trip sooner. Who is not signed in gets no socket.
+  app.link.open();
   app.who ??= await app.fetch('api/session').catch(() => null);
-  if (app.who !== null) {
-    document.title = app.who.robot;
-    app.link.open();
-  }
+  if (app.who === null) app.link.close();
+  else document.title = app.who.robot;
   app.wake(true);
 }
 

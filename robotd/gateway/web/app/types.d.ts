@@ -7,7 +7,7 @@ export type Status = {
   time_ns: number; mode: string; reason: string; devices: Device[]; battery_v: number | null; bumpers_rad: number[];
   mission_id: number | null; map_id: string | null; map_name: string | null; recording: string | null;
   held: string | null; map_unsaved: boolean; map_kept_version: number | null; since_ns: number | null;
-  started_ns: number | null;
+  started_ns: number | null; commander?: { client: string; kind: string; since_ns: number; lease_s: number } | null;
 };
 export type Region = {
   belief: number; pose: Pose; covariance: number[][]; residual_m: number;
@@ -32,6 +32,16 @@ export type Plan = {
   mission_id: number; start_m: [number, number] | null; goal_m: [number, number] | null; waypoints_m: [number, number][];
   stops: { x_m: number; y_m: number; state: string; reason: string | null; nearest_m: [number, number] | null }[];
 };
+export type Choice = {
+  map_id: string; stop: number; x_m: number; y_m: number; reason: string; tour_m: [number, number][];
+  candidates: { x_m: number; y_m: number; score: number; area_m2: number }[];
+};
+export type ExploringEnded = {
+  map_id: string; ending: string; stops: number; way_m: number; seen_m2: number;
+  left: { x_m: number; y_m: number; width_m: number; why: string }[];
+};
+/** Something that became of a mission, or of the map that it makes. */
+export type Happening = { time_ns: number; event: string; fields: any };
 export type Driver = { browser: string; who: string };
 export type Commander = { driver: Driver; mission_id: number; kind: string; attended: boolean; since_ns: number };
 export type Hello = {
@@ -42,7 +52,7 @@ export type Frame = { topic: string; event: string; session: string; seq: number
 export type State = {
   hello: Hello | null; session: string | null; isOtherLife: boolean; status: Status | null; mission: Mission | null;
   pose: Estimate | null; odometry: Odometry | null; sweep: Sweep | null; progress: { taken: number; total: number } | null;
-  plan: Plan | null; way: [number, number][]; log: LogLine[]; lost: Record<string, number>; rank: any;
+  plan: Plan | null; choice: Choice | null; exploringEnded: ExploringEnded | null; happenings: Happening[]; way: [number, number][]; log: LogLine[]; lost: Record<string, number>; rank: any;
   commander: Commander | null; wish: Driver | null; wishUntil: number;
   statusAt: number; odometryAt: number; questionAt: number; daemonSilent: number | null; isOpen: boolean;
   lines: { at: number; rates: Record<string, number>; battery: number | null }[];

@@ -1,7 +1,8 @@
 // What is drawn on the map, one function a layer; the context's unit is the metre, y up, and `px` is a pixel in metres.
 
 /** @typedef {import('../types').State} State */
-/** @typedef {{ context: CanvasRenderingContext2D, px: number, colour: (name: string) => string, robotRadius: number }} Pen */
+/** @typedef {CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D} Context */
+/** @typedef {{ context: Context, px: number, colour: (name: string) => string, robotRadius: number }} Pen */
 
 const TURN = 2 * Math.PI;
 
@@ -21,8 +22,44 @@ export function drawWay({ context, px, colour }, points) {
   context.stroke();
 }
 
+/**
+ * What the mission under way intends: its way and stops; of one that explores, where else it could go, and what is left open.
+ * @param {Pen} pen @param {State} state @param {string | null} map in use
+ */
+export function drawIntentions(pen, state, map) {
+  const { choice, exploringEnded: ended, plan, status } = state;
+  if (status?.mission_id != null && choice !== null && choice.map_id === map) drawChoice(pen, choice);
+  if (ended !== null && ended.map_id === map) for (const { x_m, y_m } of ended.left) drawOpening(pen, x_m, y_m);
+  if (plan !== null && plan.mission_id === status?.mission_id) drawPlan(pen, plan);
+}
+
+/** Each place that a stop could have been at: the larger its ring, the more a look from there was expected to be worth. @param {Pen} pen @param {import('../types').Choice} choice */
+function drawChoice({ context, px, colour }, choice) {
+  const best = Math.max(...choice.candidates.map(({ score }) => score), 1e-9);
+  context.strokeStyle = colour('quiet');
+  context.lineWidth = 1.5 * px;
+  for (const { x_m, y_m, score } of choice.candidates) {
+    context.beginPath();
+    context.arc(x_m, y_m, (3 + (7 * score) / best) * px, 0, TURN);
+    context.stroke();
+  }
+  if (choice.tour_m.length < 2) return;
+  context.beginPath();
+  choice.tour_m.forEach(([x, y], index) => (index === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
+  context.setLineDash([2 * px, 5 * px]);
+  context.stroke();
+  context.setLineDash([]);
+}
+
+/** @param {Pen} pen @param {number} x @param {number} y */
+function drawOpening({ context, px, colour }, x, y) {
+  context.strokeStyle = colour('against');
+  context.lineWidth = 2 * px;
+  context.strokeRect(x - 5 * px, y - 5 * px, 10 * px, 10 * px);
+}
+
 /** @param {Pen} pen @param {import('../types').Plan} plan */
-export function drawPlan(pen, plan) {
+function drawPlan(pen, plan) {
   const { context, px, colour } = pen;
   if (plan.start_m !== null && plan.waypoints_m.length > 0) {
     context.beginPath();
@@ -53,7 +90,7 @@ export function drawStop({ context, px, colour }, x, y, state, label) {
   write({ context, px }, label, x, y, state === 'swept' ? colour('paper') : colour('ink'));
 }
 
-/** @param {{ context: CanvasRenderingContext2D, px: number }} pen @param {string} text @param {number} x @param {number} y @param {string} style */
+/** @param {{ context: Context, px: number }} pen @param {string} text @param {number} x @param {number} y @param {string} style */
 function write({ context, px }, text, x, y, style) {
   context.save();
   context.translate(x, y);
@@ -66,45 +103,56 @@ function write({ context, px }, text, x, y, style) {
   context.restore();
 }
 
-/** @param {Pen} pen @param {import('../types').Sweep} sweep @param {import('../types').Estimate | null} estimate */
-export function drawSweep({ context, px, colour }, sweep, estimate) {
+/**
+ * A sweep, each kind of reading by a shape of its own: explained (a dot), unexplained (a square on its corner), missed (a
+ * short stroke: nothing was met so far), rejected (a cross beside the robot: it failed, and says nothing of the room).
+ * @param {Pen} pen @param {import('../types').Sweep} sweep @param {import('../types').Estimate | null} estimate
+ */
+export function drawSweep(pen, sweep, estimate) {
+  const { context, px, colour, robotRadius } = pen;
   const at = sweep.in_map;
   if (at === null) return;
   const explained = explainedBy(estimate);
   const [cos, sin] = [Math.cos(at.heading_rad), Math.sin(at.heading_rad)];
+  const [dots, squares, strokes, crosses] = [new Path2D(), new Path2D(), new Path2D(), new Path2D()];
+  const beside = Math.max(robotRadius, 5 * px) + 9 * px;
   for (const reading of sweep.readings) {
-    if (reading.range_m === null) continue;
-    const fromX = at.x_m + cos * reading.origin_x_m - sin * reading.origin_y_m;
-    const fromY = at.y_m + sin * reading.origin_x_m + cos * reading.origin_y_m;
-    const angle = at.heading_rad + reading.bearing_rad;
-    const x = fromX + reading.range_m * Math.cos(angle), y = fromY + reading.range_m * Math.sin(angle);
-    if (reading.status === 'miss') {
-      // Nothing met: only how far it looked, as a short stroke.
-      context.beginPath();
-      context.moveTo(x - 6 * px * Math.cos(angle), y - 6 * px * Math.sin(angle));
-      context.lineTo(x, y);
-      context.lineWidth = px;
-      context.strokeStyle = colour('quiet');
-      context.stroke();
+    const angle = at.heading_rad + reading.bearing_rad, [c, s] = [Math.cos(angle), Math.sin(angle)];
+    if (reading.range_m === null) {
+      addCross(crosses, at.x_m + beside * c, at.y_m + beside * s, 2.5 * px);
       continue;
     }
-    const is = explained.get(key(reading.bearing_rad));
-    context.fillStyle = colour(is === false ? 'against' : 'reading');
-    if (is === false) mark(context, x, y, 3.2 * px);
+    const x = at.x_m + cos * reading.origin_x_m - sin * reading.origin_y_m + reading.range_m * c;
+    const y = at.y_m + sin * reading.origin_x_m + cos * reading.origin_y_m + reading.range_m * s;
+    if (reading.status === 'miss') {
+      strokes.moveTo(x - 6 * px * c, y - 6 * px * s);
+      strokes.lineTo(x, y);
+    } else if (explained.get(key(reading.bearing_rad)) === false) addSquare(squares, x, y, 3.2 * px);
     else {
-      context.beginPath();
-      context.arc(x, y, 2.2 * px, 0, TURN);
-      context.fill();
+      dots.moveTo(x + 2.2 * px, y);
+      dots.arc(x, y, 2.2 * px, 0, TURN);
     }
   }
+  context.fillStyle = colour('reading');
+  context.fill(dots);
+  context.fillStyle = colour('against');
+  context.fill(squares);
+  context.strokeStyle = colour('quiet');
+  context.lineWidth = px;
+  context.stroke(strokes);
+  context.stroke(crosses);
 }
 
-/** A square on its corner: told from a dot without its colour. @param {CanvasRenderingContext2D} context @param {number} x @param {number} y @param {number} side */
-function mark(context, x, y, side) {
-  context.beginPath();
-  context.moveTo(x - side, y); context.lineTo(x, y - side); context.lineTo(x + side, y); context.lineTo(x, y + side);
-  context.closePath();
-  context.fill();
+/** @param {Path2D} path @param {number} x @param {number} y @param {number} side */
+function addCross(path, x, y, side) {
+  path.moveTo(x - side, y - side); path.lineTo(x + side, y + side);
+  path.moveTo(x - side, y + side); path.lineTo(x + side, y - side);
+}
+
+/** @param {Path2D} path @param {number} x @param {number} y @param {number} side */
+function addSquare(path, x, y, side) {
+  path.moveTo(x - side, y); path.lineTo(x, y - side); path.lineTo(x + side, y); path.lineTo(x, y + side);
+  path.closePath();
 }
 
 /** @param {number} bearing */
@@ -170,16 +218,14 @@ export function drawRobot({ context, px, colour, robotRadius }, pose, how) {
   context.restore();
 }
 
-/** @param {Pen} pen @param {{ x0: number, y0: number, x1: number, y1: number }} box seen */
-export function drawGrid({ context, px, colour }, box) {
-  const step = niceStep(80 * px);
+/** @param {Omit<Pen, 'robotRadius'>} pen @param {{ x0: number, y0: number, x1: number, y1: number }} box @param {number} step from a line to the next */
+export function drawLines({ context, px, colour }, box, step) {
   context.strokeStyle = colour('grid');
   context.lineWidth = px;
   context.beginPath();
   for (let x = Math.ceil(box.x0 / step) * step; x <= box.x1; x += step) { context.moveTo(x, box.y0); context.lineTo(x, box.y1); }
   for (let y = Math.ceil(box.y0 / step) * step; y <= box.y1; y += step) { context.moveTo(box.x0, y); context.lineTo(box.x1, y); }
   context.stroke();
-  return step;
 }
 
 /** Return the least of 1, 2, 5 times a power of ten that is no less. @param {number} least */

@@ -22,7 +22,7 @@ function pictured(rows, cols, colour) {
   return picture;
 }
 
-/** Draw an overlay. @param {CanvasRenderingContext2D} context whose unit is the metre @param {Overlay} overlay */
+/** Draw an overlay. @param {import('./layers.js').Context} context whose unit is the metre @param {Overlay} overlay */
 export function drawOverlay(context, overlay) {
   const { rows, resolution_m: side } = overlay;
   context.save();

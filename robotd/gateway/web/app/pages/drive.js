@@ -13,8 +13,10 @@ import { poseCard } from './drive/pose.js';
 
 /** @typedef {import('../app.js').App} App */
 
-/** @type {HTMLElement | null} */
-let coordinates = null;
+/** What is told of the map on its edge, past the panel: it changes with each move of the pointer. @type {{ coordinates: HTMLElement | null, scale: HTMLElement | null }} */
+const told = { coordinates: null, scale: null };
+/** Layers that a narrow screen has no room for are folded. */
+const isWide = matchMedia('(min-width: 721px)').matches;
 
 /** @param {App} app */
 export function drivePage(app) {
@@ -22,7 +24,7 @@ export function drivePage(app) {
   return html`
     <h1 class="unseen">${t('page.drive')}</h1>
     <section class="map" aria-label=${t('page.drive')}>
-      <canvas tabindex="0" role="application" aria-label=${t('map.label')} ${ref(mounted(app))}></canvas>
+      <div class="view" tabindex="0" role="application" aria-label=${t('map.label')} ${ref(mounted(app))}></div>
       ${app.grid.placement === null && app.state.status !== null && app.state.status.map_id === null
         ? html`<div class="no-map"><p>${t('map.none')}</p><p class="quiet">${t('map.none_hint')}</p></div>` : nothing}
       <div class="map-tools">
@@ -32,33 +34,35 @@ export function drivePage(app) {
           <button @click=${() => app.canvas?.fit()} title=${`${t('map.fit')} (0)`}>${t('map.fit')}</button>
           <button aria-pressed=${app.canvas?.follows ?? false} @click=${() => { app.canvas?.follow(); app.wake(true); }} title="F">${t('map.follow')}</button>
         </div>
-        <fieldset class="layers"><legend>${t('map.layers')}</legend>
+        <details class="layers" ?open=${isWide}><summary>${t('map.layers')}</summary>
           ${LAYERS.map(({ name, key }) => html`<label><input type="checkbox" .checked=${app.canvas?.shown.has(name) ?? false} @change=${() => { app.canvas?.toggle(name); app.wake(true); }}><span class=${`swatch ${name}`}></span>${t(`layer.${name}`)} <kbd>${key}</kbd></label>`)}
-        </fieldset>
+        </details>
       </div>
-      <p class="coordinates" ${ref((element) => { coordinates = /** @type {HTMLElement} */ (element ?? null); })}></p>
+      <p class="scale" aria-hidden="true" ${ref(scaleAt)}></p>
+      <p class="coordinates" ${ref(coordinatesAt)}></p>
     </section>
     <aside class="panel">${motionCard(app)}${missionCard(app)}${actsCard(app)}${poseCard(app)}</aside>`;
 }
 
 /** @param {App} app @param {Element | undefined} element */
 function mount(app, element) {
-  if (!(element instanceof HTMLCanvasElement)) {
+  if (!(element instanceof HTMLElement)) {
     app.canvas = null;
     return;
   }
   if (app.canvas !== null) return;
   const before = kept;
   app.canvas = new MapCanvas(element, app.state, app.grid);
-  if (before !== null) {
-    app.canvas.view = before.view;
-    app.canvas.shown = before.shown;
-    app.canvas.rank = before.rank;
-  }
+  if (before !== null) app.canvas.resume(before);
   kept = app.canvas;
   app.canvas.onLayers = () => app.look();
   app.canvas.draft = (pen) => draftOf(app).paint(pen);
   app.canvas.onPoint = (at) => tell(app, at);
+  app.canvas.onScale = (step, px) => {
+    if (told.scale === null) return;
+    told.scale.style.width = `${px}px`;
+    told.scale.textContent = step >= 1 ? `${step} m` : `${Math.round(step * 100)} cm`;
+  };
   draftOf(app).listen();
 }
 
@@ -73,8 +77,14 @@ function mounted(app) {
 /** The map as it was looked at when another page was opened. @type {MapCanvas | null} */
 let kept = null;
 
+/** @param {Element | undefined} element */
+const scaleAt = (element) => { told.scale = /** @type {HTMLElement} */ (element ?? null); };
+/** @param {Element | undefined} element */
+const coordinatesAt = (element) => { told.coordinates = /** @type {HTMLElement} */ (element ?? null); };
+
 /** @param {App} app @param {{ x: number, y: number } | null} at */
 function tell(app, at) {
+  const { coordinates } = told;
   if (coordinates === null) return;
   if (at === null) {
     coordinates.textContent = '';
@@ -87,6 +97,6 @@ function tell(app, at) {
 
 /** @param {App} app @param {string} key */
 function zoom(app, key) {
-  document.querySelector('canvas')?.dispatchEvent(new KeyboardEvent('keydown', { key }));
+  document.querySelector('.view')?.dispatchEvent(new KeyboardEvent('keydown', { key }));
   app.wake(true);
 }

@@ -6,6 +6,7 @@ import { age } from '../parts/format.js';
 import { hindrance } from '../state/silence.js';
 import { count } from '../state/store.js';
 import { t, word } from '../texts/texts.js';
+import { countedCard } from './health/counted.js';
 
 /** @typedef {import('../app.js').App} App */
 
@@ -21,6 +22,7 @@ export function healthPage(app) {
     <section class="card"><h2>${t('health.curves')}</h2>
       <figure><figcaption>${t('health.rates')}</figcaption><div class="curves" ${ref((element) => curves(element, app, 'rates'))}></div></figure>
       <figure><figcaption>${t('health.volts')}</figcaption><div class="curves" ${ref((element) => curves(element, app, 'battery'))}></div></figure></section>
+    ${countedCard(app)}
     <section class="card"><p>${up === null ? nothing : t('health.up', { age: age(up) })}</p>
       <p class="quiet">${dropped === '' ? t('health.none_dropped') : t('health.dropped', { topics: dropped })}</p>
       <p class="quiet">${hello === null ? nothing : t('set.gateway', { version: hello.gateway, console: hello.console })}</p></section>`;

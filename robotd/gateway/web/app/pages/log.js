@@ -1,7 +1,8 @@
-// Log: the daemon's lines as they come, and who did what.
+// Log: the daemon's lines as they come, what became of missions, and who did what.
 import { html, nothing } from 'lit-html';
 import { clock } from '../parts/format.js';
 import { t } from '../texts/texts.js';
+import { missions } from './log/missions.js';
 
 /** @typedef {import('../app.js').App} App */
 /** @typedef {{ time_unix_ns: number, who: string, whence: string, what: string, result: string }} Deed */
@@ -13,7 +14,8 @@ let level = 'INFO';
 let search = '';
 /** The lines as they were when they were paused. @type {import('../types').LogLine[] | null} */
 let paused = null;
-let isAudit = false;
+/** Which of the three is shown. @type {'daemon' | 'missions' | 'audit'} */
+let shown = 'daemon';
 /** @type {Deed[]} */
 let deeds = [];
 let askedAt = -Infinity;
@@ -21,11 +23,12 @@ let askedAt = -Infinity;
 /** @param {App} app */
 export function logPage(app) {
   const mayAudit = app.state.hello !== null && app.state.hello.role !== 'viewer';
+  const kinds = /** @type {const} */ (['daemon', 'missions', ...(mayAudit ? ['audit'] : [])]);
+  const show = (/** @type {typeof shown} */ kind) => { shown = kind; askedAt = -Infinity; app.wake(true); };
   return html`<h1>${t('log.title')}</h1>
-    ${mayAudit ? html`<div class="buttons choice" role="group" aria-label=${t('log.title')}>
-      <button aria-pressed=${!isAudit} @click=${() => { isAudit = false; app.wake(true); }}>${t('log.daemon')}</button>
-      <button aria-pressed=${isAudit} @click=${() => { isAudit = true; askedAt = -Infinity; app.wake(true); }}>${t('log.audit')}</button></div>` : nothing}
-    ${isAudit && mayAudit ? audit(app) : daemon(app)}`;
+    <div class="buttons choice" role="group" aria-label=${t('log.title')}>
+      ${kinds.map((kind) => html`<button aria-pressed=${shown === kind} @click=${() => show(/** @type {typeof shown} */ (kind))}>${t(`log.${kind}`)}</button>`)}</div>
+    ${shown === 'missions' ? missions(app) : shown === 'audit' && mayAudit ? audit(app) : daemon(app)}`;
 }
 
 /** @param {App} app */

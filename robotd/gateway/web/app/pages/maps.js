@@ -1,8 +1,11 @@
 // Maps: what is stored, the one in use, and what comes from other programs and goes to them.
 import { html, nothing } from 'lit-html';
 import { metres, when } from '../parts/format.js';
+import { typedForm } from '../parts/typed.js';
 import { t } from '../texts/texts.js';
 import { bringing, NAME } from './maps/bring.js';
+import { choose, comparison, isChosen } from './maps/comparing.js';
+import { begin, placingCard } from './maps/placing.js';
 
 /** @typedef {import('../app.js').App} App */
 /** @typedef {{ name: string, version: number, digest: string, created_unix_ns: number, rows: number, cols: number, resolution_m: number,
@@ -29,7 +32,7 @@ export function mapsPage(app) {
   /** @type {Map<string, Entry[]>} */
   const byName = new Map();
   for (const entry of entries ?? []) byName.set(entry.name, [...(byName.get(entry.name) ?? []), entry]);
-  return html`<h1>${t('maps.title')}</h1>${current(app)}${bringing(app, () => { asked = ''; })}
+  return html`<h1>${t('maps.title')}</h1>${current(app)}${placingCard(app, (entry, more) => load(app, entry, more))}${comparison(app)}${bringing(app, () => { asked = ''; })}
     ${entries !== null && entries.length === 0 ? html`<p class="quiet">${t('maps.none')}</p>` : nothing}
     <div class="cards maps">${[...byName].map(([name, versions]) => card(app, name, versions.sort((a, b) => b.version - a.version)))}</div>`;
 }
@@ -97,10 +100,18 @@ function changes(app, name) {
     asked = '';
     app.wake(true);
   };
-  return html`<form class="changes" @submit=${(/** @type {Event} */ event) => { event.preventDefault(); if (isRight) carryOut(); }}>
-    <label>${act === 'delete' ? t('maps.delete_sure', { name }) : t('maps.new_name')} <input .value=${typed} maxlength="64" @input=${(/** @type {any} */ event) => { if (change !== null) change.typed = event.target.value; app.wake(true); }}></label>
-    <div class="buttons"><button class=${act === 'delete' ? 'danger' : 'primary'} aria-disabled=${!isRight}>${t(`maps.${act}`)}</button>
-    <button type="button" @click=${() => { change = null; app.wake(true); }}>${t('cancel')}</button></div></form>`;
+  const label = act === 'delete' ? t('maps.delete_sure', { name }) : t('maps.new_name');
+  return typedForm({
+    label, verb: t(`maps.${act}`), typed, isRight, isDangerous: act === 'delete', act: carryOut,
+    type: (text) => { if (change !== null) change.typed = text; app.wake(true); },
+    end: () => { change = null; app.wake(true); },
+  });
+}
+
+/** @param {App} app @param {{ name: string, version: number }} entry @param {Record<string, unknown>} more */
+async function load(app, { name, version }, more) {
+  const loaded = await app.command('map_load', { name, version, ...more }, '');
+  if (loaded !== undefined) app.notice('done', t(more['robot_in_map'] === undefined ? 'maps.loaded' : 'maps.loaded_here', { name }));
 }
 
 /** @param {App} app @param {Entry} entry */
@@ -108,17 +119,15 @@ function version(app, entry) {
   const { status, hello } = app.state;
   const isInUse = status?.map_id === entry.digest && entry.digest !== '';
   const may = hello !== null && hello.role !== 'viewer' && entry.damage === null;
-  const load = async (/** @type {Record<string, unknown>} */ more) => {
-    const loaded = await app.command('map_load', { name: entry.name, version: entry.version, ...more }, '');
-    if (loaded !== undefined) app.notice('done', t('maps.loaded', { name: entry.name }));
-  };
   return html`<div class="version">
     <p><strong>${t('maps.version', { version: entry.version })}</strong>${isInUse ? html` <span class="tag">${t('maps.in_use')}</span>` : nothing}${entry.unsaved ? html` <span class="tag doubt">${t('maps.unsaved')}</span>` : nothing}</p>
     ${entry.damage === null
       ? html`<p class="quiet">${t('maps.size', { cols: entry.cols, rows: entry.rows, cell: metres(entry.resolution_m) })}${entry.stops === null ? '' : `, ${t('maps.stops', { count: entry.stops })}`}<br>${t('maps.made', { when: when(entry.created_unix_ns / 1e9) })}<br><code>${entry.digest.slice(0, 12)}</code></p>`
       : html`<p class="why">${t('maps.damaged', { damage: entry.damage })}</p>`}
     <div class="buttons">
-      ${may && !isInUse ? html`<button @click=${() => load({})}>${t('maps.load')}</button>` : nothing}
-      ${entry.damage === null ? html`<a class="button" href=${`api/maps/${entry.name}/${entry.version}.png`} download=${`${entry.name}-${entry.version}.png`}>${t('maps.picture')}</a><a class="button" href=${`api/maps/${entry.name}/${entry.version}.zip`} download=${`${entry.name}-${entry.version}.zip`}>${t('maps.export')}</a>` : nothing}
+      ${may && !isInUse ? html`<button @click=${() => load(app, entry, {})}>${t('maps.load')}</button>` : nothing}
+      ${may ? html`<button @click=${() => begin(app, entry)}>${t('maps.load_here')}</button>` : nothing}
+      ${entry.damage === null ? html`<a class="button" href=${`api/maps/${entry.name}/${entry.version}.png`} download=${`${entry.name}-${entry.version}.png`}>${t('maps.picture')}</a><a class="button" href=${`api/maps/${entry.name}/${entry.version}.zip`} download=${`${entry.name}-${entry.version}.zip`}>${t('maps.export')}</a>
+        <button aria-pressed=${isChosen(entry)} @click=${() => choose(app, entry)}>${t('maps.compare')}</button>` : nothing}
     </div></div>`;
 }

@@ -12,6 +12,7 @@ import { t, word } from '../texts/texts.js';
 import { age } from './format.js';
 import { mark } from './marks.js';
 import { signInPage } from './sign-in.js';
+import { stopButton } from './stop-place.js';
 
 /** @typedef {import('../app.js').App} App */
 
@@ -83,6 +84,7 @@ function banners(app) {
   return html`<div class="banners">
     <div role="alert">
       ${stopping.phase === 'unconfirmed' ? html`<p class="banner danger">${t('stop.unconfirmed')}</p>` : nothing}
+      ${state.status?.mode === 'fault' && app.who !== null ? html`<p class="banner fault">${t('head.fault', { why: state.status.reason })}</p>` : nothing}
       ${silence === null ? nothing : html`<p class="banner warning">${Number.isFinite(silence.seconds) ? t(`silent.${silence.part}`, { age: age(silence.seconds) }) : t('silent.daemon_never')}</p>`}
       ${isDriving(state) && document.hidden ? html`<p class="banner warning">${t('hidden', { age: '' })}</p>` : nothing}
     </div>
@@ -97,23 +99,4 @@ function notices(app) {
   return html`<div class="notices" aria-live="polite">
     ${app.notices.map((notice) => html`<p class=${`notice ${notice.kind}`}>${notice.text}<button aria-label=${t('close')} @click=${() => app.dismiss(notice.id)}>×</button></p>`)}
   </div>`;
-}
-
-/** Never disabled, never behind anything: in the top layer, where a dialog that opens later lets it be raised again. @param {App} app */
-function stopButton(app) {
-  const { phase, label } = app.stopping;
-  return html`<div class="stop-place" popover="manual">
-    <button class=${`stop ${phase}`} aria-label=${`${label}. ${t('stop.label')}`}
-      @pointerdown=${(/** @type {PointerEvent} */ event) => { event.preventDefault(); app.stopping.press(); }}
-      @keydown=${(/** @type {KeyboardEvent} */ event) => { if (event.key === 'Enter') { event.preventDefault(); app.stopping.press(); } }}
-      @click=${(/** @type {MouseEvent} */ event) => { if (event.detail === 0) app.stopping.press(); }}>${label}</button>
-  </div>`;
-}
-
-/** Raise STOP above all that is open: once it is on the page, and again above what was opened since. @param {boolean} [again] */
-export function raiseStop(again = false) {
-  const place = document.querySelector('.stop-place');
-  if (!(place instanceof HTMLElement)) return;
-  if (again && place.matches(':popover-open')) place.hidePopover();
-  if (!place.matches(':popover-open')) place.showPopover();
 }

@@ -3,15 +3,18 @@
 /** @typedef {import('../types').State} State */
 
 const LOG_LINES = 10_000;
+const HAPPENINGS = 2000;
 const WAY_POINTS = 5000;
 const STEP_M = 0.02;
+/** What becomes of a map in the making, beside its cells. */
+const OF_MAPS = ['stop_placed', 'loop_held', 'loop_closed', 'reconciled'];
 const STATUS_WORDS = ['ok', 'miss', 'too_near', 'weak', 'saturated', 'ambient', 'not_measured', 'timeout', 'device_error'];
 
 /** @returns {State} */
 export function nothing() {
   return {
     hello: null, session: null, isOtherLife: false, status: null, mission: null, pose: null, odometry: null, sweep: null,
-    progress: null, plan: null, way: [], log: [], lost: {}, rank: null, commander: null, wish: null, wishUntil: 0,
+    progress: null, plan: null, choice: null, exploringEnded: null, happenings: [], way: [], log: [], lost: {}, rank: null, commander: null, wish: null, wishUntil: 0,
     statusAt: -Infinity, odometryAt: -Infinity, questionAt: -Infinity, daemonSilent: null, isOpen: false, lines: [],
   };
 }
@@ -35,6 +38,9 @@ export function accept(state, frame, now) {
     sweep_progress: () => takeProgress(state, fields),
     sweep_done: () => takeSweep(state, fields),
     plan: () => takePlan(state, fields),
+    stop_chosen: () => takeChoice(state, fields),
+    exploring_ended: () => takeExploringEnded(state, fields),
+    ...Object.fromEntries(OF_MAPS.map((event) => [event, () => happened(state, event, fields)])),
     rank_map: () => Object.assign(state, { rank: fields }),
     log: () => takeLog(state, fields),
   });
@@ -56,8 +62,8 @@ export function hear(state, said, now) {
 
 /** Another life of the daemon: what is known of the first is not of this one. @param {State} state @param {string} session */
 function begin(state, session) {
-  const { hello, log, lost, commander, questionAt, isOpen, lines } = state;
-  Object.assign(state, nothing(), { hello, log, lost, commander, questionAt, isOpen, lines, session, isOtherLife: state.session !== null });
+  const { hello, log, lost, commander, happenings, questionAt, isOpen, lines } = state;
+  Object.assign(state, nothing(), { hello, log, lost, commander, happenings, questionAt, isOpen, lines, session, isOtherLife: state.session !== null });
 }
 
 /** How old a message was when it came, by the robot's clock [ms]. @param {State} state @param {any} fields @param {number} now */
@@ -99,7 +105,26 @@ function takeMission(state, fields) {
     state.way = [];
     if (state.plan?.mission_id !== fields.mission_id) state.plan = null;
   }
+  if (state.mission?.mission_id !== fields.mission_id || state.mission?.phase !== fields.phase || state.mission?.stop !== fields.stop) happened(state, 'mission_progress', fields);
   state.mission = fields;
+}
+
+/** @param {State} state @param {any} fields */
+function takeChoice(state, fields) {
+  Object.assign(state, { choice: fields, exploringEnded: null });
+  happened(state, 'stop_chosen', fields);
+}
+
+/** @param {State} state @param {any} fields */
+function takeExploringEnded(state, fields) {
+  Object.assign(state, { choice: null, exploringEnded: fields });
+  happened(state, 'exploring_ended', fields);
+}
+
+/** @param {State} state @param {string} event @param {any} fields */
+function happened(state, event, fields) {
+  state.happenings.push({ time_ns: fields.time_ns, event, fields });
+  if (state.happenings.length > HAPPENINGS) state.happenings.splice(0, HAPPENINGS / 10);
 }
 
 /** Who joins is told the last plan that there was, of whichever mission. @param {State} state @param {any} fields */
@@ -109,8 +134,11 @@ function takePlan(state, fields) {
 
 /** @param {State} state @param {any} fields */
 function takePose(state, fields) {
-  state.pose = fields;
-  if (fields.best === null) return;
+  const { best } = fields;
+  // A number that is none is no place to draw a robot at.
+  const isPlace = best !== null && Number.isFinite(best.x_m + best.y_m + best.heading_rad);
+  state.pose = isPlace ? fields : { ...fields, best: null };
+  if (!isPlace) return;
   const last = state.way.at(-1);
   if (last === undefined || Math.hypot(fields.best.x_m - last[0], fields.best.y_m - last[1]) >= STEP_M) {
     state.way.push([fields.best.x_m, fields.best.y_m]);

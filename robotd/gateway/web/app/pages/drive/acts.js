@@ -1,6 +1,6 @@
 // What can be started: each act says what it needs, is prepared on the map, and starts with a second press.
 import { html, nothing } from 'lit-html';
-import { degrees, metres, place } from '../../parts/format.js';
+import { metres, place } from '../../parts/format.js';
 import { hindrance } from '../../state/silence.js';
 import { t } from '../../texts/texts.js';
 import { draftOf } from './draft.js';
@@ -41,7 +41,7 @@ function listen(app) {
   isListening = true;
   document.addEventListener('robotd:go', () => {
     draftOf(app).begin('go');
-    document.querySelector('canvas')?.focus();
+    /** @type {HTMLElement | null} */ (document.querySelector('.view'))?.focus();
   });
 }
 
@@ -105,7 +105,7 @@ function nameField(app) {
 function mapping(app, why) {
   const draft = draftOf(app);
   const isNamed = NAME.test(draft.name);
-  const best = app.state.pose?.best ?? null;
+  const begins = draft.start ?? app.state.pose?.best ?? { x_m: 0, y_m: 0, heading_rad: 0 };
   /** @param {number} from @param {number} to */
   const move = (from, to) => {
     const stops = [...draft.stops];
@@ -129,10 +129,20 @@ function mapping(app, why) {
         <button aria-label=${t('map.down')} @click=${() => move(index, index + 1)}>↓</button>
         <button aria-label=${t('map.remove')} @click=${() => { draft.stops = draft.stops.filter((_, n) => n !== index); app.canvas?.wake(); app.wake(true); }}>×</button>
       </li>`)}</ol>
-    <p class="quiet">${best === null ? t('map.start_zero') : t('map.start', { x: place(best.x_m), y: place(best.y_m), heading: degrees(best.heading_rad) })}</p>
+    ${startPose(app, begins)}
     <button class="primary" aria-disabled=${why !== null || !isNamed} @click=${() => why === null && isNamed && start(app, 'map_start', {
-      name: draft.name, stops_m: draft.stops.map(({ x, y }) => [x, y]), ...(best === null ? {} : { start: best }),
+      name: draft.name, stops_m: draft.stops.map(({ x, y }) => [x, y]), start: begins,
     })}>${t('act.start')}</button>${said(why, 'map-why')}`;
+}
+
+/** Where the robot stands on the new map, which fixes its frame: where it is believed to be now, unless somebody says otherwise. @param {App} app @param {import('../../types').Pose} begins */
+function startPose(app, begins) {
+  const field = (/** @type {keyof typeof begins} */ name, /** @type {string} */ text, scale = 1) => html`<label>${t(text)} <input inputmode="decimal" .value=${String(Math.round(begins[name] * scale * 100) / 100)} @change=${(/** @type {any} */ event) => {
+    const typed = Number.parseFloat(event.target.value) / scale;
+    if (Number.isFinite(typed)) draftOf(app).start = { ...begins, [name]: typed };
+    app.wake(true);
+  }}></label>`;
+  return html`<fieldset class="start"><legend>${t('map.begins')}</legend>${field('x_m', 'placing.x')}${field('y_m', 'placing.y')}${field('heading_rad', 'placing.degrees', 180 / Math.PI)}</fieldset>`;
 }
 
 /** @param {App} app */

@@ -16,6 +16,8 @@ export class Draft {
   /** @type {Place[]} */
   stops = [];
   name = '';
+  /** Where a new map begins, if that was said otherwise. @type {{ x_m: number, y_m: number, heading_rad: number } | null} */
+  start = null;
   unattended = false;
 
   /** @param {App} app */
@@ -46,7 +48,7 @@ export class Draft {
   cancel() {
     const { canvas } = this.app;
     if (canvas !== null) canvas.onPick = canvas.onDrag = null;
-    Object.assign(this, { act: null, goal: null, way: null, disk: null, stops: [] });
+    Object.assign(this, { act: null, goal: null, way: null, disk: null, stops: [], start: null });
     this.app.wake(true);
   }
 
