@@ -4,6 +4,7 @@ import enum
 import math
 from dataclasses import dataclass, field
 
+from robotd.contract.walls_verdict import WallsVerdict
 from robotd.core.angles import wrap_rad
 from robotd.core.pose import Pose2
 
@@ -170,6 +171,11 @@ class PoseEstimate:
     """Places that the readings leave, too, but to which the robot cannot have come; they are not among the regions."""
     contradiction: Contradiction | None = None
     """Why the robot can have come to none of them, if so: then the state is ``ambiguous`` until another look agrees."""
+    walls: WallsVerdict | None = None
+    """What walls said of the heading; None where they were not asked."""
+    smallest_error_m: float | None = None
+    """The least error radius at which nine of ten readings agree on some pose of the best answer's heading; None where
+    that was not asked for, or none is large enough."""
 
     def __str__(self) -> str:
         """Say in one line what people ask first."""

@@ -144,6 +144,8 @@ class Localize(MissionRequest, frozen=True):
     """Where on the map it is, if the client knows; no other place is then an answer."""
     adaptive: bool = False
     """Whether to read to all sides until two answers in a row agree, instead of a whole sweep."""
+    smallest_error: bool = False
+    """Whether to tell, too, how far the readings must be trusted so that nearly all agree."""
 
     def __post_init__(self) -> None:
         """Refuse a heading that is known and unknown."""

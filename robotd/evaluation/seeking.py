@@ -16,9 +16,9 @@ from robotd.evaluation.map_recipe import MapRecipe
 from robotd.evaluation.recorded import Reach, readings_of
 from robotd.evaluation.result import CaseKey, CaseResult
 from robotd.grid.occupancy import OccupancyGrid
+from robotd.localization.at_stop import estimator_at_stop
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement
-from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 
@@ -80,11 +80,11 @@ class Seeking:
         # Both: what compares versions on a busy machine, and what a robot would wait.
         cpu_s, wall_s = time.process_time(), time.perf_counter()
         headings_rad = settings.localization.headings_all_round()
-        localizer = Localizer.at_stop(
+        estimator = estimator_at_stop(
             ready_map, "", headings_rad, judgement=settings.judgement, threads=settings.threads
         )
-        localizer.add(*readings)
-        estimate = localizer.estimate(0, final=True)
+        estimator.add(*readings)
+        estimate = estimator.estimate(0, final=True)
         cpu_s, wall_s = time.process_time() - cpu_s, time.perf_counter() - wall_s
         return CaseResult.of(self.key_of(query), query, estimate, cpu_s=cpu_s, wall_s=wall_s)
 

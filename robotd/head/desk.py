@@ -10,8 +10,8 @@ from robotd.head.jobs import MapRef, Prepare
 from robotd.head.parts import Parts
 from robotd.head.settings import HeadSettings
 from robotd.head.wire import NotHeld
+from robotd.localization.at_stop import estimator_at_stop
 from robotd.localization.estimator import Estimator
-from robotd.localization.localizer import Localizer
 from robotd.localization.ready_map import ReadyMap
 
 Begin = Callable[[ReadyMap, Prepare], Estimator]
@@ -27,7 +27,7 @@ class Desk:
         Args:
             settings: what all jobs are done by.
             threads: how many threads may share the work when it is much; no answer depends on it.
-            begin: begins a stop; a :class:`Localizer` if there is none.
+            begin: begins a stop; as the settings have it if there is none.
         """
         self.settings = settings
         self.parts = Parts()
@@ -36,7 +36,7 @@ class Desk:
         """By number, then by generation."""
         self._stops: dict[int, Estimator] = {}
         self._threads = threads
-        self._begin = begin or self._localizer
+        self._begin = begin or self._as_set
 
     def hold(self, ref: MapRef, held: Held) -> Held:
         """Hold a map under its number and generation, and return it."""
@@ -84,8 +84,14 @@ class Desk:
         self._maps.pop(number, None)
         self._stops.pop(number, None)
 
-    def _localizer(self, ready: ReadyMap, job: Prepare) -> Estimator:
+    def _as_set(self, ready: ReadyMap, job: Prepare) -> Estimator:
         judgement = self.settings.judgement.no_surer(job.contrast_min)
-        return Localizer.at_stop(
-            ready, job.map_id, job.headings_rad, job.within, judgement=judgement, threads=self._threads
+        return estimator_at_stop(
+            ready,
+            job.map_id,
+            job.headings_rad,
+            job.within,
+            judgement=judgement,
+            threads=self._threads,
+            tells_smallest_error=job.tells_smallest_error,
         )

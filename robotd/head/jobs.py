@@ -220,6 +220,8 @@ class Prepare(Job[Done], frozen=True):
     """Where the robot is; None is anywhere."""
     contrast_min: float = 0.0
     """What the best place must have over any other, if that is more than the settings say."""
+    tells_smallest_error: bool = False
+    """Whether estimates of a whole sweep tell it."""
 
     @property
     def makes(self) -> Made:

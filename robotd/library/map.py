@@ -18,7 +18,7 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
 from robotd.grid.tables import NO_INFORMATION
 from robotd.library.explanation import Explanation
-from robotd.localization.localizer import Localizer
+from robotd.localization.at_stop import estimator_at_stop
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.settings import LocalizationSettings
 from robotd.maps.store import MapStore
@@ -168,7 +168,7 @@ class Map:
         settings = self._settings
         headings_rad = settings.headings_all_round() if heading_rad is None else settings.headings_near(heading_rad)
         within = None if near_m is None else Area(*map(float, near_m))
-        localizer = Localizer.at_stop(self._ready, "", headings_rad, within)
+        localizer = estimator_at_stop(self._ready, "", headings_rad, within)
         localizer.add(*sweep.measured)
         return localizer.estimate(0, final=True)
 

@@ -27,7 +27,7 @@ from robotd.localization.settings import LocalizationSettings
 from robotd.localization.stop import CountedStop, SearchedStop, Stop
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class ReadyMap:
     """What is worked out once for a map; it never changes, so it may be shared by threads."""
 

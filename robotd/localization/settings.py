@@ -6,6 +6,7 @@ from typing import Annotated
 
 from robotd.core.bounds import Within, refuse_outside
 from robotd.localization.even_headings import even_headings
+from robotd.localization.heading_search import HeadingSearch
 from robotd.localization.obstacles.error_radius import ErrorRadius
 from robotd.localization.obstacles.thick_walls import ThickWalls
 from robotd.localization.obstacles.unknown_cells import UnknownCells
@@ -31,6 +32,9 @@ class LocalizationSettings:
     """How far the heading that odometry gives may be off: headings up to so far away are tried too."""
     heading_step_rad: Annotated[float, Within(1e-4, math.pi / 4, "rad")] = 0.00873
     """Step between the headings that are tried; half a degree, as the beams of many scanners lie."""
+    heading: HeadingSearch = HeadingSearch.ALL
+    """Which headings are tried where nothing is known of the heading: ``all``, or only those that ``walls`` name, where
+    they name one that explains the readings; quicker, and wrong where what is seen has another axis than the map."""
     localized_share: Annotated[float, Within(0.01, 1.0, "of 1")] = 0.5
     """Share of the readings that the best pose must explain; below it the robot is lost."""
     rival_share: Annotated[float, Within(0.0, 0.99, "of 1")] = 0.15

@@ -61,7 +61,14 @@ def _estimate(estimate: PoseEstimate) -> dict[str, Any]:
     return content
 
 
-_UNSAID: dict[str, object] = {"jumped_m": None, "by_history": False, "unreachable": 0, "contradiction": None}
+_UNSAID: dict[str, object] = {
+    "jumped_m": None,
+    "by_history": False,
+    "unreachable": 0,
+    "contradiction": None,
+    "walls": None,
+    "smallest_error_m": None,
+}
 
 
 def _sweep(sweep: Sweep) -> dict[str, Any]:

@@ -12,18 +12,14 @@ ROOT = Path(__file__).parents[2]
 SHELF = "robotd.localization.reference"
 """What tests, benchmarks and studies hold the engine against."""
 ON_THE_SHELF = {
-    "bodies",
     "count_all",
     "directional_flood",
-    "error_map",
     "feasible_poses",
     "flooded_poses",
     "floods",
     "pixelized_vector",
     "probe",
     "rank",
-    "separated_orientation",
-    "sharpest_direction",
     "smallest_error",
 }
 TWINS_ELSEWHERE = {"robotd.exact.pairwise"}

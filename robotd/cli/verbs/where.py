@@ -32,7 +32,13 @@ _PATIENCE_S = 3.0
 def _localize(arguments: argparse.Namespace) -> int:
     heading_rad = None if arguments.heading_deg is None else heading_of_deg(arguments.heading_deg)
     heading = PriorHeading.UNKNOWN if arguments.heading_unknown else PriorHeading.ODOMETRY
-    localize = Localize(heading_rad, heading=heading, within=arguments.within, adaptive=arguments.adaptive)
+    localize = Localize(
+        heading_rad,
+        heading=heading,
+        within=arguments.within,
+        adaptive=arguments.adaptive,
+        smallest_error=arguments.smallest_error,
+    )
     return carry_out(arguments, localize, found_in_words)
 
 
@@ -61,6 +67,11 @@ def _known(parser: argparse.ArgumentParser) -> None:
         "--adaptive",
         action="store_true",
         help="read to all sides until two answers agree, instead of a whole sweep: some twenty readings of 300",
+    )
+    parser.add_argument(
+        "--smallest-error",
+        action="store_true",
+        help="say, too, how far ranges must be trusted so that nine of ten agree on one pose",
     )
     _within(parser)
 

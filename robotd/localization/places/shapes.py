@@ -62,7 +62,8 @@ def _headings_extent(used: NDArray[np.intp], headings_rad: tuple[float, ...]) ->
     # Headings go round, so the least and the greatest of them mean nothing: what is left out is the widest gap.
     widest = int(gaps.argmax())
     first = (widest + 1) % len(angles)
-    width_rad = min(math.tau - float(gaps[widest]) + 2 * half_step_rad, math.tau)
+    # The gap of a single heading is a whole turn, or by rounding a hair more.
+    width_rad = min(max(math.tau - float(gaps[widest]), 0.0) + 2 * half_step_rad, math.tau)
     least_rad = wrap_rad(float(angles[first]) - half_step_rad)
     return least_rad, least_rad + width_rad
 

@@ -30,15 +30,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.reading import RangeReading
-from robotd.grid import kernels
 from robotd.grid.binary import BinaryMap
 from robotd.grid.distance import distance_transform
-from robotd.grid.readings import Readings
 from robotd.grid.translation import translated
+from robotd.localization.erring.bodies import RANGE_CELLS_MAX, errors_by_samples, reach_cells
+from robotd.localization.erring.error_map import ErrorMap
+from robotd.localization.erring.share_errors import errors_on, readings_wanted
 from robotd.localization.obstacles.beam_obstacles import Obstacles
-from robotd.localization.reference.bodies import RANGE_CELLS_MAX, draw_bodies, errors_by_samples, reach_cells
 from robotd.localization.reference.directional_flood import directional_flood
-from robotd.localization.reference.error_map import NEVER, ErrorMap
 from robotd.localization.reference.feasible_poses import feasible_poses
 from robotd.localization.reference.floods import UNREACHED
 from robotd.localization.reference.probe import Probe, probe_of
@@ -72,7 +71,7 @@ def smallest_error_by_search(
 
     O(log eps) ranks by convolution, O(n^2 m r) each. Arguments as of :func:`errors_for_share`.
     """
-    wanted = _readings_wanted(readings, share)
+    wanted = readings_wanted(readings, share)
     most = max(math.ceil(_range_cells(reading, binary)) for reading in readings) + sum(binary.spec.shape)
     too_small, enough = -1, 0
     found = _agreeing(binary, readings, heading_rad, enough, wanted)
@@ -119,24 +118,6 @@ def errors_for_share(
     return errors_on(ErrorMap.of_binary(binary), readings, heading_rad, share, threads=threads)
 
 
-def errors_on(
-    the_map: ErrorMap, readings: Sequence[RangeReading], heading_rad: float, share: float = 1.0, *, threads: int = 1
-) -> NDArray[np.float32]:
-    """Return what :func:`errors_for_share` does, on a prepared map, however it reads unknown cells and grazing beams.
-
-    Raises:
-        ValueError: as there, or a reading is longer than 32 000 cells.
-    """
-    wanted = _readings_wanted(readings, share)
-    bodies = draw_bodies(Readings.of(readings), heading_rad, the_map.spec)
-    shared = kernels.in_use().error_radius.share_errors(
-        the_map.packed, the_map.distances, the_map.outside, bodies, wanted, threads=threads
-    )
-    errors = shared.astype(np.float32)
-    errors[shared == NEVER] = np.inf
-    return errors
-
-
 def errors_for_share_reading_by_reading(
     binary: BinaryMap, readings: Sequence[RangeReading], heading_rad: float, share: float = 1.0
 ) -> NDArray[np.float32]:
@@ -144,7 +125,7 @@ def errors_for_share_reading_by_reading(
 
     O(n^2 m) time and memory.
     """
-    wanted = _readings_wanted(readings, share)
+    wanted = readings_wanted(readings, share)
     distances = distance_transform(binary.occupied, outside=True)
     free = ~binary.occupied
     needed = np.empty((len(readings), int(free.sum())), np.float32)
@@ -232,16 +213,6 @@ def _agreeing(
     for reading in readings:
         rank += feasible_poses(obstacles, _probe(reading, heading_rad, binary, error_cells))
     return np.argwhere(rank >= wanted)
-
-
-def _readings_wanted(readings: Sequence[RangeReading], share: float) -> int:
-    """Return how many readings a share of them is, at least one."""
-    if not readings:
-        raise ValueError("expected at least one reading")
-    if not 0.0 < share <= 1.0:
-        raise ValueError(f"share must lie in (0, 1], got {share}")
-    # A share such as 0.55 of 100 comes out just above 55 as a float, and must not ask for one reading more.
-    return max(1, math.ceil(share * len(readings) - 1e-9))
 
 
 def _probe(reading: RangeReading, heading_rad: float, binary: BinaryMap, error_cells: int) -> Probe:

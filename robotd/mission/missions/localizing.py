@@ -58,7 +58,8 @@ async def run_localizing(
     try:
         # A whole sweep is judged at its end and nowhere else; one that may end early must not end on a chance.
         contrast_min = CONTRAST_MIN if mission.adaptive else 0.0
-        await context.head.ask(Prepare(stop, place.ref, place.map_id, headings_rad, mission.within, contrast_min))
+        where = place.ref, place.map_id, headings_rad, mission.within
+        await context.head.ask(Prepare(stop, *where, contrast_min, tells_smallest_error=mission.smallest_error))
         of = LookRound(report.mission_id, number)
         show = partial(context.ranks.show, stop, place, place.generation, number)
         narrowing = Narrowing(context, stop, _between(context, mission), of, show, ties=mission.tie)

@@ -78,7 +78,7 @@ def a_life() -> list[Job[Any]]:
         PlaceStop(MapRef(5, 1), "m", SWEEP, Travel(Pose2(0.02, 0.0, 0.01), 0.02, 0.01), HERE, 8),
         Glance(MapRef(5, 2), READINGS[1:7], HERE, Travel(Pose2(0.1, 0.0, 0.0), 0.1, 0.0)),
         Choose(MapRef(1, 1), HERE, Tried(((0.2, 0.2),)), Rectangle(-1.0, -1.0, 1.0, 1.0), 3.0, Pace()),
-        Prepare(4, MapRef(2), "a map", (0.1, 0.2, 0.3), Area(0.0, 0.0, 0.5)),
+        Prepare(4, MapRef(2), "a map", (0.1, 0.2, 0.3), Area(0.0, 0.0, 0.5), 1.0, tells_smallest_error=True),
         ChooseBearings(MapRef(1, 1), ((HERE, 0.6), (IDENTITY, 0.4)), (0.1, 0.7, 1.3), (2.0,), 2, 6.0),
         ChooseSafeWay(MapRef(1, 1), (Rival(HERE, ((0.1, -0.2),)), Rival(IDENTITY, ((0.0, 0.0), (0.1, 0.0)))), 6.0, 0.4),
         *(TakeReadings(4, READINGS[:20]), Narrow(4, READINGS[20:], 5, True)),

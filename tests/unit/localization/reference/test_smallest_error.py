@@ -14,16 +14,16 @@ from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.distance import distance_transform
 from robotd.grid.ternary import TernaryMap
+from robotd.localization.erring.error_map import ErrorMap
+from robotd.localization.erring.share_errors import errors_on
 from robotd.localization.obstacles.beam_obstacles import Obstacles
 from robotd.localization.obstacles.unknown_cells import UnknownCells
-from robotd.localization.reference.error_map import ErrorMap
 from robotd.localization.reference.feasible_poses import feasible_poses
 from robotd.localization.reference.probe import probe_of
 from robotd.localization.reference.smallest_error import (
     errors_for_share,
     errors_for_share_reading_by_reading,
     errors_needed,
-    errors_on,
     errors_over_headings,
     smallest_error,
     smallest_error_by_search,

@@ -10,18 +10,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from robotd.contract.walls_verdict import WallsVerdict
 from robotd.core.grid_spec import GridSpec
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.binary import BinaryMap
 from robotd.grid.readings import Readings
 from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.obstacles.prepared_map import PreparedMap
-from robotd.localization.reference.separated_orientation import (
+from robotd.localization.orientation.separated_orientation import (
     Axis,
-    AxisVerdict,
     OrientationSettings,
     SeparatedOrientation,
-    headings_from_walls,
     map_axis,
     readings_axis,
     separated_orientation,
@@ -92,10 +91,10 @@ def test_in_simulated_rooms_one_of_the_four_headings_is_right_within_two_degrees
         heading = -3.0 + 0.7 * number
         sweep = swept(world.walls, x_m, y_m, heading, cut_off_m=cut_off_m, seed=number)
         result = separated_orientation(sweep, axis, SETTINGS)
-        if result.verdict is AxisVerdict.LITTLE_IN_SIGHT:
+        if result.verdict is WallsVerdict.LITTLE_IN_SIGHT:
             continue
         usable += 1
-        assert (result.verdict, len(result.headings_rad)) == (AxisVerdict.USABLE, 4)
+        assert (result.verdict, len(result.headings_rad)) == (WallsVerdict.USABLE, 4)
         assert result.support > 0.6
         errors = [off_rad(found, heading + turn, math.tau) for found in result.headings_rad]
         assert min(errors) < math.radians(2.0)
@@ -138,13 +137,13 @@ def test_the_headings_to_search_lie_round_the_four_found_and_hold_the_true_one()
     sweep = swept(world.walls, *world.probes_m[0], heading)
     axis = axis_of(drawn(world.walls).occupied)
     step = math.radians(1.0 / 3.0)
-    headings = headings_from_walls(sweep, axis, step, SETTINGS)
+    headings = separated_orientation(sweep, axis, SETTINGS).headings_near(step, SETTINGS)
     assert len(headings) == 4 * 19
     assert sorted(headings) == list(headings)
     assert min(off_rad(found, heading, math.tau) for found in headings) <= step
-    assert headings_from_walls(sweep[:1], axis, step, SETTINGS) == ()
-    alone = headings_from_walls(sweep, axis, step, OrientationSettings(heading_error_rad=0.0))
-    assert alone == separated_orientation(sweep, axis, SETTINGS).headings_rad
+    assert separated_orientation(sweep[:1], axis, SETTINGS).headings_near(step, SETTINGS) == ()
+    found = separated_orientation(sweep, axis, SETTINGS)
+    assert found.headings_near(step, OrientationSettings(heading_error_rad=0.0)) == found.headings_rad
 
 
 def clutter(seed: int) -> WallSegments:
@@ -172,12 +171,12 @@ def round_room() -> WallSegments:
 def test_among_clutter_and_in_a_round_room_it_says_that_it_must_not_be_used(walls: WallSegments) -> None:
     sweep = swept(walls, 0.3, 0.1, 0.4)
     result = separated_orientation(sweep, Axis(0.0, 1.0), SETTINGS)
-    assert (result.verdict, result.headings_rad) == (AxisVerdict.READINGS_CLUTTERED, ())
+    assert (result.verdict, result.headings_rad) == (WallsVerdict.READINGS_CLUTTERED, ())
     assert result.support < SETTINGS.share_min
     cluttered = axis_of(drawn(walls).occupied)
     assert cluttered.share < SETTINGS.share_min
     assert separated_orientation(sweep, cluttered, SETTINGS) == SeparatedOrientation(
-        AxisVerdict.MAP_CLUTTERED, (), cluttered.share
+        WallsVerdict.MAP_CLUTTERED, (), cluttered.share
     )
 
 
@@ -191,10 +190,10 @@ def test_solid_obstacles_have_the_directions_of_their_outlines() -> None:
 def test_little_in_sight_and_a_map_without_walls_are_no_reason_to_guess() -> None:
     sweep = swept(load_world("laboratory").walls, 3.0, 4.0, 0.0, cut_off_m=0.5)
     for readings in (sweep, sweep[:1], []):
-        assert separated_orientation(readings, Axis(0.0, 1.0), SETTINGS).verdict is AxisVerdict.LITTLE_IN_SIGHT
+        assert separated_orientation(readings, Axis(0.0, 1.0), SETTINGS).verdict is WallsVerdict.LITTLE_IN_SIGHT
     assert readings_axis([], SETTINGS) is None
     assert map_axis(np.zeros((5, 5), np.bool_), RESOLUTION_M, SETTINGS) is None
-    assert separated_orientation(sweep, None, SETTINGS).verdict is AxisVerdict.MAP_CLUTTERED
+    assert separated_orientation(sweep, None, SETTINGS).verdict is WallsVerdict.MAP_CLUTTERED
 
 
 @pytest.mark.parametrize(

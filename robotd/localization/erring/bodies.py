@@ -12,7 +12,7 @@ from robotd.grid.kernels.draw.draw_kernel import NO_HEAD, turned
 from robotd.grid.kernels.error_radius.error_radius_kernel import Bodies
 from robotd.grid.ray import ray_steps
 from robotd.grid.readings import Readings
-from robotd.localization.reference.error_map import NEVER
+from robotd.localization.erring.error_map import NEVER
 
 RANGE_CELLS_MAX = 32_000
 """Errors of longer readings do not fit into sixteen bits with room to spare."""

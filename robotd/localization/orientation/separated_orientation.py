@@ -9,7 +9,7 @@ localization must try theta slices instead.
 Directions of walls are those of lines fitted to the surroundings of each hit, and of each wall cell at the outside of
 an obstacle. Each counts modulo 90 degrees, by the length of wall it stands for and by the fourth power of how straight
 it is, so that corners count little. That says which axis is dominant, and how much so; to a tenth of a degree it is
-found by :mod:`robotd.localization.reference.sharpest_direction`.
+found by :mod:`robotd.localization.orientation.sharpest_direction`.
 
 **In simulated rooms**, 300 readings, sigma 2 cm, 5 % outliers, 152 sweeps of three rooms: with a cut-off of 6 m all
 were usable, 0.7 degrees off at most (mean 0.1), with a support of at least 0.74; with 2.1 m 142 were, 2.1 degrees off
@@ -29,10 +29,10 @@ fr079  599    78 %    67 %     86 %     94 %     0.6 %     53 %
 
 The corrected poses are themselves good to half a degree or so. It is wrong by more than 5 degrees, up to 45, where a
 half circle of beams sees one cluttered office and its furniture has an axis of its own: support is below 0.6 in most of
-those. So in real buildings it is a first guess that saves time, never the only one: see :func:`headings_from_walls`.
+those. So in real buildings it is a first guess that saves time, never the only one: see
+:mod:`robotd.localization.by_walls`.
 """
 
-import enum
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -40,10 +40,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.contract.walls_verdict import WallsVerdict
 from robotd.core.angles import wrap_rad
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.footprints import dilate, disk_footprint
-from robotd.localization.reference.sharpest_direction import sharpest_direction
+from robotd.localization.orientation.sharpest_direction import sharpest_direction
 
 QUARTER_TURN_RAD = math.pi / 2.0
 _HISTOGRAM_BINS = 180
@@ -65,7 +66,7 @@ class OrientationSettings:
     walls_min_m: float = 3.0
     """Length of wall that must be in sight; a piece or two always have an axis, but say nothing about the room."""
     heading_error_rad: float = 0.0523
-    """How far off the headings found may be: :func:`headings_from_walls` names headings up to so far away too."""
+    """How far off the headings found may be: up to that far away others are tried, too."""
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
@@ -91,24 +92,25 @@ class Axis:
     """Of all walls, 0 to 1."""
 
 
-class AxisVerdict(enum.StrEnum):
-    """Whether separated orientation may be used."""
-
-    USABLE = "usable"
-    LITTLE_IN_SIGHT = "too little of the walls is in sight"
-    READINGS_CLUTTERED = "the walls that the readings show run along no dominant axis"
-    MAP_CLUTTERED = "the walls of the map run along no dominant axis"
-
-
 @dataclass(frozen=True, slots=True)
 class SeparatedOrientation:
     """The headings to try, or why there are none."""
 
-    verdict: AxisVerdict
+    verdict: WallsVerdict
     headings_rad: tuple[float, ...]
     """Four, a quarter turn apart, in ``[-pi, pi)`` ascending; none unless usable."""
     support: float
     """Share of the walls on the dominant axis, of the map's or of the readings', whichever is less."""
+
+    def headings_near(self, step_rad: float, settings: OrientationSettings) -> tuple[float, ...]:
+        """Return the headings to search instead of all, ``[-pi, pi)`` ascending; none where walls do not tell.
+
+        Round each of the four headings found as many as its error allows: at a step of a third of a degree 76 instead
+        of 1080. They may be wrong (see above), so anyone who finds no good pose among them must search all headings.
+        """
+        # Rounded up, so that the outermost heading is no nearer than the error may be.
+        steps = math.ceil(settings.heading_error_rad / step_rad - 1e-9)
+        return tuple(sorted(wrap_rad(h + k * step_rad) for h in self.headings_rad for k in range(-steps, steps + 1)))
 
 
 def separated_orientation(
@@ -122,36 +124,16 @@ def separated_orientation(
         settings: what counts as dominant.
     """
     if map_axis is None or map_axis.share < settings.share_min:
-        return SeparatedOrientation(AxisVerdict.MAP_CLUTTERED, (), map_axis.share if map_axis else 0.0)
+        return SeparatedOrientation(WallsVerdict.MAP_CLUTTERED, (), map_axis.share if map_axis else 0.0)
     if wall_in_sight_m(readings) < settings.walls_min_m:
-        return SeparatedOrientation(AxisVerdict.LITTLE_IN_SIGHT, (), 0.0)
+        return SeparatedOrientation(WallsVerdict.LITTLE_IN_SIGHT, (), 0.0)
     axis = readings_axis(readings, settings)
     support = min(map_axis.share, axis.share) if axis else 0.0
     if axis is None or axis.share < settings.share_min:
-        return SeparatedOrientation(AxisVerdict.READINGS_CLUTTERED, (), support)
+        return SeparatedOrientation(WallsVerdict.READINGS_CLUTTERED, (), support)
     turn = map_axis.angle_rad - axis.angle_rad
     headings = sorted(wrap_rad(turn + quarter * QUARTER_TURN_RAD) for quarter in range(4))
-    return SeparatedOrientation(AxisVerdict.USABLE, tuple(headings), support)
-
-
-def headings_from_walls(
-    readings: Sequence[RangeReading], map_axis: Axis | None, step_rad: float, settings: OrientationSettings
-) -> tuple[float, ...]:
-    """Return the headings to search instead of all, ``[-pi, pi)`` ascending; none where walls do not tell.
-
-    Round each of the four headings found as many as its error allows: at a step of a third of a degree 76 instead of
-    1080. They may be wrong (see above), so anyone who finds no good pose among them must search all headings.
-
-    Args:
-        readings: of one stop, in the robot's frame; only hits count.
-        map_axis: of :func:`map_axis`, once per map.
-        step_rad: between headings.
-        settings: what counts as dominant, and how far off headings may be.
-    """
-    found = separated_orientation(readings, map_axis, settings)
-    # Rounded up, so that the outermost heading is no nearer than the error may be.
-    steps = math.ceil(settings.heading_error_rad / step_rad - 1e-9)
-    return tuple(sorted(wrap_rad(h + k * step_rad) for h in found.headings_rad for k in range(-steps, steps + 1)))
+    return SeparatedOrientation(WallsVerdict.USABLE, tuple(headings), support)
 
 
 def wall_in_sight_m(readings: Sequence[RangeReading]) -> float:

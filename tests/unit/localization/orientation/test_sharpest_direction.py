@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robotd.localization.reference.sharpest_direction import sharpest_direction
+from robotd.localization.orientation.sharpest_direction import sharpest_direction
 
 
 @settings(max_examples=50)
