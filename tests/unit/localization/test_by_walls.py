@@ -1,7 +1,9 @@
 """The heading from walls: the same answer under few headings, and under all where walls do not tell."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -35,9 +37,12 @@ def test_walls_name_the_true_heading_and_few_others(monkeypatch: pytest.MonkeyPa
     grid, readings, truth = mapped_room()
     tried: list[int] = []
     at_stop = Localizer.at_stop
-    monkeypatch.setattr(
-        by_walls.Localizer, "at_stop", lambda *args, **rest: (tried.append(len(args[2])), at_stop(*args, **rest))[1]
-    )
+
+    def counted(the_map: ReadyMap, map_id: str, headings_rad: Sequence[float], *rest: Any, **others: Any) -> Localizer:
+        tried.append(len(headings_rad))
+        return at_stop(the_map, map_id, headings_rad, *rest, **others)
+
+    monkeypatch.setattr(Localizer, "at_stop", counted)
     found = asked(ReadyMap.of(grid, BY_WALLS), readings)
     assert found.walls is WallsVerdict.USABLE
     assert found.best is not None
