@@ -12,7 +12,7 @@ ONLY ?=
 ROOT ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help console ui-test console-bench load demo demo-real demo-busy test bench bench-peers paper conservative exact docs deb arm lowest supply faults interop replay-many liars fuzz safety stops heads heart lag worlds senses spread truth firmware-test kernels-sanitized lint types contracts check clean
+.PHONY: help console ui-test console-bench load demo demo-real demo-busy test bench bench-peers paper conservative exact docs deb arm lowest supply faults interop replay-many liars fuzz safety stops kills heads heart lag worlds senses spread truth firmware-test kernels-sanitized lint types contracts check clean
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
@@ -82,6 +82,9 @@ load: .venv/.dev  ## Two hundred browsers of the console, ten of them stalled an
 
 console-bench: .venv/.ui  ## What the console costs, and how soon people see something, in Debian's Chromium: a table (five minutes)
 	@$(BIN)/python -m tests.studies.console.bench $(if $(SECONDS_EACH),--seconds $(SECONDS_EACH))
+
+kills: .venv/.dev  ## A daemon that explores, killed at every write of its maps; another one goes on from each (minutes; ONLY=laboratory SEEDS=3)
+	@$(BIN)/python -m tests.studies.kills.run $(if $(ONLY),--only $(ONLY)) $(if $(SEEDS),--seeds $(SEEDS))
 
 heads: .venv/.dev  ## Kill or stop the process that computes, whatever the robot is at: TRIALS=200, a table (half an hour)
 	@$(BIN)/python -m tests.studies.heads.run $(if $(TRIALS),--trials $(TRIALS))

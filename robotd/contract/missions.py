@@ -109,11 +109,12 @@ class Explore(MissionRequest, frozen=True):
     deadline_s = 60.0  # the map in use may have to be kept first
     name: MapName
     resume: bool = False
-    """Whether to go on with the map in use, which must be of that name, and on which the robot must be localized."""
+    """Whether to go on with the map in use, which must be of that name, and on which the robot must be localized; what
+    it was asked for before counts."""
     start: PoseArgument = PoseArgument.of(IDENTITY)
     """Where the robot stands now: it defines the frame of a new map."""
     within: Bounds | None = None
-    """What to explore; without bounds, all that the map has room for."""
+    """What to explore; without bounds, as before, or all that the map has room for."""
     stops_m: Stops = ()
     """Where to stop first, before it chooses for itself."""
     stops_max: Annotated[int, Meta(ge=1, le=1000)] = 100

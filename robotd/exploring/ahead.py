@@ -38,6 +38,27 @@ def bearings_along(length_m: float, half_width_m: float) -> tuple[float, ...]:
     return tuple(sorted({0.0, *to_the_left_rad, *(-bearing_rad for bearing_rad in to_the_left_rad)}))
 
 
+def bearings_on_the_way(
+    reach_m: float, half_width_m: float, *, speed_mps: float, reading_s: float
+) -> tuple[float, ...]:
+    """Return where to look while driving, ascending [rad]: over the robot's breadth, if the head is fast enough.
+
+    Args:
+        reach_m: beyond the robot's front; what is nearer must be seen in time.
+        half_width_m: of the robot.
+        speed_mps: it drives no faster.
+        reading_s: from one reading to the next, the head turned between.
+
+    >>> [round(math.degrees(bearing)) for bearing in bearings_on_the_way(0.7, 0.3, speed_mps=0.4, reading_s=0.1)]
+    [-37, -17, 0, 17, 37]
+    >>> bearings_on_the_way(0.7, 0.3, speed_mps=0.4, reading_s=0.5)
+    (0.0,)
+    """
+    to_the_sides = bearings_along(reach_m, half_width_m)
+    # A head that does not come round in time had better stay: a laser alone is fast.
+    return to_the_sides if speed_mps * reading_s * len(to_the_sides) <= reach_m else (0.0,)
+
+
 def in_the_way(readings: Iterable[RangeReading], length_m: float, half_width_m: float) -> RangeReading | None:
     """Return the reading that met the nearest of what is in the way; None if nothing is.
 
@@ -69,7 +90,12 @@ def shape_of(reading: RangeReading, fan: Iterable[RangeReading]) -> tuple[Point,
     # Bounded: the fan also meets the walls behind, and a way round a chair must not become a way round the
     # room.
     near_m = tuple(one for one in heads_m if math.dist(one, met_m) <= _BROAD_M)
-    return near_m if any(math.dist(one, met_m) <= _SAME_M for one in near_m) else ()
+    return near_m if any(is_same(one, met_m) for one in near_m) else ()
+
+
+def is_same(one_m: Point, other_m: Point) -> bool:
+    """Return whether two readings that ended there may have met the same thing: then they confirm each other."""
+    return math.dist(one_m, other_m) <= _SAME_M
 
 
 def head_m(reading: RangeReading) -> Point:

@@ -6,6 +6,7 @@ from robotd.contract.answers import MapEntryInfo
 from robotd.contract.arguments import Stops
 from robotd.contract.ways import Point
 from robotd.core.text import printable
+from robotd.exploring.errand import Errand
 from robotd.maps.entry import MapEntry
 
 
@@ -27,8 +28,8 @@ def entry_info(entry: MapEntry) -> MapEntryInfo:
     )
 
 
-BUMPS = "bumps_m"
-"""Key of the metadata that says where the robot bumped into something."""
+BUMPS, ERRAND = "bumps_m", "exploring"
+"""Keys of the metadata that say where the robot bumped into something, and how far exploring the map has come."""
 
 
 def bumps_of(entry: MapEntry) -> tuple[Point, ...]:
@@ -38,3 +39,11 @@ def bumps_of(entry: MapEntry) -> tuple[Point, ...]:
     # A map is worth more than its remarks: one with odd metadata still loads.
     except msgspec.ValidationError:
         return ()
+
+
+def errand_of(entry: MapEntry) -> Errand | None:
+    """Return how far exploring a stored map has come; None where that is not known, or was written by other hands."""
+    try:
+        return msgspec.convert(entry.metadata.get(ERRAND), Errand | None)
+    except msgspec.ValidationError:  # as above
+        return None

@@ -30,7 +30,7 @@ from robotd.maps.archive import Archive
 from robotd.maps.entry import MapEntry
 from robotd.maps.packed_content import PackedContent
 from robotd.maps.version_files import STOPS
-from robotd.mission.map_entries import bumps_of, entry_info
+from robotd.mission.map_entries import BUMPS, ERRAND, bumps_of, entry_info, errand_of
 from robotd.mission.noted import NotedMap, noted_grid, packed_of, stops_of
 from robotd.mission.supervisor import Supervisor
 from robotd.mission.whereabouts.keeping import Keeping
@@ -111,12 +111,12 @@ class MapRequests:
         async with self._keeping.turn:
             place = self._place()
             # As of now: the map may grow while the disk writes, and what comes later is not saved by this.
-            generation = place.generation
+            state = place.state
             try:
                 entry = await self._keeping.store(place, request.name or place.name, {})
             except MapError as error:
                 raise MissionError(str(error)) from error  # there is a map, but no room for it
-            place.saved(generation)
+            place.saved(state)
         log.info("map %s was saved as version %d of %s (%s)", place.name, entry.version, entry.name, entry.digest)
         self._supervisor.publish_status()
         return entry_info(entry)
@@ -192,7 +192,8 @@ class MapRequests:
         async with self._read(request.name, request.version) as (entry, job, held):
             # Refused before the disk was read; _use asks again, for a mission may have begun by now.
             pose = None if request.robot_in_map is None else msgspec.to_builtins(request.robot_in_map)
-            arguments = {"map_id": entry.digest, "name": request.name, "robot_in_map": pose, "bumps_m": bumps_of(entry)}
+            remarks = {BUMPS: bumps_of(entry), ERRAND: msgspec.to_builtins(errand_of(entry))}
+            arguments = {"map_id": entry.digest, "name": request.name, "robot_in_map": pose} | remarks
             command = await self._disk.run("pack map", use_map, arguments, held, job.content.files.get(STOPS))
             await self._keeping.make_way()  # last of all, so that nothing changes the map meanwhile
             self._use(command, _place_of(entry, job.number, held))
@@ -230,7 +231,8 @@ class MapRequests:
         """Take a map into use as ``command`` noted it."""
         number, grid = self._head.number(), noted.grid
         held = await self._head.ask(TakeMap(number, grid.spec, packed_of(noted), grid.settings, stops_of(noted)))
-        self._use(command, MapInUse(noted.map_id, noted.name, number, held, bumps_m=noted.bumps_m))
+        place = MapInUse(*(noted.map_id, noted.name, number, held), bumps_m=noted.bumps_m, errand=noted.exploring)
+        self._use(command, place)
 
     def _use(self, command: CommandEntry, place: MapInUse) -> None:
         arguments = command.arguments
@@ -256,7 +258,7 @@ class MapRequests:
 
 def _place_of(entry: MapEntry, number: int, held: HeldMap) -> MapInUse:
     """Return a stored map as one to use; nothing ties odometry to it yet."""
-    place = MapInUse(entry.digest, entry.name, number, held, bumps_m=bumps_of(entry))
+    place = MapInUse(*(entry.digest, entry.name, number, held), bumps_m=bumps_of(entry), errand=errand_of(entry))
     if entry.is_unsaved:
         place.found_unsaved(entry.version)
     return place

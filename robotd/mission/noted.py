@@ -14,6 +14,7 @@ from robotd.core.errors import RecordingError
 from robotd.core.grid_bytes import unpacked_cells
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
+from robotd.exploring.errand import Errand
 from robotd.grid.settings import GridSettings
 from robotd.head.jobs import HeldMap
 
@@ -34,6 +35,8 @@ class NotedMap(msgspec.Struct):
     robot_in_map: Pose2 | None
     bumps_m: tuple[Point, ...] = ()
     """Where the robot bumped into something on it before."""
+    exploring: Errand | None = None
+    """How far exploring it has come."""
 
 
 class _PackedGrid(msgspec.Struct):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.config import Config
 from robotd.contract.area import Bounds
 from robotd.contract.arguments import PoseArgument
@@ -18,7 +19,9 @@ from robotd.core.pose import Pose2
 from robotd.mission.missions.stop_and_sweep import SweepSettings
 from robotd.mission.motion.legs import next_odometry
 from robotd.sim.buildings.world import Start, Wall, load_world
+from robotd.sim.physics.laser import Laser
 from robotd.sim.physics.noise import NoiseSettings
+from robotd.sim.physics.plant import ShotAnswer
 from robotd.sim.robot import SimSettings, SimulatedRobot
 from tests.integration.conftest import Live
 from tests.support.replayed import check, replayed
@@ -120,10 +123,53 @@ async def test_it_stops_for_what_was_not_there_when_it_looked_round(live: Live) 
         assert not it.daemon.control.status.bumpers_rad
 
 
-def put(robot: SimulatedRobot, wall: Wall) -> None:
-    """Put a wall where the robot's world had none."""
+@pytest.mark.parametrize("stays", [True, False], ids=["it stays", "it walks on"])
+async def test_it_stops_for_what_steps_in_its_way_while_it_drives(live: Live, stays: bool) -> None:
+    """Somebody steps in its way on a leg that was free when it looked along it: no bump, told only if they stay."""
+    robot = robot_in("laboratory")
+    somebody = Wall(((2.5, 1.0), (2.8, 1.0), (2.8, 1.4), (2.5, 1.4)))
+    async with live(robot, QUICK) as it:
+        mission_id = it.daemon.control.start(Explore.of("lab", robot.start, stops_m=((4.2, 1.2),), stops_max=2), 1e4)
+        words: list[str] = []
+        is_there, was_stopped = False, False
+        async for event in it.events:
+            if not is_there and robot.truth.x_m > 1.55:
+                put(robot, somebody)
+                is_there = True
+            if is_there and not was_stopped and robot.at_rest and robot.truth.x_m < 2.3:
+                was_stopped = True
+                put(robot, *[somebody] * stays)
+            if isinstance(event, MissionProgress) and event.mission_id == mission_id:
+                words.append(event.message)
+                phase = event.phase
+                if event.is_last:
+                    break
+        assert was_stopped
+        assert any("stands what is not on the map" in message for message in words) == stays
+        assert phase is MissionPhase.DONE, words
+        assert stays or robot.truth.distance_m(Pose2(4.2, 1.2, 0.0)) < 0.2
+        assert not it.daemon.control.status.bumpers_rad
+
+
+async def test_it_does_not_drive_with_a_laser_that_fell_silent(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = robot_in("laboratory")
+    honest = Laser.shoot
+
+    def blind_on_the_way(laser: Laser, at_us: int) -> ShotAnswer:
+        return honest(laser, at_us) if robot.truth.x_m < 1.5 else laser._answer(ShotStatus.WEAK)
+
+    monkeypatch.setattr(Laser, "shoot", blind_on_the_way)
+    async with live(robot, QUICK) as it:
+        _, end = await it.do(Explore.of("lab", robot.start, stops_m=((4.2, 1.2),), stops_max=2))
+    assert end.phase is MissionPhase.FAILED
+    assert end.message.startswith("the rangefinder failed 10 times in a row while the robot drove")
+    assert robot.truth.x_m < 2.5
+
+
+def put(robot: SimulatedRobot, *more: Wall) -> None:
+    """Put walls where the robot's world had none, in the place of those that were put there before."""
     world = load_world("laboratory")
-    walls = replace(world, wall=(*world.wall, wall)).walls
+    walls = replace(world, wall=(*world.wall, *more)).walls
     robot._body._walls = walls
     robot._laser._walls = walls
 

@@ -10,6 +10,7 @@ from robotd.contract.missions import Explore
 from robotd.contract.ways import Hindrance, Point
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.rectangle import Rectangle
+from robotd.exploring.errand import Errand
 from robotd.exploring.reasons import WhyEnded, WhyLeft
 from robotd.exploring.settings import Pace
 from robotd.exploring.tried import Tried
@@ -36,10 +37,10 @@ _SWEEP_MIN_S = 1.0
 class Journey:
     """How far one mission has come."""
 
-    began_m: Point
     began_ns: int
     now_ns: int
-    tried: Tried = field(default_factory=Tried)
+    met_m: tuple[Point, ...] = ()
+    """What was seen on the way since the last stop that the map has free: obstacles, whatever the map says."""
     pace: Pace = field(default_factory=Pace)
     stops: int = 0
     way_m: float = 0.0
@@ -54,7 +55,7 @@ class Journey:
             or (mission.time_max_s is not None and self.now_ns - self.began_ns >= mission.time_max_s * NS_PER_S)
         )
 
-    def stopped(self, stop: Surveyed, at_m: Point) -> None:
+    def stopped(self, stop: Surveyed) -> None:
         """Take note of a stop that was made."""
         first_ns, self.now_ns = (stop.sweep.readings[at].time_ns for at in (0, -1))
         self.pace = replace(self.pace, sweep_s=max(_SWEEP_MIN_S, (self.now_ns - first_ns) / NS_PER_S))
@@ -62,11 +63,7 @@ class Journey:
         self.way_m += stop.way_m
         self.against = self.against + 1 if stop.outcome is Outcome.CONTRADICTS else 0
         # What stood in the way is on the map by now, or has gone.
-        self.tried = Tried(self.tried.in_vain_m)
-        # A place that shows nothing new would be chosen again for ever: what hides behind it does not appear by
-        # looking twice.
-        if stop.cells < _NEWS_CELLS:
-            self.tried = self.tried.in_vain(at_m)
+        self.met_m = ()
 
 
 async def run_exploring(context: MissionContext, place: MapInUse, mission: Explore, report: Reporter) -> str:
@@ -76,9 +73,9 @@ async def run_exploring(context: MissionContext, place: MapInUse, mission: Explo
         MissionError: too many readings failed, or the robot is not localized on the map; it stands.
         DeviceError, LinkTimeout, TransportError: a device failed; the robot must be stopped.
     """
-    exploring = Exploring(context, place, mission, report, await _begun(context))
+    exploring = Exploring(context, place, mission, report, await _begun(context, place, mission))
     await exploring.look_round(found_again=mission.resume)
-    for goal_m in mission.stops_m:
+    for goal_m in exploring.errand.asked_m:
         await exploring.visit(goal_m, "asked for")
     # One choice at a time, on the map as it is after the last stop: a tour planned ahead would be of a map that
     # is no more.
@@ -89,9 +86,14 @@ async def run_exploring(context: MissionContext, place: MapInUse, mission: Explo
     return exploring.end(chosen)
 
 
-async def _begun(context: MissionContext) -> Journey:
+async def _begun(context: MissionContext, place: MapInUse, mission: Explore) -> Journey:
+    """Begin an errand on the map, or take up the one that it was left with."""
     time_ns, here = await here_on(context, "explore --resume")
-    return Journey((here.x_m, here.y_m), time_ns, time_ns)
+    errand = place.errand or Errand((here.x_m, here.y_m))
+    bounds = mission.within
+    within = errand.within if bounds is None else Rectangle(*msgspec.structs.astuple(bounds))
+    place.errand = replace(errand, within=within, asked_m=(*errand.asked_m, *mission.stops_m))
+    return Journey(time_ns, time_ns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,24 +106,29 @@ class Exploring:
     report: Reporter
     journey: Journey
 
-    async def look_round(self, *, found_again: bool = False) -> None:
+    async def look_round(self, *, found_again: bool = False, at_goal_m: Point | None = None) -> None:
         """Make a stop where the robot stands; the first on a map that is gone on with is ``found_again``."""
         # Before the sweep, so that everything it tells bears the number of this stop.
         self.report.stop = self.journey.stops
         stop = await survey_stop(self.context, self.place, self.report, found_again=found_again)
-        _, here = await here_on(self.context, "explore --resume")
-        self.journey.stopped(stop, (here.x_m, here.y_m))
+        # In one step with the map: who goes on after a kill must not find a stop that its errand knows nothing of.
+        self.journey.stopped(stop)
+        errand = self.errand if at_goal_m is None else self.errand.gone_to(at_goal_m)
+        # A place that shows nothing new would be chosen again for ever: what hides behind it does not appear by
+        # looking twice.
+        is_in_vain = stop.cells < _NEWS_CELLS
+        self.place.explored(errand.in_vain((stop.at.x_m, stop.at.y_m)) if is_in_vain else errand)
 
     async def choose(self) -> Chosen:
         """Return where to stop next, or why to end; a journey that is spent, or lost, ends whatever is left."""
         _, start = await here_on(self.context, "explore --resume")
-        journey, bounds = self.journey, self.mission.within
-        within = None if bounds is None else Rectangle(bounds.west_m, bounds.south_m, bounds.east_m, bounds.north_m)
-        tried = replace(journey.tried, met_m=self._met_m)
+        journey, errand = self.journey, self.errand
+        tried = Tried(errand.in_vain_m, self._met_m)
         cut_off_m = self.context.settings.rangefinder.range_max_m
         # Asked even if the journey is spent: the answer also says what is left to do, which the last word
         # tells.
-        chosen = await self.context.head.ask(Choose(self.place.ref, start, tried, within, cut_off_m, journey.pace))
+        job = Choose(self.place.ref, start, tried, errand.within, cut_off_m, journey.pace)
+        chosen = await self.context.head.ask(job)
         # Before the budget: a map that contradicts what is seen is the reason that people must hear.
         if journey.against >= _AGAINST:
             return _ended_by(WhyEnded.LOST, chosen)
@@ -142,15 +149,15 @@ class Exploring:
         hindrance = await self._reach(goal_m)
         # Not reached is no failure of the mission: a chair in a doorway must not cost the rest of the house.
         if hindrance:
-            journey.tried = journey.tried.in_vain(goal_m)
+            self.place.explored(self.errand.in_vain(goal_m).gone_to(goal_m))
             self.report.at(MissionPhase.DRIVING, message=f"({x_m:.2f}, {y_m:.2f}) m not reached: {hindrance}")
         else:
-            await self.look_round()
+            await self.look_round(at_goal_m=goal_m)
 
     async def go_back(self) -> None:
         """Return to where the mission began."""
         self.report.at(MissionPhase.DRIVING, message="back to where it began")
-        hindrance = await self._reach(self.journey.began_m)
+        hindrance = await self._reach(self.errand.began_m)
         if hindrance:
             self.report.at(MissionPhase.DRIVING, message=f"not got back: {hindrance}")
 
@@ -171,8 +178,14 @@ class Exploring:
         return ended.words
 
     @property
+    def errand(self) -> Errand:
+        """What it is out for, which stays with the map."""
+        assert self.place.errand is not None  # it began with one
+        return self.place.errand
+
+    @property
     def _met_m(self) -> tuple[Point, ...]:
-        return (*self.place.bumps_m, *self.journey.tried.met_m)
+        return (*self.place.bumps_m, *self.journey.met_m)
 
     async def _reach(self, goal_m: Point) -> str:
         """Drive to a place, round what stands in the way; return why it was not reached, empty if it was."""
@@ -190,7 +203,7 @@ class Exploring:
                 return str(error)
             if not met_m:
                 return ""
-            self.journey.tried = self.journey.tried.met(met_m)
+            self.journey.met_m = (*self.journey.met_m, *met_m)
             words = f"at ({met_m[0][0]:.2f}, {met_m[0][1]:.2f}) m stands what is not on the map"
             self.report.at(MissionPhase.DRIVING, message=words)
         return "there is always something in the way"

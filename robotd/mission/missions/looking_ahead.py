@@ -1,4 +1,4 @@
-"""To a place on the map, piece by piece, with a look before each: what came since the map stops the robot.
+"""To a place on the map, piece by piece, with a look before and on each: what came since the map stops the robot.
 
 Between two pieces it looks all round as well, and finds itself again: wheels lie, and where they alone say where the
 robot is, it is soon beside its way by more than it keeps clear of walls.
@@ -9,22 +9,26 @@ from dataclasses import dataclass
 
 from robotd.contract.ways import Hindrance, Point
 from robotd.core.angles import FULL_TURN_RAD
+from robotd.core.clock import NS_PER_S
 from robotd.core.motion_error import Travel
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading
-from robotd.exploring.ahead import bearings_about, bearings_along, in_the_way, shape_of
+from robotd.exploring.ahead import bearings_about, bearings_along, bearings_on_the_way, in_the_way, shape_of
 from robotd.head.jobs import Glance, Plan
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.driving import NoWay
 from robotd.mission.missions.plan_told import PlanTold
 from robotd.mission.missions.surveying import tell_tie
-from robotd.mission.motion.legs import drive_leg, next_odometry, rotate_to
+from robotd.mission.missions.watching import drive_watching, reach_m
+from robotd.mission.motion.legs import next_odometry, rotate_to
 from robotd.mission.whereabouts.map_in_use import MapInUse
 
 PIECE_M = 1.5
 """No farther at a time: on less way wheels are seldom off by more than the robot keeps clear of walls."""
 _ALL_ROUND = tuple(FULL_TURN_RAD * number / 20 - math.pi for number in range(20))
 """Enough to find a pose again that is known to some centimetres."""
+_LOOKS = 3
+"""So often on one piece something is met on the way that is not there any more by the second look."""
 
 
 async def drive_looking(
@@ -65,23 +69,38 @@ async def _driven(
         raise NoWay(way.message, way.reason, way.nearest_m)
     plan.drives((known.in_map.x_m, known.in_map.y_m), way.waypoints_m)
     for number, end_m in enumerate(_pieces(known.in_map, way.waypoints_m)):
+        known, met_m_now = await _driven_piece(context, place, known, end_m, number, is_wary=bool(met_m))
+        if met_m_now:
+            return met_m_now
+    return ()
+
+
+async def _driven_piece(
+    context: MissionContext, place: MapInUse, known: _At, end_m: Point, number: int, *, is_wary: bool
+) -> tuple[_At, tuple[Point, ...]]:
+    """Drive one piece of a way; return where the robot was found last, and what was met in the way, map frame."""
+    seen_m: tuple[Point, ...] = ()
+    for look in range(number, number + _LOOKS):
         here = await _facing(context, end_m)
         length_m = _way_m(here.in_map, end_m)
         # As a set: beams ahead and those all round share bearings, and none is worth two readings.
         along_rad = {*bearings_along(length_m, context.settings.planning.robot_radius_m)}
         # Round what it met it goes with open eyes: a corner between two beams is soon a bump.
-        ahead_rad = {*along_rad, *bearings_about(0.0)} if met_m else along_rad
+        ahead_rad = {*along_rad, *bearings_about(0.0)} if is_wary or seen_m else along_rad
         # Where the first piece begins, it has just made a stop, and knows where it is.
-        wanted_rad = sorted({*ahead_rad, *_ALL_ROUND} if number else ahead_rad)
-        readings = await context.sweeper.glance(wanted_rad, clockwise=number % 2 == 1)
-        if number:
+        wanted_rad = sorted({*ahead_rad, *_ALL_ROUND} if look else ahead_rad)
+        readings = await context.sweeper.glance(wanted_rad, clockwise=look % 2 == 1)
+        if look:
             here = known = await _found_again(context, place, known, here, readings)
         # After it was found again: what is met is told on the map from there, and by wheels alone it would lie
         # beside itself.
         if met := await _met(context, readings, length_m):
-            return tuple(here.in_map.transform(*place_m) for place_m in met)
-        await _go(context, end_m)
-    return ()
+            return known, tuple(here.in_map.transform(*place_m) for place_m in met)
+        # What is met on the way stops it, and no more: standing, it looks again whether something is there.
+        seen_m = await _go(context, end_m, readings)
+        if not seen_m:
+            return known, ()
+    return known, seen_m
 
 
 async def _here(context: MissionContext) -> _At:
@@ -127,11 +146,16 @@ async def _met(context: MissionContext, readings: tuple[RangeReading, ...], leng
     return shape_of(met, await context.sweeper.glance(bearings_about(met.bearing_rad)))
 
 
-async def _go(context: MissionContext, end_m: Point) -> None:
+async def _go(context: MissionContext, end_m: Point, looked: tuple[RangeReading, ...]) -> tuple[Point, ...]:
+    """Drive to the end of a piece; return what stopped the robot on the way, map frame, nothing if it arrived."""
     tie = context.whereabouts.believed
     assert tie is not None  # what doubts it, ends the mission
-    point_m = tie.map_from_odom.inverse().transform(*end_m)
-    await drive_leg(context.robot.drive, *point_m, context.settings.driving, context.hold)
+    driving, half_width_m = context.settings.driving, context.settings.planning.robot_radius_m
+    # The look before has just shown how fast the head is.
+    reading_s = (looked[-1].time_ns - looked[0].time_ns) / NS_PER_S / max(1, len(looked) - 1)
+    bearings_rad = bearings_on_the_way(reach_m(driving), half_width_m, speed_mps=driving.speed_mps, reading_s=reading_s)
+    met_m = await drive_watching(context, tie.map_from_odom.inverse().transform(*end_m), bearings_rad)
+    return () if met_m is None else (tie.map_from_odom.transform(*met_m),)
 
 
 def _pieces(start: Pose2, waypoints_m: tuple[Point, ...]) -> list[Point]:

@@ -174,6 +174,7 @@ class Sweeper:
         Who looks again and again does so there and back, or the head turns all the way for nothing.
 
         Raises:
+            MissionError: too many of them failed, as of a sweep; the robot stands.
             DeviceError, LinkTimeout, TransportError: as :meth:`sweep`.
         """
         limits = await self.robot.pantilt.limits()
@@ -185,7 +186,19 @@ class Sweeper:
         await self._take_up_play(seen_rad[0], lag_rad)
         readings = [await self._read_through_holds(rad, lag_rad, start, start) for rad in seen_rad]
         await self.robot.rangefinder.switch_laser(on=False)
+        _check_answered(readings, len(readings), self.settings.readings_min_share)
         return tuple(readings)
+
+    async def read_on_the_way(self, bearing_rad: float) -> RangeReading:
+        """Take one reading while the robot drives, the light being on, in the frame of where the robot is then.
+
+        The play of the head's gears is left out: nothing is laid into a map by it.
+
+        Raises:
+            DeviceError, LinkTimeout, TransportError: as :meth:`sweep`.
+        """
+        here = Odometry(now_ns(), IDENTITY, STANDSTILL)
+        return await self._read(bearing_rad, 0.0, here, here)
 
     def _parts(self, limits: PanTiltLimits, number: int) -> tuple[SweepPart, ...]:
         margin_rad = _LIMIT_MARGIN_RAD + self.mount.backlash_rad
@@ -215,14 +228,12 @@ class Sweeper:
             )
 
     async def _check_enough(self, readings: list[RangeReading]) -> None:
-        failed = sum(reading.status in FAILED for reading in readings)
         # Against the whole sweep, not the readings so far: a bad beginning may still come to a good sweep.
-        if self.settings.readings - failed >= self.settings.readings_min_share * self.settings.readings:
-            return
-        await self.robot.rangefinder.switch_laser(on=False)
-        raise MissionError(
-            f"the rangefinder failed at {failed} of {len(readings)} readings, the last was {readings[-1].status}"
-        )
+        try:
+            _check_answered(readings, self.settings.readings, self.settings.readings_min_share)
+        except MissionError:
+            await self.robot.rangefinder.switch_laser(on=False)
+            raise
 
     async def _turn_base(self, start: Odometry, part: SweepPart) -> Odometry:
         if part.base_turn_rad == 0.0:
@@ -253,6 +264,14 @@ class Sweeper:
         aim = replace(aim, pan_rad=aim.pan_rad + lag_rad)
         # The last argument is where the robot stands now, seen from where it stood first.
         return reading_in_robot(self.mount, self.calibration, aim, shot, start.in_odom.inverse() @ here.in_odom)
+
+
+def _check_answered(readings: Sequence[RangeReading], of: int, min_share: float) -> None:
+    """Refuse readings of which too many failed."""
+    failed = sum(reading.status in FAILED for reading in readings)
+    if of - failed < min_share * of:
+        last = readings[-1].status
+        raise MissionError(f"the rangefinder failed at {failed} of {len(readings)} readings, the last was {last}")
 
 
 async def standing(robot: Robot, settle_s: float, driving: DrivingSettings) -> Odometry:

@@ -32,6 +32,8 @@ class Surveyed:
     """How many cells of the map it changed."""
     way_m: float
     """From the stop before, as the wheels tell it."""
+    at: Pose2
+    """Where the robot stood, on the map."""
 
 
 async def here_on(context: MissionContext, then: str) -> tuple[int, Pose2]:
@@ -65,29 +67,28 @@ async def survey_stop(
     faults = faults_text(sweep)
     report.at(MissionPhase.COMPUTING, message=faults)
     travel = context.whereabouts.stopped(sweep.in_odom)
-    inserted, outcome = await _laid_in(context, place, sweep, travel, found_again=found_again)
+    inserted, outcome, at = await _laid_in(context, place, sweep, travel, found_again=found_again)
     place.take(inserted)
     change = place.changes(now_ns(), inserted)
     context.publish(change, map_result(change, inserted.digest))
-    return Surveyed(sweep, faults, outcome, len(change.cells), travel.way_m)
+    return Surveyed(sweep, faults, outcome, len(change.cells), travel.way_m, at)
 
 
 async def _laid_in(
     context: MissionContext, place: MapInUse, sweep: Sweep, travel: Travel, *, found_again: bool
-) -> tuple[Inserted, Outcome | None]:
+) -> tuple[Inserted, Outcome | None, Pose2]:
     """Lay a sweep into the map, where it fits what was mapped so far, and tie odometry there."""
+    at = _taken_at(context, sweep)
     if context.settings.localization.stops is StopPoses.ODOMETRY:
-        return await context.head.ask(Insert(place.ref, sweep, _taken_at(context, sweep))), None
-    laid = await context.head.ask(
-        PlaceStop(place.ref, place.map_id, sweep, travel, _taken_at(context, sweep), now_ns(), found_again)
-    )
+        return await context.head.ask(Insert(place.ref, sweep, at)), None, at
+    laid = await context.head.ask(PlaceStop(place.ref, place.map_id, sweep, travel, at, now_ns(), found_again))
     # In one step with the map that it is on: nobody is told a pose on a map that is no more.
     outcome = Outcome(laid.placed.outcome)
     context.whereabouts.placed(laid.map_from_robot, sweep.in_odom, is_found=outcome.is_found)
     for event in laid.decided:
         context.publish(event)
     tell_tie(context)
-    return laid, outcome
+    return laid, outcome, laid.map_from_robot
 
 
 def tell_tie(context: MissionContext) -> None:

@@ -92,8 +92,11 @@ async def translate_to(
     hold: Hold | None = None,
     *,
     backwards: bool = False,
+    unless: Callable[[], bool] = lambda: False,
 ) -> Odometry:
     """Drive straight to a point in the ``odom`` frame that lies ahead, or behind if it is to go ``backwards``.
+
+    Once ``unless`` is true it comes to a stand where it is.
 
     Raises:
         FellSilent: odometry fell silent.
@@ -118,20 +121,27 @@ async def translate_to(
         left=lambda now: max(0.0, distance_left_m(facing(now), x_m, y_m)),
         tolerance=settings.position_tolerance_m,
         twist=twist,
+        unless=unless,
     )
 
 
 async def drive_leg(
-    drive: Drive, x_m: float, y_m: float, settings: DrivingSettings, hold: Hold | None = None
+    drive: Drive,
+    x_m: float,
+    y_m: float,
+    settings: DrivingSettings,
+    hold: Hold | None = None,
+    *,
+    unless: Callable[[], bool] = lambda: False,
 ) -> Odometry:
-    """Drive one leg: rotate towards its end in the ``odom`` frame, then translate to it."""
+    """Drive one leg: rotate towards its end in the ``odom`` frame, then translate to it, as :func:`translate_to`."""
     # The next and not the latest: what was told before a hold, or before the base was last pushed, is no start.
     here = await next_odometry(drive, settings.silence_s)
     # From so near the bearing to the end points anywhere, and the robot would turn for nothing.
     if math.hypot(x_m - here.in_odom.x_m, y_m - here.in_odom.y_m) <= settings.position_tolerance_m:
         return here
     await rotate_to(drive, math.atan2(y_m - here.in_odom.y_m, x_m - here.in_odom.x_m), settings, hold)
-    return await translate_to(drive, x_m, y_m, settings, hold)
+    return await translate_to(drive, x_m, y_m, settings, hold, unless=unless)
 
 
 async def settle(drive: Drive, settle_s: float, settings: DrivingSettings) -> Odometry:
@@ -175,8 +185,9 @@ async def _approach(
     left: Callable[[Odometry], float],
     tolerance: float,
     twist: Callable[[Odometry], Twist2],
+    unless: Callable[[], bool] = lambda: False,
 ) -> Odometry:
-    """Send ``twist`` for each odometry message until ``left`` is within ``tolerance``; then stand."""
+    """Send ``twist`` for each odometry message until ``left`` is within ``tolerance``, or ``unless``; then stand."""
     hold = Hold() if hold is None else hold
     holds = hold.count
     nearest, nearest_ns = math.inf, 0
@@ -186,7 +197,7 @@ async def _approach(
             if hold.count != holds:
                 raise Interrupted
             remaining = left(now)
-            if remaining <= tolerance:
+            if remaining <= tolerance or unless():
                 # Said, not left to the deadman: that would let it roll on for as long as the last set-point
                 # lives.
                 drive.set_velocity(STANDSTILL, settings.setpoint_ttl_s)

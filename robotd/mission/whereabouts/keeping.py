@@ -1,5 +1,6 @@
 """Keeps the map in use from getting lost: what nobody saved goes to the store by itself, marked as unsaved.
 
+While a mission maps, it does so after each stop: a sweep takes half a minute, and the largest map a second of the disk.
 It writes beside the mission, and nothing that the robot does depends on it: a replay has none of this, and writes
 nothing.
 """
@@ -8,6 +9,8 @@ import asyncio
 import logging
 from functools import partial
 from typing import Any, Protocol
+
+import msgspec
 
 from robotd.contract.modes import Mode
 from robotd.core.clock import now_ns, wall_offset_ns
@@ -19,14 +22,11 @@ from robotd.head.wire import JobFailed
 from robotd.maps.archive import Archive
 from robotd.maps.entry import UNSAVED, MapEntry
 from robotd.maps.packed_content import PackedContent
-from robotd.mission.map_entries import BUMPS
+from robotd.mission.map_entries import BUMPS, ERRAND
 from robotd.mission.news import News
-from robotd.mission.whereabouts.map_in_use import MapInUse
+from robotd.mission.whereabouts.map_in_use import MapInUse, MapState
 from robotd.mission.whereabouts.whereabouts import Whereabouts
 
-EVERY_STOPS = 5
-"""A map that grows is kept each time this many sweeps are in it that are in memory alone: more than that, not even a
-kill costs."""
 _LAST_S = 20.0
 """How long the end of the daemon waits for the disk; the service manager must wait longer (``TimeoutStopSec``)."""
 
@@ -48,7 +48,7 @@ class KeepingHost(Protocol):
 
 
 class Keeping:
-    """Watches the map in use and keeps it when a mission has changed it, and every few stops while one does."""
+    """Watches the map in use and keeps it whenever something of it is in memory alone."""
 
     def __init__(self, host: KeepingHost, archive: Archive[PackedContent], head: Head, disk: Compute) -> None:
         self._host = host
@@ -57,26 +57,22 @@ class Keeping:
         self._disk = disk
         self.turn = asyncio.Lock()
         """Held while a map goes to the store: what is kept and what is saved must know of each other."""
-        self._tried: tuple[str, int] | None = None
+        self._tried: tuple[str, MapState] | None = None
         """What was tried last: a disk that refused it is not asked again with every event."""
 
     async def run(self) -> None:
-        """Keep the map at the end of every mission that changed it, and every few stops, until cancelled."""
+        """Keep the map whenever it has changed, until cancelled."""
         with self._host.news.events.subscribe() as events:
             async for _ in events:  # whichever: those missed while the disk was busy are no loss
                 place = self._host.whereabouts.map_in_use
-                if place is not None and self._is_due(place) and self._tried != _state_of(place):
+                if place is not None and place.is_at_risk and self._tried != _state_of(place):
                     await self.keep()
-
-    def _is_due(self, place: MapInUse) -> bool:
-        # Not after each stop while it grows: the largest map takes a second of the disk each time (decision 25).
-        return place.at_risk >= (EVERY_STOPS if self._host.mode is Mode.UNDER_WAY else 1)
 
     async def keep(self) -> str | None:
         """Bring what nobody saved of the map in use to the store; return why that cannot be done, None if it was."""
         async with self.turn:
             # Again if the map grew while the disk was busy, or another one is in use by now.
-            while (place := self._host.whereabouts.map_in_use) is not None and self._is_due(place):
+            while (place := self._host.whereabouts.map_in_use) is not None and place.is_at_risk:
                 self._tried = _state_of(place)
                 try:
                     entry = await self._kept(place)
@@ -107,7 +103,7 @@ class Keeping:
     def is_needed(self) -> bool:
         """Whether anything of the map in use is in memory alone."""
         place = self._host.whereabouts.map_in_use
-        return place is not None and place.at_risk > 0
+        return place is not None and place.is_at_risk
 
     async def keep_last(self) -> None:
         """Keep the map at the daemon's end, for which the disk has a while."""
@@ -118,9 +114,10 @@ class Keeping:
             log.error("the disk took longer than %g s to keep the unsaved map", _LAST_S)  # noqa: TRY400  # that is all
 
     async def _kept(self, place: MapInUse) -> MapEntry:
-        generation = place.generation
+        # As of now: it may change while the disk writes.
+        state = place.state
         entry = await self.store(place, place.name, {UNSAVED: True})
-        place.kept(generation, entry.version)
+        place.kept(state, entry.version)
         return entry
 
     async def store(self, place: MapInUse, name: str, metadata: dict[str, Any]) -> MapEntry:
@@ -133,6 +130,8 @@ class Keeping:
         told = {"generation": place.generation, "map_id": place.map_id, **metadata}
         if place.bumps_m:
             told[BUMPS] = place.bumps_m
+        if place.errand is not None:
+            told[ERRAND] = msgspec.to_builtins(place.errand)
         created_ns = now_ns() + wall_offset_ns()
         made = await self._head.ask(MakeFiles(place.ref))
         if made.remark is not None:
@@ -141,5 +140,5 @@ class Keeping:
         return await self._disk.run("save map", lambda: save(name, made.content, told, created_ns))
 
 
-def _state_of(place: MapInUse) -> tuple[str, int]:
-    return place.map_id, place.generation
+def _state_of(place: MapInUse) -> tuple[str, MapState]:
+    return place.map_id, place.state

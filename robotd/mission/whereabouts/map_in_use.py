@@ -1,6 +1,7 @@
 """The map the robot lives on now, and how much of it is on the disk."""
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,10 +9,20 @@ from numpy.typing import NDArray
 from robotd.contract.events import MapChanged
 from robotd.contract.ways import Point
 from robotd.core.grid_spec import GridSpec
+from robotd.exploring.errand import Errand
 from robotd.head.jobs import HeldMap, Inserted, MapRef
 
 _NO_CELLS: NDArray[np.intp] = np.empty(0, dtype=np.intp)
 _NO_VALUES: NDArray[np.uint8] = np.empty(0, dtype=np.uint8)
+
+
+class MapState(NamedTuple):
+    """How often a map has changed since it came into use; a later state is greater."""
+
+    generation: int = 0
+    """Of its cells."""
+    remarks: int = 0
+    """What is known of it beside them."""
 
 
 @dataclass(slots=True)
@@ -35,14 +46,18 @@ class MapInUse:
     """How many stops it is made of by now; None if that is not known, as of maps that did not keep them."""
     generation: int = 0
     """Counts its changes since it came into use."""
-    settled_generation: int = 0
-    """The change up to which it is as somebody saved it, or gave it up; -1 if it came into use unsaved."""
-    kept_generation: int = 0
-    """The change up to which it is in the store, though unsaved."""
+    remarks: int = 0
+    """Counts what was remarked beside its cells since then."""
+    settled: MapState = MapState()  # noqa: RUF009  # it is never changed
+    """As which somebody saved it, or gave it up; less than any if it came into use unsaved."""
+    in_store: MapState = MapState()  # noqa: RUF009  # as above
+    """As which it was kept in the store, though unsaved."""
     kept_version: int | None = None
     """Which version of its name that is."""
     bumps_m: tuple[Point, ...] = ()
     """Where the robot bumped into something: an obstacle, whatever the laser sees there."""
+    errand: Errand | None = None
+    """How far exploring it has come; None if it was never explored."""
 
     def __post_init__(self) -> None:
         """Begin as it came."""
@@ -59,14 +74,19 @@ class MapInUse:
         return MapRef(self.number, self.generation)
 
     @property
-    def is_unsaved(self) -> bool:
-        """Whether it has changes that nobody saved."""
-        return self.generation > self.settled_generation
+    def state(self) -> MapState:
+        """How often it has changed by now."""
+        return MapState(self.generation, self.remarks)
 
     @property
-    def at_risk(self) -> int:
-        """How many of its changes are in memory alone."""
-        return max(0, self.generation - max(self.settled_generation, self.kept_generation))
+    def is_unsaved(self) -> bool:
+        """Whether it has changes that nobody saved."""
+        return self.state > self.settled
+
+    @property
+    def is_at_risk(self) -> bool:
+        """Whether changes of it are in memory alone."""
+        return self.state > max(self.settled, self.in_store)
 
     @property
     def kept_beside(self) -> tuple[str, int] | None:
@@ -76,31 +96,36 @@ class MapInUse:
     @property
     def kept_as(self) -> int | None:
         """The version as which all that nobody saved is kept; None if some is not, or everything was saved."""
-        return self.kept_version if self.is_unsaved and not self.at_risk else None
+        return self.kept_version if self.is_unsaved and not self.is_at_risk else None
 
-    def saved(self, generation: int) -> None:
-        """Take note that somebody saved it as it was after that change."""
+    def saved(self, state: MapState) -> None:
+        """Take note that somebody saved it as it was then."""
         # It may have been given up, as it was later still, while the disk wrote.
-        self.settled_generation = max(self.settled_generation, generation)
+        self.settled = max(self.settled, state)
         self.kept_version = None  # what is saved took its place
 
     def given_up(self) -> None:
         """Take note that nobody wants what is not saved of it."""
-        self.settled_generation = self.generation
+        self.settled = self.state
 
-    def kept(self, generation: int, version: int) -> None:
-        """Take note that it is in the store, though unsaved, as it was after that change."""
-        self.kept_generation, self.kept_version = generation, version
+    def kept(self, state: MapState, version: int) -> None:
+        """Take note that it is in the store, though unsaved, as it was then."""
+        self.in_store, self.kept_version = state, version
 
     def found_unsaved(self, version: int) -> None:
         """Take note that it came from a version of the store that nobody had saved."""
-        self.settled_generation, self.kept_version = -1, version
+        self.settled, self.kept_version = MapState(-1), version
 
     def bumped(self, place_m: Point) -> None:
-        """Take note of a place where the robot bumped into something; what is kept does not know of it."""
+        """Take note of a place where the robot bumped into something."""
         self.bumps_m = (*self.bumps_m, place_m)
-        # So it is written again at the next occasion, though no cell has changed.
-        self.kept_generation = min(self.kept_generation, self.generation - 1)
+        self.remarks += 1
+
+    def explored(self, errand: Errand) -> None:
+        """Take note of how far exploring it has come."""
+        if errand != self.errand:
+            self.errand = errand
+            self.remarks += 1
 
     def take(self, inserted: Inserted) -> None:
         """Go on with the map that a sweep was laid in."""

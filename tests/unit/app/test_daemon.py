@@ -30,6 +30,7 @@ from robotd.head.compute import Compute
 from robotd.head.head import Head
 from robotd.maps.store import MapStore
 from robotd.mission.whereabouts.keeping import Keeping
+from robotd.mission.whereabouts.map_in_use import MapState
 from robotd.recording.entries import CommandEntry
 from robotd.recording.preroll import PrerollJournal
 from robotd.recording.reader import read
@@ -197,7 +198,7 @@ async def test_a_map_that_nobody_saved_outlives_sigterm(short: Path, monkeypatch
         daemon = await captured.composed
         await until_ready(daemon)
         place = await place_of(head_of(daemon), grid, "lab")
-        place.settled_generation = place.kept_generation = -1
+        place.settled = place.in_store = MapState(-1)
         daemon.supervisor.use(place)
         os.kill(os.getpid(), signal.SIGTERM)
         await asyncio.wait_for(running, 5.0)

@@ -68,7 +68,7 @@ def test_what_was_tried_in_vain_is_left_and_said() -> None:
     all_counts = ExploringSettings(good_enough=0.0)
     while (choice := chosen(drawn(*ROOM), replace(asked, tried=tried), all_counts)).goal_m is not None:
         assert all(math.dist(choice.goal_m, place_m) > 0.3 for place_m in tried.in_vain_m)
-        tried = tried.in_vain(choice.goal_m)
+        tried = Tried((*tried.in_vain_m, choice.goal_m))
     assert choice.ending is WhyEnded.UNREACHABLE
     assert [left.why for left in choice.left] == [WhyLeft.IN_VAIN]
 
@@ -157,7 +157,7 @@ def test_exploring_ends_whatever_is_seen_and_whatever_is_reached(
             return
         assert all(math.dist(choice.goal_m, place_m) > 0.3 for place_m in (*stops_m, *tried.in_vain_m))
         if refuses and count % (refuses + 1) == 0:
-            tried = tried.in_vain(choice.goal_m)
+            tried = Tried((*tried.in_vain_m, choice.goal_m))
             continue
         here, stops_m = choice.goal_m, (*stops_m, choice.goal_m)
         if not blind:

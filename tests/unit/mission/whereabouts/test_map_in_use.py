@@ -3,7 +3,9 @@
 import numpy as np
 
 from robotd.core.grid_bytes import unpacked_cells
+from robotd.exploring.errand import Errand
 from robotd.head.jobs import Inserted, MapRef
+from robotd.mission.whereabouts.map_in_use import MapState
 from tests.support.places import held, place
 
 
@@ -23,18 +25,18 @@ def test_a_change_is_told_and_the_map_goes_on_from_there() -> None:
 
 def test_what_is_saved_kept_and_given_up_is_known_by_the_change_up_to_which_it_is() -> None:
     here = place()
-    assert (here.is_unsaved, here.at_risk, here.kept_as) == (False, 0, None)
+    assert (here.is_unsaved, here.is_at_risk, here.kept_as) == (False, False, None)
     here.generation = 3
-    here.kept(2, 7)
-    assert (here.is_unsaved, here.at_risk, here.kept_as) == (True, 1, None)
-    here.kept(3, 8)
-    assert (here.is_unsaved, here.at_risk, here.kept_as) == (True, 0, 8)
-    here.saved(3)
-    assert (here.is_unsaved, here.at_risk, here.kept_as) == (False, 0, None)
-    here.saved(1)  # a save that began earlier and ended later makes nothing unsaved
+    here.kept(MapState(2), 7)
+    assert (here.is_unsaved, here.is_at_risk, here.kept_as) == (True, True, None)
+    here.kept(MapState(3), 8)
+    assert (here.is_unsaved, here.is_at_risk, here.kept_as) == (True, False, 8)
+    here.saved(MapState(3))
+    assert (here.is_unsaved, here.is_at_risk, here.kept_as) == (False, False, None)
+    here.saved(MapState(1))  # a save that began earlier and ended later makes nothing unsaved
     assert not here.is_unsaved
     here.generation = 4
-    assert here.at_risk == 1
+    assert here.is_at_risk
     here.given_up()
     assert not here.is_unsaved
 
@@ -42,6 +44,25 @@ def test_what_is_saved_kept_and_given_up_is_known_by_the_change_up_to_which_it_i
 def test_a_map_that_nobody_had_saved_is_unsaved_from_the_start_and_not_at_risk() -> None:
     here = place()
     here.found_unsaved(5)
-    assert (here.is_unsaved, here.at_risk, here.kept_as) == (True, 0, 5)
+    assert (here.is_unsaved, here.is_at_risk, here.kept_as) == (True, False, 5)
     here.generation = 1
-    assert (here.at_risk, here.kept_as) == (True, None)
+    assert (here.is_at_risk, here.kept_as) == (True, None)
+
+
+def test_what_is_remarked_beside_the_cells_is_a_change_too() -> None:
+    """A bump on a map that was saved, or that comes while the disk writes, is not in the store yet."""
+    here = place()
+    here.saved(here.state)
+    here.bumped((1.0, 2.0))
+    assert (here.is_unsaved, here.is_at_risk, here.bumps_m) == (True, True, ((1.0, 2.0),))
+    written = here.state
+    here.bumped((1.5, 2.0))
+    here.kept(written, 2)
+    assert here.is_at_risk
+    here.kept(here.state, 3)
+    assert (here.is_unsaved, here.is_at_risk) == (True, False)
+    here.explored(errand := Errand((0.0, 0.0)))
+    assert here.is_at_risk
+    here.kept(here.state, 4)
+    here.explored(errand)  # that is no news
+    assert not here.is_at_risk
