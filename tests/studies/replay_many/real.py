@@ -251,6 +251,9 @@ class _Session:
             await self._client.record_stop()
             end = Ends.SIGNALS[0]
         self._daemon.send_signal(signal.Signals[end])
+        if end == Ends.KILLED:
+            # Its children die with it, but for one that was frozen as it began: it would hold our pipe for good.
+            os.killpg(self._daemon.pid, signal.SIGKILL)
         async with asyncio.timeout(_END_S):
             await self._daemon.wait()
 
