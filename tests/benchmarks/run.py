@@ -18,6 +18,7 @@ from robotd.grid import kernels
 from tests.benchmarks import workload
 from tests.benchmarks.sections import asking, counting, erring, graph, inserting, refining, scaling, searching, storing
 from tests.benchmarks.timing import Timing, copying, yardstick
+from tests.support.this_machine import processor
 
 ROOT = Path(__file__).parents[2]
 
@@ -62,12 +63,6 @@ def _introduction() -> str:
         "the median should not exceed on the reference machine, two cores. Other programs may have been running: the\n"
         "least time is the one to compare."
     )
-
-
-def processor() -> str:
-    """Return what this machine calls its processor."""
-    lines = Path("/proc/cpuinfo").read_text().splitlines() if Path("/proc/cpuinfo").exists() else []
-    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), platform.machine())
 
 
 def commit() -> str:

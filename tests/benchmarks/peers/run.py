@@ -19,7 +19,8 @@ import numpy as np
 
 from tests.benchmarks.peers.ours import answers
 from tests.benchmarks.peers.questions import Questions
-from tests.benchmarks.run import ROOT, commit, processor
+from tests.benchmarks.run import ROOT, commit
+from tests.support.this_machine import processor
 
 HEAD = (
     "| who | how | mean error [mm] | median [mm] | within 0.1 m | median time [ms] | least [ms] | asked |\n"

@@ -13,12 +13,13 @@ from functools import partial
 from itertools import product
 from pathlib import Path
 
-from tests.benchmarks.run import ROOT, commit, processor
+from tests.benchmarks.run import ROOT, commit
 from tests.studies.heart.attackers import ATTACKERS
 from tests.studies.heart.endings import MODES
 from tests.studies.heart.rows import ATTACKED, ENDED, LEFT, Row, attack_row, end_row, ending_row, header
 from tests.studies.safety.run import _precedence
 from tests.support.spinning import spinning
+from tests.support.this_machine import processor
 
 PAGE = ROOT / "docs" / "benchmarks" / "heart.md"
 NOW = "## Now\n"

@@ -16,11 +16,12 @@ from robotd.contract.topics import Topic
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
 from robotd.maps.store import MapStore
-from tests.benchmarks.run import ROOT, commit, processor
+from tests.benchmarks.run import ROOT, commit
 from tests.studies.lag.samples import Figures, Samples
 from tests.studies.lag.workload import LARGE_CELLS, REGIONS, large_grid
 from tests.support.real_rig import Rig, armed, give_precedence, rig
 from tests.support.spinning import spinning
+from tests.support.this_machine import processor
 
 LEASE_S = 10.0
 """Longer than any stall: what is measured shall not end by it."""

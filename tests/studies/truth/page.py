@@ -1,14 +1,16 @@
 """What ``robotctl eval`` reported, as a page."""
 
 import datetime as dt
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
 _HEAD = """# How often right, and how often sure and wrong: {day}
 
 `make truth` on commit {commit}, as everything is set, nothing known beforehand: scans of recorded logs,
-sought on the map that others make. *Right* is localized within 0.3 m and 5 degrees; *near* a case has a scan of the
-map within 1 m and 45 degrees. Processor time is that of all threads, on whatever machine this was.
+sought on the map that others make ([what is asked, what is told](../evaluation.md)). *Right* is localized within 0.3 m
+and 5 degrees; *near* a case has a scan of the map within 1 m and 45 degrees. Processor time is that of all threads, on
+{machine}, whatever else that was busy with.
 
 Looked at while the engine was built: {looked_at}. Not looked at: {new}.
 
@@ -29,17 +31,36 @@ _COLUMNS = (
 )
 
 
-def page(day: dt.date, reports: Sequence[dict[str, Any]], looked_at: Sequence[str]) -> str:
+def page(day: dt.date, reports: Sequence[dict[str, Any]], looked_at: Sequence[str], machine: str) -> str:
     """Return the page of the reports of a day: one line each, in their order."""
     logs = {report["log"].partition(".")[0] for report in reports}
     head = _HEAD.format(
         day=day,
+        machine=machine,
         commit=", ".join(sorted({report["commit"] for report in reports})) or "none",
         looked_at=", ".join(sorted(logs & set(looked_at))) or "none",
         new=", ".join(sorted(logs - set(looked_at))) or "none",
     )
     lines = [_line(_COLUMNS), _line(["---"] * len(_COLUMNS)), *(_line(_cells(report)) for report in reports)]
-    return head + "\n".join(lines) + "\n"
+    return head + "\n".join([*lines, "", *_calibration(reports)]) + "\n"
+
+
+def _calibration(reports: Sequence[dict[str, Any]]) -> list[str]:
+    """Return whether belief means what it says; not on another building's map, where no answer is right."""
+    said: Counter[float] = Counter()
+    right: Counter[float] = Counter()
+    for report in reports:
+        if report["protocol"].startswith("other="):
+            continue
+        for line in report["calibration"]:
+            said[line["belief"][0]] += line["cases"]
+            right[line["belief"][0]] += line["right"]
+    rows = [
+        _line([f"{100 * low:.0f} to {100 * low + 10:.0f} %", str(said[low]), f"{100 * right[low] / said[low]:.0f} %"])
+        for low in sorted(said)
+    ]
+    head = "What the best answer's belief was, and how often that answer is right, on maps of the same building:"
+    return [head, "", _line(["belief said", "cases", "best answer right"]), _line(["---"] * 3), *rows]
 
 
 def _line(cells: Sequence[str]) -> str:

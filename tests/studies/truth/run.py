@@ -14,6 +14,7 @@ from typing import Any
 from robotd.cli.main import main as robotctl
 from robotd.evaluation.degrade import KINDS
 from tests.studies.truth.page import page
+from tests.support.this_machine import processor
 
 ROOT = Path(__file__).parents[3]
 LOOKED_AT = ("intel", "fr079", "edmonton", "infinite-corridor")
@@ -43,7 +44,9 @@ def main(words: list[str] | None = None) -> None:
     ]
     today = dt.datetime.now(tz=dt.UTC).date()
     arguments.out.mkdir(parents=True, exist_ok=True)
-    (arguments.out / f"{today}.md").write_text(page(today, reports, LOOKED_AT))
+    (arguments.out / f"{today}.md").write_text(
+        page(today, reports, LOOKED_AT, f"{processor()}, {os.cpu_count()} cores")
+    )
     sys.exit(any(report["wrong_and_sure"] for report in reports))
 
 

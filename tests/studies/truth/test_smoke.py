@@ -18,6 +18,7 @@ def test_a_page_has_a_line_for_each_log_and_size_of_cells(tmp_path: Path) -> Non
     [written] = (tmp_path / "truth").glob("*.md")
     rows = [line.split(" | ") for line in written.read_text().splitlines() if line.startswith("| interleaved")]
     assert [row[1:4] for row in rows] == [["room", f"{side} cm", "1"] for side in (5, 10, 20)]
+    assert "| 90 to 100 % | " in written.read_text()
     assert "Not looked at: room." in written.read_text()
 
 
