@@ -1,11 +1,15 @@
-"""Compile the C where there is a compiler: kernels, firmware; everything else is in pyproject.toml."""
+"""Compile the C where there is a compiler, let the program write its manual; everything else is in pyproject.toml."""
 
+import os
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 from setuptools import setup
 from setuptools.command.build_ext import build_ext
+
+from distutils.command.install_data import install_data  # isort: skip  # setuptools brings it
 
 
 class BuildIfPossible(build_ext):
@@ -43,8 +47,33 @@ class BuildIfPossible(build_ext):
         return None
 
 
+class WithManual(install_data):
+    """Beside the package a wheel has manuals and completions, which the program tells of itself.
+
+    Where what it needs is not installed a wheel has none; in a clone they would be old on the next day.
+    """
+
+    def run(self) -> None:
+        """Make them, or say in a line why not."""
+        super().run()
+        if self.get_finalized_command("build_py").editable_mode:
+            return
+        paths = os.pathsep.join(filter(None, (str(Path.cwd()), os.environ.get("PYTHONPATH"))))
+        made = subprocess.run(
+            [sys.executable, "-B", "systemd/wheel/shared.py", str(Path(self.install_dir, "share"))],
+            env={**os.environ, "PYTHONPATH": paths, "COLUMNS": "72"},
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+        if made.returncode:
+            said = made.stderr.strip().splitlines()[-1:]
+            print(f"robotd: no manuals and no completions are made: {''.join(said)}", file=sys.stderr)
+
+
 setup(
     cffi_modules=["robotd/grid/kernels/build.py:builder", "robotd/sim/firmware/firmware_build.py:builder"],
-    cmdclass={"build_ext": BuildIfPossible},
+    cmdclass={"build_ext": BuildIfPossible, "install_data": WithManual},
+    data_files=[("share", [])],  # what install_data makes is not there yet
     options={"bdist_wheel": {"py_limited_api": "cp311"}},
 )

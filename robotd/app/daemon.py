@@ -55,7 +55,7 @@ log = logging.getLogger(__name__)
 
 def main(argv: list[str] | None = None) -> int:
     """Run the daemon until a signal ends it; return the exit code."""
-    arguments = _parser().parse_args(argv)
+    arguments = build_parser().parse_args(argv)
     try:
         config = load(arguments.config or default_path())
     except ConfigError as error:
@@ -93,7 +93,8 @@ def _one_by_one(errors: BaseExceptionGroup[RobotdError]) -> Iterator[RobotdError
             yield error
 
 
-def _parser() -> argparse.ArgumentParser:
+def build_parser() -> argparse.ArgumentParser:
+    """Return what the program takes."""
     parser = argparse.ArgumentParser(
         prog="robotd",
         description="Own the robot's serial devices; map, localize, and serve poses over ZeroMQ.",
@@ -101,7 +102,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--config", type=Path, metavar="FILE", help="configuration (default: /etc/robotd/robotd.toml)")
     parser.add_argument("--log-level", default="info", choices=("debug", "info", "warning", "error"))
-    parser.add_argument("--version", action="version", version=f"robotd {__version__}")
+    parser.add_argument("-V", "--version", action="version", version=f"robotd {__version__}")
     return parser
 
 

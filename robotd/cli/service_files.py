@@ -1,4 +1,4 @@
-"""What a service manager needs of robotd, where each of it goes, and what of it is the owner's to change."""
+"""What a system needs of robotd, where each of it goes, and what of it is the owner's to change."""
 
 import re
 import subprocess
@@ -24,6 +24,9 @@ _PLACES = (
     (".toml", "etc/robotd", ".toml", True),
 )
 """Ending, directory, ending there, and whether what is there is its owner's: numbers of boards, settings."""
+_SHARED = ("man/man1/{}.1", "bash-completion/completions/{}", "zsh/site-functions/_{}")
+"""Manuals and completions below ``share``, where a wheel has them; a clone has none."""
+_PROGRAMS = ("robotctl", "robotd", "robotd-gateway")
 
 
 class Fate(StrEnum):
@@ -66,6 +69,11 @@ def service_files(prefix: Path, root: Path, systemd: int | None) -> Iterator[Ser
                 path = root / directory / f"{source.name.removesuffix(ending)}{new_ending}"
                 content = _adapted(source.read_text(), prefix, systemd).encode()
                 yield ServiceFile(path, content, _fate(path, content, is_owners=is_owners))
+    brought = root / prefix.relative_to("/") / "share"
+    for place in (place.format(program) for program in _PROGRAMS for place in _SHARED):
+        if (brought / place).exists():
+            path, content = root / "usr/local/share" / place, (brought / place).read_bytes()
+            yield ServiceFile(path, content, _fate(path, content, is_owners=False))
 
 
 def systemd_version() -> int | None:

@@ -34,12 +34,7 @@ def read_settings(path: Path | None) -> GatewaySettings:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the gateway and return its exit code."""
-    parser = argparse.ArgumentParser(prog="robotd-gateway", description="Serve the robot's console to browsers.")
-    parser.add_argument("--config", type=Path, metavar="FILE", help=f"its settings (default: {DEFAULT_FILE})")
-    parser.add_argument("--check", action="store_true", help="say whether the settings are right, and end")
-    parser.add_argument("--log-level", default="info", choices=("debug", "info", "warning", "error"))
-    parser.add_argument("-V", "--version", action="version", version=f"robotd-gateway {__version__}")
-    arguments = parser.parse_args(argv)
+    arguments = build_parser().parse_args(argv)
     configure(arguments.log_level)
     try:
         return _run(arguments)
@@ -50,6 +45,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     except RobotdError as error:
         print(f"robotd-gateway: {error}", file=sys.stderr)
         return FAILED
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return what the program takes."""
+    parser = argparse.ArgumentParser(prog="robotd-gateway", description="Serve the robot's console to browsers.")
+    parser.add_argument("--config", type=Path, metavar="FILE", help=f"its settings (default: {DEFAULT_FILE})")
+    parser.add_argument("--check", action="store_true", help="say whether the settings are right, and end")
+    parser.add_argument("--log-level", default="info", choices=("debug", "info", "warning", "error"))
+    parser.add_argument("-V", "--version", action="version", version=f"robotd-gateway {__version__}")
+    return parser
 
 
 def _run(arguments: argparse.Namespace) -> int:

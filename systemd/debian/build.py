@@ -1,7 +1,7 @@
 """A Debian package of a wheel, by dpkg-deb alone: ``python3 systemd/debian/build.py WHEEL DIRECTORY``.
 
 The program and all that it needs are in a virtual environment of their own, for Debian's Python of one minor version.
-Prints the path of the package. Completions and the manual are made from the program's own parser.
+Prints the path of the package. Completions and manuals are those that the wheel brings.
 """
 
 import argparse
@@ -21,8 +21,11 @@ _MOVED = {
     "etc/systemd/system": "usr/lib/systemd/system",
     "etc/sysusers.d": "usr/lib/sysusers.d",
     "etc/tmpfiles.d": "usr/lib/tmpfiles.d",
+    "usr/local/share/man": "usr/share/man",
+    "usr/local/share/bash-completion": "usr/share/bash-completion",
+    "usr/local/share/zsh/site-functions": "usr/share/zsh/vendor-completions",
 }
-"""Where a package has what an administrator would put below /etc."""
+"""Where a package has what an administrator would put below /etc and /usr/local."""
 _CHANGES = """robotd ({version}) unstable; urgency=medium
 
   * What changed stands in changelog.gz.
@@ -77,18 +80,19 @@ def services(root: Path, python: Path) -> None:
     for old, new in _MOVED.items():
         (root / new).parent.mkdir(parents=True, exist_ok=True)
         shutil.move(root / old, root / new)
+    shutil.rmtree(root / "usr/local")
+    shutil.rmtree(root / HOME.lstrip("/") / "share")  # what was in it is in its place now
     for gateway in root.glob("**/*robotd-gateway*"):  # a package of its own
         if "site-packages" not in gateway.parts:
             gateway.unlink()
 
 
-def documents(root: Path, python: Path, version: str) -> None:
-    """Make completions, the manual, and what Debian wants to be told; shtab, which makes the former, is not packed."""
+def documents(root: Path, version: str) -> None:
+    """Pack the manuals, and write what Debian wants to be told."""
     made = root / "usr/share"
-    run(python, HERE / "manual.py", made / "man/man1/robotctl.1.gz", version)
-    for shell, name in (("bash", "bash-completion/completions/robotctl"), ("zsh", "zsh/vendor-completions/_robotctl")):
-        (made / name).parent.mkdir(parents=True)
-        (made / name).write_text(run(sys.executable, HERE / "completions.py", shell))
+    for page in (made / "man/man1").glob("*.1"):
+        page.with_suffix(".1.gz").write_bytes(gzip.compress(page.read_bytes(), 9, mtime=0))
+        page.unlink()
     doc = made / "doc/robotd"
     doc.mkdir(parents=True)
     (doc / "copyright").write_text((HERE / "copyright").read_text())
@@ -125,7 +129,7 @@ def build(wheel: Path, out: Path, version: str) -> Path:
         root.chmod(0o755)
         python = program(root, wheel)
         services(root, python)
-        documents(root, python, version)
+        documents(root, version)
         for cache in root.rglob("__pycache__"):
             shutil.rmtree(cache)
         for path in root.rglob("*"):  # a package has no umask

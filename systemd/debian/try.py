@@ -8,6 +8,12 @@ import sys
 from pathlib import Path
 
 CONFIG = "etc/robotd/robotd.toml"
+SHARED = (
+    "usr/share/man/man1/robotctl.1.gz",
+    "usr/share/man/man1/robotd.1.gz",
+    "usr/share/bash-completion/completions/robotctl",
+    "usr/share/zsh/vendor-completions/_robotctl",
+)
 MINE = "# mine\n"
 
 
@@ -36,6 +42,8 @@ def main() -> None:
     assert "C kernels" in inside(root, "robotctl", "doctor", code=1)  # there are no boards
     assert "good" in inside(root, "robotctl", "config", "check")
     assert "robotd" in inside(root, "getent", "passwd", "robotd")
+    missing = [name for name in SHARED if not (root / name).exists()]
+    assert not missing, f"not there: {missing}"
     config = root / CONFIG
     config.write_text(MINE + config.read_text())
     installed(root, newer)
@@ -45,7 +53,7 @@ def main() -> None:
     inside(root, "dpkg", "--purge", "robotd")
     assert kept.is_dir(), "maps are not the package's"
     kept.rmdir()
-    left = [path for name in ("usr/lib/robotd", CONFIG, "usr/bin/robotctl") if (path := root / name).exists()]
+    left = [path for name in ("usr/lib/robotd", CONFIG, "usr/bin/robotctl", *SHARED) if (path := root / name).exists()]
     assert not left, f"left behind: {left}"
     print("installed, run, upgraded and purged; the configuration and the maps were kept")
 

@@ -1,6 +1,7 @@
-"""``install``: units, rules, users, directories and a first configuration, where this machine looks for them."""
+"""``install``: units, rules, users, directories, a first configuration, manuals, where this machine looks."""
 
 import argparse
+import shutil
 import stat
 import sys
 from pathlib import Path
@@ -8,10 +9,11 @@ from pathlib import Path
 from robotd.cli.exit_codes import OK
 from robotd.cli.outputs import write
 from robotd.cli.service_files import service_files, systemd_version
-from robotd.cli.show.terminal import out, print_json, print_table
+from robotd.cli.show.terminal import command_line, out, print_json, print_table
 from robotd.cli.verb import Verb
 from robotd.core.errors import RobotdError
 
+_COMMANDS = Path("/usr/local/bin")
 _NEXT = (
     "systemd-sysusers",
     "systemd-tmpfiles --create",
@@ -34,8 +36,13 @@ def _install(arguments: argparse.Namespace) -> int:
         return OK
     print_table(("file", "would be" if arguments.dry_run else "is"), [(str(file.path), file.fate) for file in files])
     if is_here and not arguments.dry_run:
-        out().print(f"now, as root: {'; '.join(_NEXT)}", markup=False)
+        out().print(f"now, as root: {'; '.join((*_linked(prefix), *_NEXT))}", markup=False)
     return OK
+
+
+def _linked(prefix: Path) -> tuple[str, ...]:
+    """Return what makes the command line known to shells; nothing if they know one."""
+    return () if shutil.which("robotctl") else (command_line("ln", "-s", prefix / "bin" / "robotctl", _COMMANDS),)
 
 
 def _require_program(program: Path, prefix: Path) -> None:
@@ -69,7 +76,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
 VERBS = (
     Verb(
         "install",
-        "put the unit, rules, user and a commented configuration where systemd looks; what you changed is kept",
+        "put unit, rules, user, configuration, manuals and completions where they belong; what you changed is kept",
         "robotctl install --prefix /opt/robotd --dry-run",
         _install,
         _arguments,

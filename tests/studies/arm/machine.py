@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 CPU = "cortex-a72"
@@ -13,7 +14,8 @@ _PACKAGES = ("python3.11", "libpython3.11-dev", "libstdc++6")
 """To run, to compile against, and what NumPy wants beside."""
 _TOOLS = ("pytest", "pytest-timeout", "hypothesis")
 """What the engine's tests need beside what robotd needs."""
-_BUILDS = ("setuptools>=77", "cffi>=1.17", "wheel")
+_BUILDS = ("setuptools>=77", "cffi>=1.17", "wheel", "shtab>=1.7")
+"""Beside what robotd needs, for it writes the manual that goes with it."""
 
 
 class Machine:
@@ -58,7 +60,8 @@ class Machine:
         tools = self._directory / "tools"
         if not (tools / "bin/python").exists():
             _run(sys.executable, "-m", "venv", tools)
-            _pip(tools / "bin/python", "install", *_BUILDS)
+            needed = tomllib.loads((source / "pyproject.toml").read_text())["project"]["dependencies"]
+            _pip(tools / "bin/python", "install", *_BUILDS, *needed)
         wheels = self._directory / "wheel"
         shutil.rmtree(wheels, ignore_errors=True)
         copy = self._directory / "source"

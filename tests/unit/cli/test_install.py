@@ -9,6 +9,12 @@ from robotd.cli.main import main
 from robotd.cli.service_files import Fate, service_files
 
 PREFIX = "/usr/lib/robotd"
+SHARED = {
+    "man/man1/robotctl.1": ".TH",
+    "bash-completion/completions/robotctl": "complete",
+    "zsh/site-functions/_robotctl": "#compdef",
+}
+"""Of what a wheel brings; fonts and manuals of other packages lie beside it."""
 
 
 @pytest.fixture(name="root")
@@ -16,6 +22,10 @@ def _root(tmp_path: Path) -> Path:
     program = tmp_path / PREFIX.lstrip("/") / "bin" / "robotd"
     program.parent.mkdir(parents=True)
     program.touch(0o755)
+    for place, text in SHARED.items():
+        file = program.parents[1] / "share" / place
+        file.parent.mkdir(parents=True)
+        file.write_text(text)
     return tmp_path
 
 
@@ -33,7 +43,21 @@ def test_everything_is_there_and_names_the_program(root: Path, capsys: pytest.Ca
         assert (root / "etc" / name).read_text()
     assert "ExecStart=/usr/lib/robotd/bin/robotd\n" in (root / "etc/systemd/system/robotd.service").read_text()
     assert (root / "etc/robotd/robotd.toml").read_text() == (Path("systemd") / "robotd.toml").read_text()
-    assert {str(one["file"]) for one in told} == {str(file) for file in (root / "etc").rglob("*") if file.is_file()}
+    for place, text in SHARED.items():
+        assert (root / "usr/local/share" / place).read_text() == text
+    written = [file for name in ("etc", "usr/local") for file in (root / name).rglob("*") if file.is_file()]
+    assert {str(one["file"]) for one in told} == {str(file) for file in written}
+
+
+def test_a_manual_is_ours_to_replace_and_those_of_others_are_left(root: Path) -> None:
+    share = root / PREFIX.lstrip("/") / "share/man/man1"
+    (share / "ttx.1").write_text("of fonttools")
+    (share / "robotctl.1").write_text("newer")
+    page = root / "usr/local/share/man/man1/robotctl.1"
+    page.parent.mkdir(parents=True)
+    page.write_text("older")
+    assert main(installed(root)) == 0
+    assert [(file.name, file.read_text()) for file in page.parent.iterdir()] == [("robotctl.1", "newer")]
 
 
 def test_what_the_owner_changed_is_kept_and_what_is_ours_replaced(root: Path) -> None:
