@@ -10,10 +10,11 @@ from robotd.config import Config, effective_text
 from robotd.core.clock import now_ns
 from robotd.core.counted import Counted
 from robotd.core.motion_error import MotionError
-from robotd.hardware.devices.catalogue import drive, line_format, pantilt, rangefinder
+from robotd.hardware.devices.catalogue import drive, pantilt, rangefinder
+from robotd.hardware.devices.dialects import line_format
 from robotd.hardware.devices.gaze import Gaze
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.transport.address import connector, no_line
+from robotd.hardware.transport.connector import connector, no_line
 from robotd.hardware.transport.transport import Connect
 from robotd.head.compute import Compute
 from robotd.head.head import Head, NotedHead

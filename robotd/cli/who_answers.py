@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Iterable
 
 from robotd.core.errors import RobotdError
-from robotd.hardware.devices.catalogue import DIALECTS
+from robotd.hardware.devices.catalogue import SPEAKERS
 from robotd.hardware.devices.finding import Recognized, found_on
 from robotd.hardware.wire.enquiry import NotAsked
 
@@ -28,7 +28,7 @@ async def _one(port: str) -> Recognized | str:
 def not_asked(device: str) -> str:
     """Say which dialects of a device nobody asks, and why; empty if all are."""
     whys: dict[str, list[str]] = {}
-    for name, dialect in DIALECTS[device].items():
-        if dialect.line is not None and isinstance(dialect.line.enquiry, NotAsked):
-            whys.setdefault(dialect.line.enquiry.why, []).append(name)
+    for name, speaker in SPEAKERS[device].items():
+        if speaker.speech is not None and isinstance(speaker.speech.enquiry, NotAsked):
+            whys.setdefault(speaker.speech.enquiry.why, []).append(name)
     return "; ".join(f"nobody asks for {' or '.join(names)}: {why}" for why, names in whys.items())

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from robotd.core.bounds import Within, bounds_of
-from robotd.hardware.devices.catalogue import DIALECTS
+from robotd.hardware.devices.dialects import DIALECTS
 from robotd.toml.writer import write_value
 
 Values = Mapping[str, Mapping[str, object]]

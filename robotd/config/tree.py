@@ -10,10 +10,8 @@ from robotd.config.environment import runtime_dir
 from robotd.config.sections import MapsSettings, RecordingSettings
 from robotd.core.errors import ConfigError
 from robotd.grid.settings import GridSettings
-from robotd.hardware.devices.board_drive import BoardDriveSettings
-from robotd.hardware.devices.board_pantilt import BoardPanTiltSettings
-from robotd.hardware.devices.board_rangefinder import BoardRangefinderSettings
-from robotd.hardware.devices.catalogue import DIALECTS, MOTORLESS, SCANNERS, line_format
+from robotd.hardware.devices.dialect_options import BoardDriveSettings, BoardPanTiltSettings, BoardRangefinderSettings
+from robotd.hardware.devices.dialects import DIALECTS, MOTORLESS, SCANNERS, line_format
 from robotd.hardware.devices.settings import (
     BoardOptions,
     DriveSettings,
@@ -23,13 +21,13 @@ from robotd.hardware.devices.settings import (
     ReportOptions,
 )
 from robotd.hardware.devices.slant import floor_m
-from robotd.hardware.transport.address import connector
+from robotd.hardware.transport.address import host_and_port
 from robotd.localization.fit.refinement_settings import RefinementSettings
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.judge.second_look_settings import SecondLookSettings
 from robotd.localization.settings import LocalizationSettings
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.planning.settings import PlanningSettings
 from robotd.server.settings import ServerSettings
@@ -89,9 +87,8 @@ def _check_device(device: str, settings: PortSettings) -> None:
         known = ", ".join(DIALECTS[device])
         raise ValueError(f'{device}.dialect must be one of {known}; got "{settings.dialect}"')
     try:
-        line = line_format(device, settings)
-        if line is not None:
-            connector(settings.port, line)
+        if line_format(device, settings) is not None:
+            host_and_port(settings.port)
     except ConfigError as error:
         raise ValueError(f'{device}.port must be a device path or tcp://host:port, got "{settings.port}"') from error
 

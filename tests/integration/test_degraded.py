@@ -17,7 +17,7 @@ from robotd.contract.missions import Localize, MapStart
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, Clear, Stop
 from robotd.core.errors import MissionError
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.sim.boards.rangefinder_board import RangefinderBoard
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects

@@ -8,8 +8,8 @@ from robotd.cli.emulated import config_text
 from robotd.config import Config, loads
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.missions import Localize, MapStart
-from robotd.hardware.devices.catalogue import MOTORLESS, SCANNERS
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.hardware.devices.dialects import MOTORLESS, SCANNERS
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects
 from robotd.sim.robot import DEVICES, SimulatedRobot

@@ -15,7 +15,7 @@ from robotd.cli.demo.rig import rig, wired
 from robotd.client import Client
 from robotd.config import Config
 from robotd.contract.missions import MapStart
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.sim.buildings.world import load_world
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_clock, pytest.mark.shares_descriptors]

@@ -16,7 +16,7 @@ from robotd.contract.missions import Explore, with_lease
 from robotd.contract.requests import MapLoad, PlanTo, RecordStart, RecordStop
 from robotd.core.errors import MapError
 from robotd.core.pose import Pose2
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.mission.motion.legs import next_odometry
 from robotd.sim.buildings.world import Start, Wall, load_world
 from robotd.sim.physics.laser import Laser

@@ -12,7 +12,7 @@ from robotd.contract.events import SweepDone
 from robotd.contract.missions import Legs, Localize, MapStart
 from robotd.contract.requests import Arm, RecordStart, RecordStop
 from robotd.core.reading import Sweep
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.recording.reader import Recording, read
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import OWN

@@ -15,7 +15,7 @@ from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.missions import Localize, MapStart
 from robotd.core.clock import now_ns, run_virtual
 from robotd.core.pose import Pose2
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects, Firmware
 from robotd.sim.faults.laid import cables

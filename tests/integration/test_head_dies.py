@@ -23,7 +23,7 @@ from robotd.contract.requests import Arm, MapLoad, MapSave, MapShow, RecordStart
 from robotd.core.errors import ChildError, RobotdError
 from robotd.head.far import AWAY_S, FarHead
 from robotd.head.program import serve
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.recording.entries import CauseEntry
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot

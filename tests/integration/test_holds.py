@@ -18,7 +18,7 @@ from robotd.contract.requests import Arm, RecordStart, RecordStop, Stop
 from robotd.core.angles import wrap_rad
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, Stall
 from robotd.sim.buildings.world import load_world

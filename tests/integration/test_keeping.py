@@ -22,7 +22,7 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.head.jobs import Insert
 from robotd.maps import atomic
 from robotd.maps.store import MapStore
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live

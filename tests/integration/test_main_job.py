@@ -19,7 +19,7 @@ from robotd.core.angles import wrap_rad
 from robotd.core.clock import NS_PER_S
 from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot

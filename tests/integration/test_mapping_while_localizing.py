@@ -9,7 +9,7 @@ from robotd.contract.events import Event, MapChanged, StopPlaced, SweepDone
 from robotd.contract.missions import MapStart
 from robotd.core.pose import Pose2
 from robotd.localization.stop_poses import StopPoses
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.sim.buildings.world import load_world
 from robotd.sim.physics.noise import NoiseSettings
 from robotd.sim.robot import SimSettings, SimulatedRobot

@@ -32,7 +32,7 @@ from robotd.contract.requests import (
 from robotd.core.errors import MapError, MissionError, RecordingError, ServerError
 from robotd.core.grid_bytes import unpacked_cells
 from robotd.core.grid_spec import GridSpec
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.recording.entries import CommandEntry
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot

@@ -21,7 +21,7 @@ from robotd.core.errors import RecordingError
 from robotd.hardware.devices.catalogue import request_words
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.wire.word import Repeat, Words
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.recording.comparison import NOTHING, compare
 from robotd.recording.entries import BytesEntry, ComputedEntry, Entry, RecordingHeader
 from robotd.recording.reader import Recording, read

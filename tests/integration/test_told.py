@@ -26,7 +26,7 @@ from robotd.contract.sweep_columns import from_columns
 from robotd.contract.topics import Topic
 from robotd.contract.ways import Hindrance, MissionPlan, StopState
 from robotd.core.pose import Odometry, Pose2
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live

@@ -21,7 +21,7 @@ from robotd.core.errors import RobotdError
 from robotd.hardware.link.tap import Direction
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.head.compute import Compute
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.recording.entries import BytesEntry, Entry
 from robotd.recording.preroll import PrerollJournal
 from robotd.sim.buildings.world import load_world

@@ -12,7 +12,7 @@ from robotd.contract.missions import Localize, MapStart
 from robotd.contract.requests import RecordStart, RecordStop
 from robotd.core.clock import run_virtual
 from robotd.core.grid_bytes import unpacked_cells
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
 from tests.support.living import living

@@ -13,10 +13,9 @@ from robotd.cli.outputs import CONFIG_MARK, MADE_CONFIG, output_argument, write
 from robotd.cli.plugged_in import Port, plugged_in
 from robotd.cli.show.terminal import command_line, complain, err, out, print_json
 from robotd.cli.verb import Verb
-from robotd.cli.who_answers import not_asked, who_answers
 from robotd.config.starter import starter_text
 from robotd.core.errors import ConfigError, RobotdError
-from robotd.hardware.devices.catalogue import DIALECTS, MOTORLESS, SCANNERS
+from robotd.hardware.devices.dialects import DIALECTS, MOTORLESS, SCANNERS
 
 
 def _file_argument(parser: argparse.ArgumentParser) -> None:
@@ -88,6 +87,8 @@ def _probed(ports: Sequence[str], chosen: dict[str, dict[str, object]]) -> dict[
     Raises:
         RobotdError: nobody answered.
     """
+    from robotd.cli.who_answers import not_asked, who_answers  # noqa: PLC0415  # all adapters, which nothing else needs
+
     # A port that was named is somebody's already.
     answers = who_answers([port for port in ports if port not in {one["port"] for one in chosen.values()}])
     remarks: dict[str, str] = {}
@@ -124,7 +125,11 @@ def _asked(device: str, ports: tuple[Port, ...]) -> str:
         RobotdError: there is nobody to ask.
     """
     if not sys.stdin.isatty():
-        raise RobotdError(f"where is the {device}? Say so with --{device} PORT[,DIALECT] where nobody can be asked")
+        there = ", ".join(port.path for port in ports) or "nothing"
+        raise RobotdError(
+            f"where is the {device}? Nobody can be asked here: say --{device} PORT[,DIALECT], or let all ports be"
+            f" asked, with --probe; plugged in: {there}"
+        )
     for number, port in enumerate(ports, 1):
         err().print(f"  {number}  {port.path}  {port.about}")
     err().print(f"{device}: which of these, or a path, or tcp://host:port? ", end="")

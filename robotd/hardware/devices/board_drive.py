@@ -2,7 +2,6 @@
 
 import contextlib
 import math
-from dataclasses import dataclass
 from typing import ClassVar
 
 from firmware_proto.common import BoardKind
@@ -14,25 +13,15 @@ from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.hardware.devices.board_device import BoardDevice
 from robotd.hardware.devices.credible import battery_v, check_twist
+from robotd.hardware.devices.dialect_options import BoardDriveSettings
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
-from robotd.hardware.devices.settings import BoardOptions, DriveSettings
 from robotd.hardware.devices.wiring import Wiring
 
 _MILLI = 1000
 _BUMPERS = 16
 """Bits of ``bumpers``, counter-clockwise from the heading (PROTOCOL.md)."""
 _BUMPER_STEP_RAD = math.tau / _BUMPERS
-
-
-@dataclass(frozen=True, kw_only=True)
-class BoardDriveSettings(BoardOptions, DriveSettings):
-    """Of our own board."""
-
-    def __post_init__(self) -> None:
-        """Refuse what the device or the board refuses."""
-        DriveSettings.__post_init__(self)
-        self.refuse_short_silence()
 
 
 class BoardDrive(BoardDevice):

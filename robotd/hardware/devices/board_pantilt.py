@@ -2,21 +2,19 @@
 
 import asyncio
 import math
-from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 from firmware_proto import pantilt_messages as proto
 from firmware_proto.common import BoardKind
 from firmware_proto.schema import Message
 from robotd.core.angles import wrap_rad
-from robotd.core.bounds import Within
 from robotd.core.broadcast import Broadcast, Subscription
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
 from robotd.core.silence import within
 from robotd.hardware.devices.board_device import BoardDevice
 from robotd.hardware.devices.credible import check_limits, check_readback
+from robotd.hardware.devices.dialect_options import BoardPanTiltSettings
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
-from robotd.hardware.devices.settings import U16_MAX, BoardOptions, PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.session import Session
 
@@ -32,19 +30,6 @@ _QUIET_PERIODS = 3
 """This many periods of telemetry without a report, and we ask."""
 
 Report = proto.AimReport | proto.AimReadback
-
-
-@dataclass(frozen=True, kw_only=True)
-class BoardPanTiltSettings(BoardOptions, PanTiltSettings):
-    """Of our own board."""
-
-    ttl_max_ms: Annotated[int, Within(10, U16_MAX, "ms")] = 30_000
-    """Longest time that one turn of the head may take [ms]."""
-
-    def __post_init__(self) -> None:
-        """Refuse what the device or the board refuses."""
-        PanTiltSettings.__post_init__(self)
-        self.refuse_short_silence()
 
 
 class BoardPanTilt(BoardDevice):

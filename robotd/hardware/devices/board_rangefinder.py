@@ -1,6 +1,5 @@
 """The laser rangefinder on our own board."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from firmware_proto import rangefinder_messages as proto
@@ -9,9 +8,9 @@ from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.core.errors import DeviceError, LinkTimeout
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.board_device import BoardDevice
+from robotd.hardware.devices.dialect_options import BoardRangefinderSettings
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
-from robotd.hardware.devices.settings import BoardOptions, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.session import Session
 
@@ -29,16 +28,6 @@ _STATUS: dict[int, ReadingStatus] = {
     ShotStatus.LASER_OFF: ReadingStatus.DEVICE_ERROR,
     ShotStatus.DEVICE_ERROR: ReadingStatus.DEVICE_ERROR,
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class BoardRangefinderSettings(BoardOptions, RangefinderSettings):
-    """Of our own board."""
-
-    def __post_init__(self) -> None:
-        """Refuse what the device or the board refuses."""
-        RangefinderSettings.__post_init__(self)
-        self.refuse_short_silence()
 
 
 class BoardRangefinder(BoardDevice):

@@ -3,12 +3,12 @@
 import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, NoReturn, Self
+from typing import ClassVar, NoReturn, Self
 
-from robotd.core.bounds import Within
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
+from robotd.hardware.devices.dialect_options import DimetixSettings
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.hardware.devices.settings import RangefinderSettings
@@ -35,18 +35,6 @@ _STATUS: dict[int, ReadingStatus] = {
     ErrorCode.TOO_STRONG: ReadingStatus.SATURATED,
     ErrorCode.AMBIENT_LIGHT: ReadingStatus.AMBIENT,
 }
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DimetixSettings(RangefinderSettings):
-    """Of a Dimetix, of which several can share a line; a DISTO has its line for itself."""
-
-    device_id: Annotated[int, Within(0, 9)] = 0
-    """Which device on the line: the switch on it, 0 to 9."""
-
-    def __post_init__(self) -> None:
-        """Refuse what the device refuses."""
-        RangefinderSettings.__post_init__(self)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,15 +7,13 @@ is armed with the device, and fed by every poll.
 import asyncio
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Annotated, ClassVar, NoReturn
+from typing import ClassVar, NoReturn
 
 from robotd.core.angles import wrap_rad
-from robotd.core.bounds import Within
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.silence import within
+from robotd.hardware.devices.dialect_options import DynamixelSettings
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
-from robotd.hardware.devices.settings import U16_MAX, PanTiltSettings
 from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
@@ -25,8 +23,6 @@ from robotd.hardware.wire.dynamixel import ALERT, DynamixelWire, Message, ServoS
 # Zero is the middle of a turn, so no goal is near the ends of the counter.
 _COUNTS_PER_RAD = 4096 / math.tau
 _CENTRE = 2048
-_SERVO_ID_MAX = 252
-"""The maker's largest; 254 stands for all servos."""
 _ANSWER_S = 0.1
 _TRIES = 3
 _IDLE_POLL_S = 0.5
@@ -40,24 +36,6 @@ _BOOTS_S = 0.3
 _BOOT_TRIES = 20
 """A servo is silent for about a quarter of a second when it boots; it is asked for two more."""
 _TILT_LIMIT_RAD = math.radians(90.0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DynamixelSettings(PanTiltSettings):
-    """Of two servos on one bus."""
-
-    pan_id: Annotated[int, Within(0, _SERVO_ID_MAX)] = 1
-    """Bus id of the pan servo."""
-    tilt_id: Annotated[int, Within(0, _SERVO_ID_MAX)] = 2
-    """Bus id of the tilt servo."""
-    ttl_max_ms: Annotated[int, Within(10, U16_MAX, "ms")] = 30_000
-    """After how long without hearing from us the servos stop [ms]; 2.54 s is the longest that they know."""
-
-    def __post_init__(self) -> None:
-        """Refuse what the head or the bus refuses."""
-        PanTiltSettings.__post_init__(self)
-        if self.pan_id == self.tilt_id:
-            raise ValueError(f"tilt_id must differ from pan_id, got {self.tilt_id} twice")
 
 
 class DynamixelPanTilt(VendorDevice[Message]):

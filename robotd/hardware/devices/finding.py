@@ -7,8 +7,9 @@ import asyncio
 from collections.abc import Awaitable, Callable, Iterator
 from dataclasses import dataclass
 
-from robotd.hardware.devices.catalogue import DIALECTS
-from robotd.hardware.transport.address import connector
+from robotd.hardware.devices.catalogue import SPEAKERS
+from robotd.hardware.devices.dialects import DIALECTS
+from robotd.hardware.transport.connector import connector
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.enquiry import Enquiry
@@ -74,8 +75,9 @@ def _questions() -> Iterator[_Asked]:
     together: dict[tuple[LineFormat, bytes], list[tuple[str, str, Enquiry]]] = {}
     for device, dialects in DIALECTS.items():
         for name, dialect in dialects.items():
-            if dialect.line is not None and isinstance(question := dialect.line.enquiry, Enquiry):
-                together.setdefault((dialect.line.usual, question.data), []).append((device, name, question))
+            speech = SPEAKERS[device][name].speech
+            if speech is not None and dialect.line is not None and isinstance(question := speech.enquiry, Enquiry):
+                together.setdefault((dialect.line, question.data), []).append((device, name, question))
     # Who is known by what it sends unasked comes last: others may do so until they are asked.
     for (line_format, data), by in sorted(together.items(), key=lambda one: not one[0][1]):
         yield _Asked(line_format, data, by[0][2].tries, tuple(by))

@@ -4,39 +4,18 @@ It has no line, so it is always there; what it can aim at is known once the scan
 """
 
 import asyncio
-import math
-from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 from robotd.contract.device_status import LinkState
 from robotd.core.angles import wrap_rad
-from robotd.core.bounds import Within
 from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, TransportError
+from robotd.hardware.devices.dialect_options import FixedHeadSettings
 from robotd.hardware.devices.gaze import Fan
 from robotd.hardware.devices.health import Health
 from robotd.hardware.devices.pantilt import AimReadback, PanTiltLimits
-from robotd.hardware.devices.settings import PanTiltSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.devices.with_health import WithHealth
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FixedHeadSettings(PanTiltSettings):
-    """Of a head without a motor, and without a line: its port is never opened."""
-
-    pan_min_rad: Annotated[float, Within(-math.pi, math.pi, "rad")] = -math.pi
-    """Where it is not asked to look: to the right of this, seen from the robot's heading."""
-    pan_max_rad: Annotated[float, Within(-math.pi, math.pi, "rad")] = math.pi
-    """Where it is not asked to look: to the left of this, seen from the robot's heading."""
-
-    def __post_init__(self) -> None:
-        """Refuse what the mount refuses, and a line."""
-        PanTiltSettings.__post_init__(self)
-        if self.line:
-            raise ValueError(f'line must be empty, for a fixed head has none; got "{self.line}"')
-        if not self.pan_min_rad < self.pan_max_rad:
-            raise ValueError(f"pan_min_rad must be less than pan_max_rad, got {self.pan_min_rad}, {self.pan_max_rad}")
 
 
 class FixedPanTilt(WithHealth):

@@ -11,7 +11,6 @@ import asyncio
 import contextlib
 import logging
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import cycle, islice
 from typing import ClassVar, NoReturn
 
@@ -22,9 +21,9 @@ from robotd.core.pose import STANDSTILL, Odometry, Twist2
 from robotd.core.silence import within
 from robotd.core.together import together
 from robotd.hardware.devices.credible import IMPLAUSIBLE, battery_v, check_twist, implausible
+from robotd.hardware.devices.dialect_options import RflexSettings
 from robotd.hardware.devices.drive import DriveReadout
 from robotd.hardware.devices.odometer import JudgedOdometer
-from robotd.hardware.devices.settings import DriveSettings, ReportOptions
 from robotd.hardware.devices.vendor_device import VendorDevice, is_a
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
@@ -69,16 +68,6 @@ _CORNERS = 0x0F
 log = logging.getLogger(__name__)
 
 _HALT = tuple(set_direction(axis, 0, 1_000_000, torque, forwards=True) for axis, torque in enumerate(_TORQUES))
-
-
-@dataclass(frozen=True, kw_only=True)
-class RflexSettings(ReportOptions, DriveSettings):
-    """Of an rFLEX base, which reports as often as it is told."""
-
-    def __post_init__(self) -> None:
-        """Refuse what the device refuses."""
-        DriveSettings.__post_init__(self)
-        self.refuse_short_silence()
 
 
 class RflexDrive(VendorDevice[Message]):

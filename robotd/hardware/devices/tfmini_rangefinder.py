@@ -8,7 +8,6 @@ comes after a reading was asked for the first frames are let go, for they were m
 """
 
 import asyncio
-from dataclasses import dataclass
 from typing import ClassVar, NoReturn
 
 from robotd.core.broadcast import Broadcast
@@ -16,9 +15,9 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, RemoteProtocolError
 from robotd.core.reading import ReadingStatus
 from robotd.core.silence import within
+from robotd.hardware.devices.dialect_options import TfminiSettings
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.rangefinder import Shot
-from robotd.hardware.devices.settings import RangefinderSettings, SilenceOptions
 from robotd.hardware.devices.vendor_device import VendorDevice
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.link.dialogue import Dialogue, Heard
@@ -57,11 +56,6 @@ _STATUS = {
     TfminiVerdict.SATURATED: ReadingStatus.SATURATED,
     TfminiVerdict.AMBIENT: ReadingStatus.AMBIENT,
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class TfminiSettings(SilenceOptions, RangefinderSettings):
-    """Of a TFmini, of which the first generation reports by itself."""
 
 
 class TfminiRangefinder(VendorDevice[Message]):

@@ -1,42 +1,21 @@
-"""From the address in the configuration to a line."""
+"""Where a line is: a path, or a host and a port."""
 
 import urllib.parse
-from typing import NoReturn
 
-from robotd.core.errors import ConfigError, TransportError
-from robotd.hardware.transport.descriptor import DescriptorTransport
-from robotd.hardware.transport.line_format import LineFormat
-from robotd.hardware.transport.serial_port import open_serial
-from robotd.hardware.transport.tcp import open_tcp
-from robotd.hardware.transport.transport import Connect
+from robotd.core.errors import ConfigError
 
 
-def connector(address: str, line_format: LineFormat) -> Connect:
-    """Return what opens the line at an address; a name under ``/dev`` is resolved again each time.
+def host_and_port(address: str) -> tuple[str, int] | None:
+    """Return where to connect to; None for a path.
 
     Args:
         address: ``/dev/serial/by-id/...`` or another absolute path, or ``tcp://host:port``.
-        line_format: of a serial line; TCP has none.
 
     Raises:
-        ConfigError: the address is neither.
+        ConfigError: it is neither.
     """
     if address.startswith("/"):
-        return lambda: open_serial(address, line_format)
-    host, port = _host_and_port(address)
-
-    async def connect() -> DescriptorTransport:
-        return await open_tcp(host, port)
-
-    return connect
-
-
-async def no_line() -> NoReturn:
-    """Stand for the line of a device that has none; TransportError."""
-    raise TransportError("this device has no line")
-
-
-def _host_and_port(address: str) -> tuple[str, int]:
+        return None
     parts = urllib.parse.urlsplit(address)
     try:
         port = parts.port

@@ -8,7 +8,7 @@ from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibratio
 from robotd.localization.advice import SweepFacts, advice_on
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.settings import LocalizationSettings
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.planning.settings import PlanningSettings
 

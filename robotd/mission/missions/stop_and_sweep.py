@@ -8,17 +8,18 @@ import math
 from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import aclosing
 from dataclasses import dataclass, field, replace
-from typing import Annotated, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from robotd.core.angles import wrap_rad
-from robotd.core.bounds import Within, refuse_outside
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep, goes_clockwise
-from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
+from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
 from robotd.hardware.devices.pantilt import PanTiltLimits
+from robotd.hardware.devices.reading_in_robot import reading_in_robot
 from robotd.mission.missions.sweep_plan import SweepPart, plan_sweep
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.mission.motion.legs import rotate_to, settle
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.mission.safety.hold import Hold
@@ -35,32 +36,6 @@ FAILED = frozenset(
 )
 """Readings that the rangefinder owes; a miss, and what it cannot see, are answers."""
 _LIMIT_MARGIN_RAD = 0.03  # the base turns only roughly as far as it should, and the head makes up for it
-
-
-@dataclass(frozen=True, slots=True)
-class SweepSettings:
-    """How a sweep is taken."""
-
-    readings: Annotated[int, Within(1, 10_000)] = 300
-    """Readings evenly round the robot."""
-    tilt_rad: Annotated[float, Within(-1.4, 1.4, "rad")] = 0.0
-    """Tilt of the beam, up from level; LILY slanted hers to the floor 2 m ahead. The cut-off (``range_max_m``) must lie
-    before the floor, or the floor is taken for walls."""
-    settle_s: Annotated[float, Within(0.01, 60.0, "s")] = 0.2
-    """Odometry must report standstill for so long before the first reading."""
-    aim_timeout_s: Annotated[float, Within(0.01, 120.0, "s")] = 5.0
-    """Longest time one turn of the head may take."""
-    shot_timeout_s: Annotated[float, Within(0.01, 60.0, "s")] = 1.0
-    """Longest time one measurement may take."""
-    readings_min_share: Annotated[float, Within(0.0, 1.0, "of 1")] = 0.5
-    """Share of the readings that the rangefinder must answer: when more fail (too weak, too bright, silent), the sweep
-    is given up."""
-    resets: Annotated[int, Within(0, 10)] = 2
-    """How often a head that lost steps is reset, and the sweep taken again, before the mission is given up."""
-
-    def __post_init__(self) -> None:
-        """Refuse what cannot be swept."""
-        refuse_outside(self)
 
 
 class SweepListener(Protocol):

@@ -1,4 +1,4 @@
-"""Which emulator speaks which dialect. A new one is one row here, and in the catalogue of the adapters."""
+"""Which emulator speaks which dialect. A new one is one row here, and in the tables of dialects and adapters."""
 
 import enum
 from collections.abc import Callable, Mapping
@@ -7,8 +7,8 @@ from functools import partial
 from typing import Generic, TypeVar
 
 from robotd.core.errors import ConfigError
-from robotd.hardware.devices import catalogue as dialects
-from robotd.hardware.devices.dialect import Line
+from robotd.hardware.devices import dialects
+from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.wire.tfmini import Model
 from robotd.sim.boards.drive_board import DriveBoard
 from robotd.sim.boards.pantilt_board import PanTiltBoard
@@ -48,11 +48,11 @@ class Emulator(Generic[Plant]):
 
 
 def _spoken(
-    line: Line | None, make: Callable[[Plant], HostedBoard], settings: Mapping[str, object] | None = None
+    line: LineFormat | None, make: Callable[[Plant], HostedBoard], settings: Mapping[str, object] | None = None
 ) -> Emulator[Plant]:
     """Return an emulator that says its bytes no quicker than the line of its dialect takes them."""
     assert line is not None  # what speaks has a line
-    return Emulator(lambda plant, _: Paced(make(plant), line.usual), settings or {})
+    return Emulator(lambda plant, _: Paced(make(plant), line), settings or {})
 
 
 DRIVES: Mapping[str, Emulator[DrivePlant]] = {

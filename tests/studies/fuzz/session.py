@@ -17,7 +17,7 @@ from robotd.contract.events import Event, MissionProgress
 from robotd.contract.missions import DriveStraight, Legs, Localize, MapStart, Mission
 from robotd.contract.requests import Arm, Clear, MapLoad, MapSave, RecordStop, Stop
 from robotd.core.clock import now_ns, run_virtual
-from robotd.hardware.devices.catalogue import MOTORLESS
+from robotd.hardware.devices.dialects import MOTORLESS
 from robotd.mission.safety.hold import Stall
 from robotd.recording.encoding import HEADER_TOPIC, encode, encode_header
 from robotd.recording.reader import Recording, read

@@ -20,9 +20,10 @@ from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading, ReadingStatus, Sweep
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
-from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
+from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
 from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Shot
+from robotd.hardware.devices.reading_in_robot import reading_in_robot
 from robotd.localization.stop_poses import StopPoses
 from robotd.sim.buildings.world import World
 from robotd.sim.physics.body import Body, BodySettings

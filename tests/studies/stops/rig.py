@@ -23,7 +23,7 @@ from robotd.hardware.transport.transport import Connect, Transport
 from robotd.hardware.wire.board import STOP_BYTES
 from robotd.head.compute import Compute
 from robotd.head.head import Head
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.recording.preroll import PrerollJournal
 from robotd.sim.buildings.world import load_world
 from robotd.sim.emulators.catalogue import Dialects

@@ -8,7 +8,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass
 from importlib.util import find_spec
 
-from robotd.hardware.devices.catalogue import MOTORLESS, SCANNERS
+from robotd.hardware.devices.dialects import MOTORLESS, SCANNERS
 from robotd.sim.emulators.catalogue import DRIVES, OWN, PANTILTS, RANGEFINDERS, Dialects, Firmware
 from tests.studies.stops.causes import CAUSES, ENDINGS, HEAD_LOST
 from tests.studies.stops.processes import ACTIVITIES, run_real_trials

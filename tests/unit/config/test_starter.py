@@ -9,7 +9,7 @@ import pytest
 from robotd.config import Config, loads
 from robotd.config.starter import starter_text
 from robotd.core.errors import ConfigError
-from robotd.hardware.devices.catalogue import DIALECTS, MOTORLESS, SCANNERS
+from robotd.hardware.devices.dialects import DIALECTS, MOTORLESS, SCANNERS
 
 EVERY = [(device, dialect) for device, table in DIALECTS.items() for dialect in table]
 

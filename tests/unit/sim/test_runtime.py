@@ -16,10 +16,11 @@ from robotd.core.clock import run_virtual
 from robotd.core.errors import TransportError
 from robotd.core.pose import Pose2, Twist2
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.board_drive import BoardDrive, BoardDriveSettings
-from robotd.hardware.devices.board_pantilt import BoardPanTilt, BoardPanTiltSettings
-from robotd.hardware.devices.board_rangefinder import BoardRangefinder, BoardRangefinderSettings
+from robotd.hardware.devices.board_drive import BoardDrive
+from robotd.hardware.devices.board_pantilt import BoardPanTilt
+from robotd.hardware.devices.board_rangefinder import BoardRangefinder
 from robotd.hardware.devices.device import Device
+from robotd.hardware.devices.dialect_options import BoardDriveSettings, BoardPanTiltSettings, BoardRangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.serial_port import open_serial

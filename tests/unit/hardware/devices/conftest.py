@@ -13,10 +13,11 @@ from firmware_proto.schema import Message
 from robotd.contract.device_status import DeviceStatus, LinkState
 from robotd.core.errors import TransportError
 from robotd.hardware.devices.board_device import BoardDevice
-from robotd.hardware.devices.board_drive import BoardDrive, BoardDriveSettings
-from robotd.hardware.devices.board_pantilt import BoardPanTilt, BoardPanTiltSettings
-from robotd.hardware.devices.board_rangefinder import BoardRangefinder, BoardRangefinderSettings
+from robotd.hardware.devices.board_drive import BoardDrive
+from robotd.hardware.devices.board_pantilt import BoardPanTilt
+from robotd.hardware.devices.board_rangefinder import BoardRangefinder
 from robotd.hardware.devices.device import Device
+from robotd.hardware.devices.dialect_options import BoardDriveSettings, BoardPanTiltSettings, BoardRangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.transport import Connect, Transport
 from robotd.sim.buildings.world import load_world

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.contract.device_status import DeviceStatus, LinkState
-from robotd.hardware.devices.catalogue import RANGEFINDERS as DIALECTS
 from robotd.hardware.devices.catalogue import rangefinder
+from robotd.hardware.devices.dialects import RANGEFINDERS as DIALECTS
 from robotd.hardware.devices.rangefinder import Rangefinder
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair

@@ -17,9 +17,10 @@ from robotd.core.broadcast import Broadcast
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import DeviceError, LinkTimeout, TransportError
 from robotd.core.pose import STANDSTILL, Odometry, Twist2
-from robotd.hardware.devices.board_drive import BoardDrive, BoardDriveSettings
-from robotd.hardware.devices.board_pantilt import BoardPanTilt, BoardPanTiltSettings
-from robotd.hardware.devices.board_rangefinder import BoardRangefinder, BoardRangefinderSettings
+from robotd.hardware.devices.board_drive import BoardDrive
+from robotd.hardware.devices.board_pantilt import BoardPanTilt
+from robotd.hardware.devices.board_rangefinder import BoardRangefinder
+from robotd.hardware.devices.dialect_options import BoardDriveSettings, BoardPanTiltSettings, BoardRangefinderSettings
 from robotd.hardware.devices.drive import Drive
 from robotd.hardware.devices.pantilt import PanTilt
 from robotd.hardware.devices.rangefinder import Rangefinder

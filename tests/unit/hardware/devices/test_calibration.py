@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 from robotd.core.pose import Pose2
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, RangefinderCalibration, reading_in_robot
+from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, RangefinderCalibration
 from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Shot
+from robotd.hardware.devices.reading_in_robot import reading_in_robot
 
 CALIBRATION = RangefinderCalibration()
 

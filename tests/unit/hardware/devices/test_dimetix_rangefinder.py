@@ -12,7 +12,8 @@ from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import TransportError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.dimetix_rangefinder import DimetixRangefinder, DimetixSettings
+from robotd.hardware.devices.dialect_options import DimetixSettings
+from robotd.hardware.devices.dimetix_rangefinder import DimetixRangefinder
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.memory import MemoryEnd, memory_pair
 from robotd.hardware.transport.transport import Transport

@@ -10,7 +10,8 @@ import pytest
 
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError
-from robotd.hardware.devices.dynamixel_pantilt import DynamixelPanTilt, DynamixelSettings
+from robotd.hardware.devices.dialect_options import DynamixelSettings
+from robotd.hardware.devices.dynamixel_pantilt import DynamixelPanTilt
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.dynamixel import Instruction

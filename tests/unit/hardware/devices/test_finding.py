@@ -5,7 +5,8 @@ from typing import Any
 
 import pytest
 
-from robotd.hardware.devices.catalogue import DIALECTS, MOTORLESS, SCANNERS
+from robotd.hardware.devices.catalogue import SPEAKERS
+from robotd.hardware.devices.dialects import MOTORLESS, SCANNERS
 from robotd.hardware.devices.finding import Recognized, found_by
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.transport import Transport
@@ -16,10 +17,10 @@ from robotd.sim.robot import SimulatedRobot
 from robotd.sim.runtime import connectors
 
 QUESTIONS = {
-    (device, name): row.line.enquiry
-    for device, table in DIALECTS.items()
+    (device, name): row.speech.enquiry
+    for device, table in SPEAKERS.items()
     for name, row in table.items()
-    if row.line is not None
+    if row.speech is not None
 }
 TFMINIS = ("tfmini-s", "tfmini-plus", "tf-luna")
 

@@ -11,12 +11,14 @@ import pytest
 from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.contract.device_status import LinkState
 from robotd.core.reading import RangeReading, ReadingStatus
-from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration, reading_in_robot
-from robotd.hardware.devices.catalogue import RANGEFINDERS, rangefinder
+from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
+from robotd.hardware.devices.catalogue import rangefinder
+from robotd.hardware.devices.dialect_options import TfminiSettings
+from robotd.hardware.devices.dialects import RANGEFINDERS
 from robotd.hardware.devices.instrument import Instrument
 from robotd.hardware.devices.pantilt import AimReadback
 from robotd.hardware.devices.rangefinder import Rangefinder, Shot
-from robotd.hardware.devices.tfmini_rangefinder import TfminiSettings
+from robotd.hardware.devices.reading_in_robot import reading_in_robot
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.memory import memory_pair
 from robotd.hardware.transport.transport import Transport

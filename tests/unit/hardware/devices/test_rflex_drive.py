@@ -14,7 +14,8 @@ from robotd.core.clock import now_ns
 from robotd.core.errors import DeviceError
 from robotd.core.pose import STANDSTILL, Twist2
 from robotd.hardware.devices.device import PAST_LOOP_S
-from robotd.hardware.devices.rflex_drive import NO_WATCHDOG, RflexDrive, RflexSettings
+from robotd.hardware.devices.dialect_options import RflexSettings
+from robotd.hardware.devices.rflex_drive import NO_WATCHDOG, RflexDrive
 from robotd.hardware.devices.wiring import Wiring
 from robotd.hardware.transport.transport import Transport
 from robotd.hardware.wire.rflex import OtherFrame, RflexWire

@@ -13,7 +13,8 @@ from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import DeviceError, TransportError
 from robotd.core.reading import ReadingStatus
-from robotd.hardware.devices.fixed_pantilt import FixedHeadSettings, FixedPanTilt
+from robotd.hardware.devices.dialect_options import FixedHeadSettings
+from robotd.hardware.devices.fixed_pantilt import FixedPanTilt
 from robotd.hardware.devices.gaze import Fan, Gaze
 from robotd.hardware.devices.scip_rangefinder import ScipRangefinder
 from robotd.hardware.devices.settings import RangefinderSettings

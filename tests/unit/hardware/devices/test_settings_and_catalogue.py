@@ -10,15 +10,17 @@ import pytest
 from robotd.contract.device_status import LinkState
 from robotd.core.errors import ConfigError
 from robotd.hardware import wire
-from robotd.hardware.devices import catalogue
-from robotd.hardware.devices.board_drive import BoardDriveSettings
-from robotd.hardware.devices.board_pantilt import BoardPanTiltSettings
-from robotd.hardware.devices.board_rangefinder import BoardRangefinderSettings
+from robotd.hardware.devices import catalogue, dialects
 from robotd.hardware.devices.calibration import DriveCalibration, HeadMount, RangefinderCalibration
-from robotd.hardware.devices.dimetix_rangefinder import DimetixSettings
-from robotd.hardware.devices.dynamixel_pantilt import DynamixelSettings
-from robotd.hardware.devices.fixed_pantilt import FixedHeadSettings
-from robotd.hardware.devices.rflex_drive import RflexSettings
+from robotd.hardware.devices.dialect_options import (
+    BoardDriveSettings,
+    BoardPanTiltSettings,
+    BoardRangefinderSettings,
+    DimetixSettings,
+    DynamixelSettings,
+    FixedHeadSettings,
+    RflexSettings,
+)
 from robotd.hardware.devices.settings import DriveSettings, PanTiltSettings, RangefinderSettings
 from robotd.hardware.devices.wiring import Wiring
 from robotd.sim.buildings.world import load_world
@@ -28,7 +30,7 @@ from robotd.sim.robot import SimulatedRobot
 from tests.support.taps import NoTap
 from tests.unit.hardware.devices.conftest import nowhere
 
-NAMES = [(device, name) for device, dialects in catalogue.DIALECTS.items() for name in dialects]
+NAMES = [(device, name) for device, table in dialects.DIALECTS.items() for name in table]
 SHARED = {"robotd.hardware.wire.enquiry", "robotd.hardware.wire.receiving", "robotd.hardware.wire.word"}
 WIRING = Wiring(nowhere, NoTap(), random.Random(0))
 
@@ -86,26 +88,37 @@ def test_options_of_another_dialect_are_a_config_error() -> None:
 
 @pytest.mark.parametrize(("device", "name"), NAMES)
 def test_an_adapter_takes_the_options_of_its_dialect(device: str, name: str) -> None:
-    dialect = catalogue.DIALECTS[device][name]
-    made = dialect.adapter(dialect.options(port="/dev/null", dialect=name), WIRING)
-    assert made.name == device
-    wanted = typing.get_type_hints(dialect.adapter.__init__)["settings"]
-    assert issubclass(dialect.options, wanted)
+    adapter, options = catalogue.SPEAKERS[device][name].adapter, dialects.DIALECTS[device][name].options
+    assert adapter(options(port="/dev/null", dialect=name), WIRING).name == device
+    wanted = typing.get_type_hints(adapter.__init__)["settings"]  # type: ignore[misc]  # its class, whatever it is
+    assert issubclass(options, wanted)
 
 
 @pytest.mark.parametrize(("device", "name"), NAMES)
 def test_every_dialect_has_an_emulator_on_its_line(device: str, name: str) -> None:
     emulators = {"drive": DRIVES, "pantilt": PANTILTS, "rangefinder": RANGEFINDERS}[device]
-    assert set(emulators) == set(catalogue.DIALECTS[device])
+    assert set(emulators) == set(dialects.DIALECTS[device])
     spoken: dict[str, Any] = {device: name}
-    if name in {catalogue.MOTORLESS, *catalogue.SCANNERS}:
-        spoken = {"pantilt": catalogue.MOTORLESS, "rangefinder": catalogue.SCANNERS[0]}
+    if name in {dialects.MOTORLESS, *dialects.SCANNERS}:
+        spoken = {"pantilt": dialects.MOTORLESS, "rangefinder": dialects.SCANNERS[0]}
     robot = SimulatedRobot(load_world("office"), seed=1, dialects=Dialects(**spoken))
-    has_line = catalogue.DIALECTS[device][name].line is not None
+    has_line = dialects.DIALECTS[device][name].line is not None
     assert isinstance(robot.boards[device], Paced) == (has_line and name != OWN)
 
 
+def test_what_a_configuration_may_name_is_spoken_and_the_other_way_round() -> None:
+    known = {
+        (device, name): row.line is not None for device, rows in dialects.DIALECTS.items() for name, row in rows.items()
+    }
+    spoken = {
+        (device, name): row.speech is not None
+        for device, rows in catalogue.SPEAKERS.items()
+        for name, row in rows.items()
+    }
+    assert known == spoken
+
+
 def test_every_wire_is_read_by_a_dialect() -> None:
-    lines = [row.line for rows in catalogue.DIALECTS.values() for row in rows.values() if row.line is not None]
-    modules = {line.wire.__module__ for line in lines} | {line.words.__module__ for line in lines}
+    said = [row.speech for rows in catalogue.SPEAKERS.values() for row in rows.values() if row.speech is not None]
+    modules = {speech.wire.__module__ for speech in said} | {speech.words.__module__ for speech in said}
     assert modules == {f"{wire.__name__}.{name}" for _, name, _ in pkgutil.iter_modules(wire.__path__)} - SHARED

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from robotd.contract.device_status import LinkState
-from robotd.hardware.devices.board_drive import BoardDrive, BoardDriveSettings
+from robotd.hardware.devices.board_drive import BoardDrive
+from robotd.hardware.devices.dialect_options import BoardDriveSettings
 from robotd.hardware.devices.wiring import Wiring
-from robotd.hardware.transport.address import connector
+from robotd.hardware.transport.connector import connector
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.sim.buildings.world import load_world
 from robotd.sim.faults.laid import cables_on_ptys

@@ -13,7 +13,7 @@ from robotd.head.near import HeadAtHand
 from robotd.head.settings import HeadSettings
 from robotd.mission.missions.context import MissionContext
 from robotd.mission.missions.localizing import LookRound, Narrowing
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.mission.whereabouts.whereabouts import Whereabouts
 from tests.support.living import AtOnce
 from tests.support.places import held, place_of, unpaced

@@ -8,7 +8,7 @@ import pytest
 
 from robotd.core.errors import ConfigError, TransportError
 from robotd.hardware.transport import tcp
-from robotd.hardware.transport.address import connector
+from robotd.hardware.transport.connector import connector
 from robotd.hardware.transport.line_format import LineFormat
 from robotd.hardware.transport.pty import open_pty
 from robotd.hardware.transport.tcp import open_tcp
