@@ -14,7 +14,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from robotd import __version__
-from robotd.cli.exit_codes import BAD_CONFIG, FAILED, INTERRUPTED, OK
+from robotd.cli.exit_codes import BAD_CONFIG, FAILED, INTERRUPTED, OK, WRONG_USAGE
+from robotd.cli.usage import Parser, WrongUsage, nearest
 from robotd.core.errors import ConfigError, RobotdError
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ WORDS = {
     "gateway": ("gateway", "say who may sign in to the console that robotd-gateway serves"),
     "install": (
         "install",
-        "put the unit, rules, user and a commented configuration where systemd looks; what you changed is kept",
+        "put unit, rules, user, configuration, manuals and completions where they belong; what you changed is kept",
     ),
     "doctor": ("doctor", "say what this installation consists of, which kernels it uses and why, and what it can see"),
     "demo": ("demo", "show the main job, end to end, on a simulated robot"),
@@ -89,14 +90,14 @@ def verbs_of(word: str) -> "tuple[Verb, ...]":
 
 def build_parser(argv: Sequence[str], *, knows_all: bool = False) -> argparse.ArgumentParser:
     """Return a parser that knows every first word, and all about the one on this command line, or about every one."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="robotctl",
         description="Talk to robotd: missions, maps, poses, recordings, and simulated robots.",
         epilog="robotctl VERB --help tells more, with an example.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("-V", "--version", action="version", version=f"robotctl {__version__}")
-    words = parser.add_subparsers(metavar="VERB", required=True)
+    words = _family(parser)
     typed = iter([text for text in argv if not text.startswith("-")])
     wanted = next(typed, None)
     _refuse_unknown(parser, wanted, WORDS)
@@ -112,9 +113,7 @@ def whole_parser() -> Iterator[tuple[str, argparse.ArgumentParser]]:
     yield "robotctl", build_parser(())
     for word in WORDS:
         for verb in verbs_of(word):
-            parser = argparse.ArgumentParser(
-                prog="robotctl " + verb.name, formatter_class=argparse.RawDescriptionHelpFormatter
-            )
+            parser = Parser(prog="robotctl " + verb.name, formatter_class=argparse.RawDescriptionHelpFormatter)
             verb.add_to(parser)
             yield verb.name, parser
 
@@ -131,22 +130,28 @@ def _add_verbs(
             return
         families[words[depth]] = (*families.get(words[depth], ()), verb)
     _refuse_unknown(parser, next(typed, None), families)
-    family = parser.add_subparsers(metavar="VERB", required=True)
+    family = _family(parser)
     for word, kin in families.items():
         summary = kin[0].summary if len(kin) == 1 else ", ".join(verb.name.split()[-1] for verb in kin)
         helped = family.add_parser(word, help=summary, formatter_class=parser.formatter_class)
         _add_verbs(helped, kin, typed if len(kin) > 1 else iter(()), depth + 1)
 
 
+def _family(parser: argparse.ArgumentParser) -> "argparse._SubParsersAction[argparse.ArgumentParser]":
+    """Let a further word choose; without one, what there is to choose from is told."""
+
+    def helped(_: argparse.Namespace) -> int:
+        parser.print_help()
+        return OK
+
+    parser.set_defaults(run=helped)
+    return parser.add_subparsers(metavar="VERB")
+
+
 def _refuse_unknown(parser: argparse.ArgumentParser, wanted: str | None, known: Iterable[str]) -> None:
     """Refuse a word that no verb begins with, and name the nearest that one does: argparse would list them all."""
-    if wanted is None or wanted in known:
-        return
-    import difflib  # noqa: PLC0415  # only here; it takes longer to load than the rest
-
-    near = difflib.get_close_matches(wanted, known, n=1)
-    hint = f"; did you mean {near[0]}?" if near else ""
-    parser.error(f"there is no {parser.prog} {wanted}{hint} (robotctl --help lists all verbs)")
+    if wanted is not None and wanted not in known:
+        parser.error(f"there is no {parser.prog} {wanted}{nearest(wanted, known)} (robotctl --help lists all verbs)")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -157,6 +162,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with _ended_like_interrupted():
             return _run(build_parser(words), words)
+    except WrongUsage as wrong:
+        sys.stderr.write(wrong.usage)
+        _complain(WRONG_USAGE, words, wrong, str(wrong))
+        raise
     except ConfigError as error:
         return _complain(BAD_CONFIG, words, error, *map(str, error.problems))
     except RobotdError as error:
@@ -173,18 +182,17 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(parser: argparse.ArgumentParser, words: Sequence[str]) -> int:
-    if not words:
-        parser.print_help()
-        return OK
     arguments = parser.parse_args(words)
-    from robotd.cli.outputs import refuse  # noqa: PLC0415  # help needs none of it
+    from robotd.cli.inputs import require  # noqa: PLC0415  # help needs none of it
+    from robotd.cli.outputs import refuse  # noqa: PLC0415  # as above
 
     refuse(arguments)
+    require(vars(arguments).values())
     code: int = arguments.run(arguments)
     return code
 
 
-def _complain(code: int, words: Sequence[str], error: Exception, *lines: str) -> int:
+def _complain(code: int, words: Sequence[str], error: BaseException, *lines: str) -> int:
     """Say what went wrong: a line each for people, for programs an object."""
     from robotd.cli.show.terminal import complain, print_json  # noqa: PLC0415  # what starts quickly ends cleanly
 
@@ -198,13 +206,13 @@ def _complain(code: int, words: Sequence[str], error: Exception, *lines: str) ->
     return code
 
 
-def _code_of(error: Exception) -> str:
+def _code_of(error: BaseException) -> str:
     """Return the word that programs know an error by: the server's, or that of its class.
 
     >>> _code_of(ConfigError("unknown key"))
     'config_error'
     """
-    given = getattr(error, "code", None)
+    given = getattr(error, "code", None)  # a number for what ends the program
     return (
         given
         if isinstance(given, str)

@@ -10,7 +10,10 @@ from robotd.core.bounds import bounds_of
 
 def number(text: str) -> float:
     """Return a number, which NaN and infinity are not."""
-    value = float(text)
+    try:
+        value = float(text)
+    except ValueError:
+        raise ArgumentTypeError(f"must be a number, got {text}") from None
     if not math.isfinite(value):
         raise ArgumentTypeError(f"must be a finite number, got {text}")
     return value
@@ -54,7 +57,10 @@ def whole(lowest: int, highest: int | None = None) -> Callable[[str], int]:
     """Return what reads a whole number of at least ``lowest``, and at most ``highest``."""
 
     def count(text: str) -> int:
-        value = int(text)
+        try:
+            value = int(text)
+        except ValueError:
+            raise ArgumentTypeError(f"must be a whole number, got {text}") from None
         if value < lowest:
             raise ArgumentTypeError(f"must be at least {lowest}, got {text}")
         if highest is not None and value > highest:

@@ -1,5 +1,6 @@
 """Configurations as files and texts."""
 
+import shlex
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ from robotd.config.environment import runtime_dir
 from robotd.config.locations import locate
 from robotd.config.tree import Config
 from robotd.core.endpoints import Endpoints
-from robotd.core.errors import TransportError
+from robotd.core.errors import ConfigError, TransportError
 from robotd.toml.problems import Problems
 from robotd.toml.settings_reader import read_file, read_text
 from robotd.toml.writer import write_table
@@ -23,6 +24,9 @@ def load(path: Path) -> Config:
     Raises:
         ConfigError: all that is wrong with it, in ``problems``.
     """
+    if not path.exists():
+        made = shlex.join(("robotctl", "config", "init", str(path)))
+        raise ConfigError(f"there is no such file; make one, with: {made}", file=str(path))
     return read_file(Config, path, partial(_prepare, directory=path.absolute().parent))
 
 

@@ -20,20 +20,20 @@ def read_map(file: Path, resolution_m: float | None = None, origin_m: tuple[floa
     """
     try:
         if file.suffix.lower() in {".yaml", ".yml"}:
-            described = decode_map_yaml(_bytes(file, YAML_MAX_BYTES))
+            described = decode_map_yaml(_bytes(file, YAML_MAX_BYTES, "it"))
             picture = file.parent / described.image
         else:
             described, picture = MapServerYaml.of_picture(file.name, resolution_m, origin_m), file
-        return import_map(described, _bytes(picture, IMAGE_MAX_BYTES))
+        return import_map(described, _bytes(picture, IMAGE_MAX_BYTES, "it" if picture == file else picture.name))
     except MapError as error:
         raise MapError(f"{file}: {error}") from error
 
 
-def _bytes(file: Path, most: int) -> bytes:
+def _bytes(file: Path, most: int, name: str) -> bytes:
     try:
         if file.exists() and not file.is_file():
-            raise MapError(f"{file.name} is no file")
+            raise MapError(f"{name} is no file")
         with file.open("rb") as opened:
             return opened.read(most + 1)  # one more than may be: its reader says that it is too long
     except OSError as error:
-        raise MapError(f"{file.name} cannot be read: {error.strerror or error}") from error
+        raise MapError(f"{name} cannot be read: {error.strerror or error}") from error

@@ -13,8 +13,6 @@ from pathlib import Path
 from robotd.cli.demo.rig import rig, wired
 from robotd.cli.demo.room import brisk, fresh
 from robotd.cli.exit_codes import OK
-from robotd.cli.outputs import DEMO, output_argument
-from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import bold, err, out, print_json
 from robotd.config import Config
 from robotd.core.errors import RobotdError
@@ -27,14 +25,6 @@ from robotd.toml.writer import write_table
 _START_S = 60.0
 _END_S = 10.0
 _SERVES = "the console is at "
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Take the world, and where the console shall be."""
-    parser.add_argument("world", nargs="?", default="laboratory", help="built-in world or TOML file")
-    parser.add_argument("--seed", type=whole(0), default=1, metavar="N", help="of the simulated robot (default: 1)")
-    parser.add_argument("--port", type=whole(0), default=8470, metavar="N", help="of the console (default: 8470)")
-    output_argument(parser, "--out", DEMO, "for what robot and console make (default: console)", default="console")
 
 
 def run(arguments: argparse.Namespace) -> int:

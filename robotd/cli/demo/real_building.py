@@ -11,12 +11,10 @@ from robotd.cli.demo.rig import Rig, rig, wired
 from robotd.cli.demo.room import fresh
 from robotd.cli.demo.true_pose import true_pose
 from robotd.cli.exit_codes import OK
-from robotd.cli.logs import LOG_HELP, RAW_HELP, Reading, reading_arguments, refuse_raw_odometry
-from robotd.cli.outputs import DEMO, output_argument, write
+from robotd.cli.logs import Reading, refuse_raw_odometry
+from robotd.cli.outputs import write
 from robotd.cli.pictures.plots_extra import require_plots
-from robotd.cli.quantities import positive, whole
 from robotd.cli.show.terminal import bold
-from robotd.cli.wheels import odometry_argument
 from robotd.config import Config
 from robotd.contract.estimate import PoseState
 from robotd.contract.events import MapChanged
@@ -29,20 +27,6 @@ from robotd.sim.load import load_robot
 from robotd.sim.recorded_robot import OdometrySource
 
 _RIGHT_M = 0.3
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Take the log, how much of it, and where to put the results."""
-    parser.add_argument("log", type=Path, metavar="LOG", help=LOG_HELP)
-    parser.add_argument("--stops", type=whole(1), default=60, metavar="N", help="stops of the map (default: 60)")
-    parser.add_argument(
-        "--trials", type=whole(0), default=30, metavar="N", help="kept-out stops to visit (default: 30)"
-    )
-    parser.add_argument("--spacing-m", type=positive, default=1.0, metavar="M", help="between stops (default: 1.0)")
-    odometry_argument(parser)
-    reading_arguments(parser)
-    parser.add_argument("--raw", action="store_true", help=RAW_HELP)
-    output_argument(parser, "--out", DEMO, "for the results (default: demo)", default="demo")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -13,9 +13,8 @@ from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials,
 from robotd.cli.demo.rig import FINISHED, Rig, rig, wired
 from robotd.cli.demo.true_pose import true_pose
 from robotd.cli.exit_codes import FAILED, OK
-from robotd.cli.outputs import DEMO, DEMO_MARK, output_argument, write
+from robotd.cli.outputs import DEMO_MARK, write
 from robotd.cli.pictures.plots_extra import require_plots
-from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import bold, command_line
 from robotd.client import Client
 from robotd.config import Config
@@ -30,21 +29,6 @@ from robotd.localization.count.rank_grid import RankGrid
 from robotd.localization.ready_map import ReadyMap
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.sim.buildings.world import World, load_world
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Take the world and where to put the results."""
-    parser.add_argument("world", nargs="?", default="laboratory", help="built-in world or TOML file")
-    parser.add_argument("--seed", type=whole(0), default=1, metavar="N", help="of the simulated robot (default: 1)")
-    parser.add_argument("--localizations", type=whole(1), default=4, metavar="N", help="how many (default: 4)")
-    parser.add_argument(
-        "--stops",
-        type=whole(0),
-        default=None,
-        metavar="N",
-        help="map the first N good places to stop, in place of exploring",
-    )
-    output_argument(parser, "--out", DEMO, "for the results (default: demo)", default="demo")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -4,12 +4,10 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from robotd.cli.asking import evaluate
-from robotd.cli.eval_lines import is_standard_output, result_lines
+from robotd.cli.inputs import input_argument
 from robotd.cli.logs import LOG_HELP, RAW_HELP, reading_arguments
 from robotd.cli.outputs import EVAL_LINES, PICTURES, STANDARD_OUTPUT, output_argument
 from robotd.cli.quantities import positive, whole, within
-from robotd.cli.surveys import evaluate_surveys
 from robotd.cli.verb import Verb
 from robotd.evaluation.cluster import checked_address
 from robotd.evaluation.protocol import WORDS as PROTOCOL_WORDS
@@ -18,6 +16,10 @@ from robotd.grid.settings import GridSettings
 
 
 def _eval(arguments: argparse.Namespace) -> int:
+    from robotd.cli.asking import evaluate  # noqa: PLC0415  # the engine
+    from robotd.cli.eval_lines import is_standard_output, result_lines  # noqa: PLC0415  # as above
+    from robotd.cli.surveys import evaluate_surveys  # noqa: PLC0415  # as above
+
     if not arguments.slam:
         return evaluate(arguments)
     with result_lines(arguments.json) as say:
@@ -76,7 +78,7 @@ def _map_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("log", type=Path, nargs="+", metavar="LOG", help=f"{LOG_HELP}; its poses are the truth")
+    input_argument(parser, "log", f"{LOG_HELP}; its poses are the truth", nargs="+", metavar="LOG")
     parser.add_argument("--raw", action="store_true", help=RAW_HELP)
     parser.add_argument(
         "--slam",

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from robotd.cli.exact_inputs import ExactQuestion, question
 from robotd.cli.exit_codes import OK
+from robotd.cli.inputs import input_argument
 from robotd.cli.outputs import PNG, output_argument
 from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import number, positive, whole
@@ -107,12 +108,8 @@ def _part(text: str) -> Rational:
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "map", type=Path, metavar="MAP", help=f"polygons ({', '.join(FORMATS)}), or a saved map's directory"
-    )
-    parser.add_argument(
-        "readings", type=Path, metavar="READINGS", help="a table: bearing_deg,range_m,status (hit or miss)"
-    )
+    input_argument(parser, "map", f"polygons ({', '.join(FORMATS)}), or a saved map's directory", metavar="MAP")
+    input_argument(parser, "readings", "a table: bearing_deg,range_m,status (hit or miss)", metavar="READINGS")
     parser.add_argument(
         "--eps-m",
         type=_radius,

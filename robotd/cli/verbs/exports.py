@@ -10,6 +10,7 @@ from mcap.writer import CompressionType, Writer
 
 from robotd.cli.exit_codes import OK
 from robotd.cli.heard import HeardRecording
+from robotd.cli.inputs import RECORDING_HELP, input_argument
 from robotd.cli.outputs import Kind, output_argument, write
 from robotd.cli.show.terminal import out, print_json
 from robotd.cli.verb import Verb
@@ -126,7 +127,7 @@ def _kind_of_bag(path: Path) -> Kind:
 
 def _arguments(kind: Kind | Callable[[Path], Kind], summary: str) -> Callable[[argparse.ArgumentParser], None]:
     def add(parser: argparse.ArgumentParser) -> None:
-        parser.add_argument("file", type=Path, metavar="RECORDING", help="a recording (.mcap)")
+        input_argument(parser, "file", RECORDING_HELP, metavar="RECORDING")
         output_argument(parser, "out", kind, summary)
 
     return add

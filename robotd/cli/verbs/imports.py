@@ -2,9 +2,9 @@
 
 import argparse
 from collections.abc import Callable
-from pathlib import Path
 
 from robotd.cli.exit_codes import OK
+from robotd.cli.inputs import input_argument
 from robotd.cli.logs import Reading, fov_argument, range_max_argument, scan_topic_argument
 from robotd.cli.outputs import RECORDED_BUILDING, output_argument, write
 from robotd.cli.quantities import positive, whole
@@ -45,7 +45,7 @@ def _csv_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _arguments(parser: argparse.ArgumentParser, what: str) -> None:
-    parser.add_argument("log", type=Path, metavar="LOG", help=what)
+    input_argument(parser, "log", what, metavar="LOG")
     output_argument(parser, "--out", RECORDED_BUILDING, "the recorded building", required=True)
     parser.add_argument(
         "--spacing-m", type=positive, default=1.0, metavar="M", help="way between two stops (default: 1)"

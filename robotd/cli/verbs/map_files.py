@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robotd.cli.exit_codes import OK
+from robotd.cli.inputs import input_argument
 from robotd.cli.outputs import Kind, OutputPath, check, output_argument, write
 from robotd.cli.quantities import number, positive, whole
 from robotd.cli.show.terminal import complain, out, print_json
@@ -87,7 +88,7 @@ def _interop() -> tuple[Callable[..., "ImportedMap"], Callable[..., dict[str, by
 
 
 def _import_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, metavar="FILE", help="the yaml of a map, or a picture alone (pgm, png, bmp)")
+    input_argument(parser, "file", "the yaml of a map, or a picture alone (pgm, png, bmp)", metavar="FILE")
     parser.add_argument("--name", metavar="NAME", help="what to call it (default: the name of the file)")
     parser.add_argument("--resolution", type=positive, metavar="M", help="of a picture alone: metres per pixel")
     parser.add_argument(

@@ -10,6 +10,7 @@ import msgspec
 
 from robotd.cli.connection import connect
 from robotd.cli.exit_codes import FAILED, OK
+from robotd.cli.inputs import RECORDING_HELP, input_argument
 from robotd.cli.show.terminal import complain, out, print_json, print_pairs, print_table
 from robotd.cli.verb import Verb
 from robotd.contract.answers import RecordingInfo
@@ -150,7 +151,7 @@ def _of_versions(report: "ReplayReport") -> str:
 
 
 def _file(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, metavar="RECORDING", help="a recording (.mcap)")
+    input_argument(parser, "file", RECORDING_HELP, metavar="RECORDING")
 
 
 def _new_file(parser: argparse.ArgumentParser) -> None:

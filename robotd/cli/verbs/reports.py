@@ -1,10 +1,10 @@
 """``report``: what a recorded robot did, as one page to keep."""
 
 import argparse
-from pathlib import Path
 
 from robotd.cli.exit_codes import OK
 from robotd.cli.heard import HeardRecording
+from robotd.cli.inputs import RECORDING_HELP, input_argument
 from robotd.cli.outputs import Kind, output_argument, write
 from robotd.cli.show.terminal import out, print_json
 from robotd.cli.verb import Verb
@@ -41,7 +41,7 @@ def _report(arguments: argparse.Namespace) -> int:
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, metavar="RECORDING", help="a recording (.mcap)")
+    input_argument(parser, "file", RECORDING_HELP, metavar="RECORDING")
     output_argument(parser, "out", _PAGE, "the page, to be opened in any browser, offline too")
 
 

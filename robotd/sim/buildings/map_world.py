@@ -35,7 +35,8 @@ def load_map_world(path: Path) -> World:
     except (MapError, ValueError) as error:
         raise ConfigError(str(error), file=str(path)) from error
     except OSError as error:
-        raise ConfigError(f"{error.filename}: {error.strerror}", file=str(path)) from error
+        unread = "" if error.filename == str(path) else f"{error.filename}: "
+        raise ConfigError(f"{unread}{error.strerror}", file=str(path)) from error
 
 
 def world_of(name: str, grid: OccupancyGrid) -> World:

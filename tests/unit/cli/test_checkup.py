@@ -138,7 +138,7 @@ def test_those_that_answer_are_written_down_and_those_that_do_not_are_remarked(
         asked.extend(ports)
         return {port: answers[port] for port in ports}
 
-    monkeypatch.setattr("robotd.cli.verbs.configuration.who_answers", who_answers)
+    monkeypatch.setattr("robotd.cli.who_answers.who_answers", who_answers)
     file = tmp_path / "robotd.toml"
     named = ["--pantilt", "/dev/e,ptu"]
     assert main(["config", "init", str(file), "--probe", *answers, "/dev/e", *named]) == 0

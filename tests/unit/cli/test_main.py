@@ -18,8 +18,10 @@ import pytest
 from robotd import __version__
 from robotd.cli.main import WORDS, build_parser, main, verbs_of
 from robotd.cli.verb import Verb
+from robotd.cli.verbs.simulate import FIRMWARE
 from robotd.cli.wheels import SOURCES
 from robotd.core.errors import RequestTimeout, ServerError
+from robotd.sim.emulators.catalogue import Firmware
 from robotd.sim.recorded_robot import OdometrySource
 
 VERBS = [verb for word in WORDS for verb in verbs_of(word)]
@@ -75,7 +77,9 @@ def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) 
     "words",
     [
         ["jump"],
-        ["map"],
+        ["map", "jump"],
+        ["stop", "now"],
+        ["localize", "--heading-unknwon"],
         ["map", "show", "--version", "new"],
         ["drive-to", "1"],
         ["drive-to", "1", "x"],
@@ -102,6 +106,45 @@ def test_wrong_usage_is_exit_code_2(words: list[str], capsys: pytest.CaptureFixt
         main(words)
     assert left.value.code == 2
     assert "usage: robotctl" in capsys.readouterr().err.lower()
+
+
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        (
+            "stauts",
+            "robotctl: error: there is no robotctl stauts; did you mean status? (robotctl --help lists all verbs)",
+        ),
+        ("map sho", "robotctl map: error: there is no robotctl map sho; did you mean show?"),
+        (
+            "localize --heading-unknwon",
+            "robotctl localize: error: --heading-unknwon means nothing here; did you mean --heading-unknown?",
+        ),
+        ("stop now", "robotctl stop: error: now means nothing here (robotctl stop --help lists what does)"),
+        ("drive far", "robotctl drive: error: argument METRES: must be a number, got far"),
+        ("sim --seeds few", "robotctl sim: error: argument --seeds: must be a whole number, got few"),
+    ],
+)
+def test_wrong_usage_is_told_by_the_verb_that_was_meant_and_as_json_to_programs(
+    typed: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main([*typed.split(), "--json"])
+    captured = capsys.readouterr()
+    assert said in captured.err
+    assert said in json.loads(captured.out)["message"]
+    assert json.loads(captured.out)["code"] == "wrong_usage"
+
+
+@pytest.mark.parametrize("family", [(), ("map",), ("config",), ("calibrate",), ("record",)])
+def test_without_a_verb_it_tells_which_there_are(family: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(family) == 0
+    said = capsys.readouterr().out
+    assert all(
+        f"    {verb.name.split()[len(family)]} " in said
+        for verb in VERBS
+        if verb.name.split()[: len(family)] == [*family]
+    )
 
 
 @pytest.mark.parametrize(
@@ -179,8 +222,9 @@ def test_errors_for_programs_are_objects(
     assert json.loads(capsys.readouterr().out) == {"code": code, "message": str(error)}
 
 
-def test_the_words_for_odometry_are_those_of_the_simulation() -> None:
+def test_the_words_for_odometry_and_boards_are_those_of_the_simulation() -> None:
     assert tuple(OdometrySource) == SOURCES
+    assert tuple(Firmware) == FIRMWARE
 
 
 def test_what_others_wrote_is_no_markup(

@@ -57,8 +57,8 @@ def test_a_picture_alone_needs_its_resolution(hall: Path, tmp_path: Path, capsys
         (lambda hall: hall.with_suffix(".pgm").unlink(), "hall.pgm cannot be read: No such file or directory"),
         (lambda hall: hall.with_suffix(".pgm").write_bytes(b"P5 3 2 255\n\0"), "the picture is damaged"),
         (lambda hall: hall.write_bytes(YAML.replace(b"negate: 0\n", b"")), "negate is missing; expected 0 or 1"),
-        (lambda hall: hall.unlink(), "hall.yaml cannot be read: No such file or directory"),
-        (lambda hall: (hall.unlink(), hall.mkdir()), "hall.yaml is no file"),
+        (lambda hall: hall.unlink(), "hall.yaml: No such file or directory"),
+        (lambda hall: (hall.unlink(), hall.mkdir()), "hall.yaml: it is no file"),
     ],
 )
 def test_what_is_wrong_is_said_with_the_file(

@@ -52,6 +52,12 @@ def test_what_is_no_recording_is_one_line(tmp_path: Path, capsys: pytest.Capture
         assert len(capsys.readouterr().err.splitlines()) == 1
 
 
+@pytest.fixture
+def here(recording: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Work where the recording is: ``a.mcap``."""
+    monkeypatch.chdir(recording.parent)
+
+
 @dataclass(frozen=True)
 class Report:
     digest: str = "ab12"
@@ -64,6 +70,7 @@ class Report:
     replayed_by: str = "0.2.0"
 
 
+@pytest.mark.usefixtures("here")
 def test_a_replay_that_gave_the_same_is_exit_code_0(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -85,6 +92,7 @@ def test_a_replay_that_gave_the_same_is_exit_code_0(
     }
 
 
+@pytest.mark.usefixtures("here")
 def test_a_replay_that_differs_shows_where_and_is_exit_code_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -104,6 +112,7 @@ def test_a_replay_that_differs_shows_where_and_is_exit_code_1(
     ]
 
 
+@pytest.mark.usefixtures("here")
 def test_a_replay_of_another_version_that_differs_names_both(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -116,6 +125,7 @@ def test_a_replay_of_another_version_that_differs_names_both(
         assert ("recorded by robotd 0.1.0, replayed by robotd 0.2.0: between versions planned ways" in said) == is_told
 
 
+@pytest.mark.usefixtures("here")
 def test_a_replay_that_cannot_go_on_is_one_line(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -32,8 +32,8 @@ def interrupted(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
         announce({"drive": "/dev/pts/7", "pantilt": "/dev/pts/8", "rangefinder": "/dev/pts/9"})
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("robotd.cli.verbs.simulate.run_on_ptys", run)
-    monkeypatch.setattr("robotd.cli.verbs.simulate.run_faulty_on_ptys", run)
+    monkeypatch.setattr("robotd.cli.simulated.run_on_ptys", run)
+    monkeypatch.setattr("robotd.cli.simulated.run_faulty_on_ptys", run)
     return asked
 
 
@@ -156,7 +156,7 @@ def test_a_fake_that_was_asked_otherwise_is_exit_code_1(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     different = (Difference(5, "drive", "Arm()", "Stop()"),)
-    monkeypatch.setattr("robotd.cli.verbs.simulate.FakeRobot.mismatches", different)
+    monkeypatch.setattr("robotd.cli.simulated.FakeRobot.mismatches", different)
     assert main(["fake", str(recording), "--json"]) == 1
     devices, end = map(json.loads, capsys.readouterr().out.splitlines())
     assert devices["devices"]["drive"] == "/dev/pts/7"

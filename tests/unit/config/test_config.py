@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from robotd.config import Config, default_path, effective_text, load, loads
 from robotd.core.errors import ConfigError
-from robotd.hardware.devices.dimetix_rangefinder import DimetixSettings
-from robotd.hardware.devices.dynamixel_pantilt import DynamixelSettings
+from robotd.hardware.devices.dialect_options import DimetixSettings, DynamixelSettings
 
 
 def complaints(text: str) -> list[str]:
@@ -209,7 +208,9 @@ def test_a_slant_that_meets_the_floor_before_the_cut_off_is_refused() -> None:
 
 
 def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"none.toml: cannot be read: No such file or directory$"):
+    with pytest.raises(
+        ConfigError, match=r"none.toml: there is no such file; make one, with: robotctl config init \S*none.toml$"
+    ):
         load(tmp_path / "none.toml")
     bad = tmp_path / "latin.toml"
     bad.write_bytes(b"[maps]\n# caf\xe9\n")
