@@ -36,11 +36,11 @@ def _install(arguments: argparse.Namespace) -> int:
         return OK
     print_table(("file", "would be" if arguments.dry_run else "is"), [(str(file.path), file.fate) for file in files])
     if is_here and not arguments.dry_run:
-        out().print(f"now, as root: {'; '.join((*_linked(prefix), *_NEXT))}", markup=False)
+        out().print(f"now, as root: {'; '.join((*linked(prefix), *_NEXT))}", markup=False)
     return OK
 
 
-def _linked(prefix: Path) -> tuple[str, ...]:
+def linked(prefix: Path) -> tuple[str, ...]:
     """Return what makes the command line known to shells; nothing if they know one."""
     return () if shutil.which("robotctl") else (command_line("ln", "-s", prefix / "bin" / "robotctl", _COMMANDS),)
 

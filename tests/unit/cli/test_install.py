@@ -7,6 +7,7 @@ import pytest
 
 from robotd.cli.main import main
 from robotd.cli.service_files import Fate, service_files
+from robotd.cli.verbs import install
 
 PREFIX = "/usr/lib/robotd"
 SHARED = {
@@ -85,3 +86,13 @@ def test_an_older_systemd_gets_no_words_that_it_does_not_know(version: int | Non
     text = unit.content.decode()
     assert ("RestartSteps=" in text, "RestartMaxDelaySec=" in text) == (has_steps, has_steps)
     assert text.count("RestartSec=") == 1
+
+
+@pytest.mark.parametrize(("known", "named"), [(None, True), ("/usr/bin/robotctl", False)])
+def test_who_could_not_call_it_by_name_is_told_how(
+    monkeypatch: pytest.MonkeyPatch, known: str | None, named: bool
+) -> None:
+    monkeypatch.setattr("shutil.which", lambda name: known)
+    said = install.linked(Path("/opt/robot d"))
+    assert (said == ("ln -s '/opt/robot d/bin/robotctl' /usr/local/bin",)) == named
+    assert bool(said) == named
