@@ -1,6 +1,6 @@
 """How a wheel of robotd is built: by setuptools, beside which stands what the program itself needs.
 
-The manual and the completions come from the program's own parsers, so whoever builds them runs it. An editable
+The manual and the completions come from the program's own parsers, so to build them is to run it. An editable
 installation has none, and needs none of that.
 """
 

@@ -46,6 +46,7 @@ FOR_TESTS = {
 CALLED_BY_OTHERS = {
     *("collect", "emit", "process_renderables"),  # by libraries
     *("from_cells", "from_file", "from_store", "from_sweeps"),  # by notebooks
+    "parse_known_args",  # by argparse
     "whole_parser",  # by the pages of the site
 }
 FILES = {
