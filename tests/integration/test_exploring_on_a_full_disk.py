@@ -14,7 +14,7 @@ from robotd.contract.missions import Explore
 from robotd.contract.requests import MapLoad
 from robotd.maps import atomic
 from robotd.maps.store import MapStore
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.mission.motion.legs import next_odometry
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot

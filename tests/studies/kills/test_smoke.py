@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from robotd.config import Config
-from robotd.mission.missions.stop_and_sweep import SweepSettings
+from robotd.mission.missions.sweep_settings import SweepSettings
 from robotd.sim.buildings.world import load_world
 from tests.studies.kills.run import is_same
 from tests.studies.kills.trial import killed
