@@ -12,7 +12,7 @@ from robotd.cli.outputs import Kind, OutputPath, check, output_argument, write
 from robotd.cli.quantities import number, positive, whole
 from robotd.cli.show.terminal import complain, out, print_json
 from robotd.cli.verb import Verb
-from robotd.cli.verbs.map_store import store_arguments, store_of
+from robotd.cli.verbs.map_store import filled_store_of, store_arguments, store_of
 from robotd.core.errors import MapError, RobotdError
 from robotd.maps.manifest import is_name
 
@@ -49,7 +49,7 @@ def _name_of(file: Path) -> str:
 
 def _export(arguments: argparse.Namespace) -> int:
     _, export_map = _interop()
-    stored = store_of(arguments).load(arguments.name, arguments.version)
+    stored = filled_store_of(arguments).load(arguments.name, arguments.version)
     entry = stored.entry
     files = export_map(stored.grid, entry.name, arguments.mode)
     directory: OutputPath = arguments.directory

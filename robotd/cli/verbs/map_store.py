@@ -12,7 +12,7 @@ from robotd.cli.pictures.plots_extra import require_plots
 from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import complain, out, print_json, print_table
 from robotd.cli.verb import Verb
-from robotd.core.errors import ConfigError
+from robotd.core.errors import ConfigError, MapError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -41,6 +41,18 @@ def store_of(arguments: argparse.Namespace) -> "MapStore":
     return MapStore(Path(tree.maps.dir), tree.grid, keep=tree.maps.keep)
 
 
+def filled_store_of(arguments: argparse.Namespace) -> "MapStore":
+    """Return the store that is named, for a verb that wants a map of it.
+
+    Raises:
+        MapError: there is none, so likely another place was meant.
+    """
+    store = store_of(arguments)
+    if not store.list():
+        raise MapError(f"{store.root}: there are no maps; say where they are, with --config FILE or --maps DIR")
+    return store
+
+
 def store_arguments(parser: argparse.ArgumentParser) -> None:
     """Take what :func:`store_of` needs."""
     parser.add_argument("--config", type=Path, metavar="FILE", help="a configuration of the daemon: where maps are")
@@ -48,12 +60,12 @@ def store_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _copy(arguments: argparse.Namespace) -> int:
-    entry = store_of(arguments).copy(arguments.name, arguments.new_name, arguments.version)
+    entry = filled_store_of(arguments).copy(arguments.name, arguments.new_name, arguments.version)
     return _tell(arguments, f"copied {arguments.name}", (entry,))
 
 
 def _rename(arguments: argparse.Namespace) -> int:
-    entries = store_of(arguments).rename(arguments.name, arguments.new_name)
+    entries = filled_store_of(arguments).rename(arguments.name, arguments.new_name)
     return _tell(arguments, f"renamed {arguments.name}", entries)
 
 
@@ -70,7 +82,7 @@ def _delete(arguments: argparse.Namespace) -> int:
     if not (arguments.yes or _typed_again(arguments.name)):
         complain(f"nothing was deleted: type the name of the map, {arguments.name}, or give --yes")
         return FAILED
-    gone = store_of(arguments).delete(arguments.name, arguments.version)
+    gone = filled_store_of(arguments).delete(arguments.name, arguments.version)
     if arguments.json:
         print_json({"name": arguments.name, "versions": list(gone)})
     else:
@@ -87,7 +99,7 @@ def _typed_again(name: str) -> bool:
 def _compare(arguments: argparse.Namespace) -> int:
     if arguments.png is not None:
         require_plots("--png")
-    store = store_of(arguments)
+    store = filled_store_of(arguments)
     first, second = (store.load(*_version_of(text)) for text in (arguments.first, arguments.second))
     from robotd.grid.map_comparison import compare_maps  # noqa: PLC0415  # the engine, for this verb alone
 

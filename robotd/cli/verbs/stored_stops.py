@@ -8,13 +8,13 @@ from robotd.cli.exit_codes import OK
 from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import print_json, print_table
 from robotd.cli.verb import Verb
-from robotd.cli.verbs.map_store import store_arguments, store_of
+from robotd.cli.verbs.map_store import filled_store_of, store_arguments
 from robotd.core.errors import MapError
 from robotd.core.map_stop import MapStop
 
 
 def _stops(arguments: argparse.Namespace) -> int:
-    stored = store_of(arguments).load(arguments.name, arguments.version)
+    stored = filled_store_of(arguments).load(arguments.name, arguments.version)
     if stored.stops is None:
         raise MapError(
             f"{arguments.name}: it is not known of which stops this map was made: it was imported, or is old"

@@ -80,3 +80,14 @@ def test_words_for_what_cannot_be(maps: Path, capsys: pytest.CaptureFixture[str]
     assert "expected NAME or NAME@VERSION" in capsys.readouterr().err
     assert run(maps, "rename", "lab", "lab") == 1
     assert "already" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words", ["copy lab hall", "rename lab hall", "delete lab --yes", "compare lab lab", "export lab out"]
+)
+def test_where_no_maps_are_it_is_said_where_was_looked_and_how_another_place_is_named(
+    words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(tmp_path, *words.split()) == 1
+    said = f"robotctl: {tmp_path}: there are no maps; say where they are, with --config FILE or --maps DIR\n"
+    assert capsys.readouterr().err == said
