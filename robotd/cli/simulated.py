@@ -20,8 +20,9 @@ from robotd.sim.faults.laid import run_faulty_on_ptys
 from robotd.sim.faults.plan import PlannedFault, parse_plan
 from robotd.sim.hosting.pace import PATIENCE_S
 from robotd.sim.load import load_robot
+from robotd.sim.physics.laser import LaserSettings
 from robotd.sim.recorded_robot import OdometrySource
-from robotd.sim.robot import EmulatedRobot
+from robotd.sim.robot import EmulatedRobot, SimulatedRobot
 from robotd.sim.runtime import run_on_ptys
 
 
@@ -39,7 +40,11 @@ def simulate(arguments: argparse.Namespace, usual_world: str) -> int:
 
     def write(file: Path, ports: dict[str, str]) -> None:
         settings = dialects.settings()
-        write_config(file, config_text(ports, {device: {**settings.get(device, {}), **silence_s} for device in ports}))
+        # As somebody measured it: a recorded building has one height, which its log does not say.
+        head = {"height_m": LaserSettings().height_m} if isinstance(robot, SimulatedRobot) else {}
+        further = {"pantilt": {**silence_s, **head}}
+        of_devices = {device: settings.get(device, {}) | further.get(device, silence_s) for device in ports}
+        write_config(file, config_text(ports, of_devices))
 
     _serve(arguments, robot, write, truth_path=arguments.truth, plan=plan)
     return OK

@@ -1,6 +1,5 @@
 """The whole configuration: every room's settings under one roof."""
 
-import math
 import os
 from dataclasses import dataclass, field
 from pathlib import PurePath
@@ -20,7 +19,7 @@ from robotd.hardware.devices.settings import (
     RangefinderSettings,
     ReportOptions,
 )
-from robotd.hardware.devices.slant import floor_m
+from robotd.hardware.devices.slant import slanted_beam
 from robotd.hardware.transport.address import host_and_port
 from robotd.localization.fit.refinement_settings import RefinementSettings
 from robotd.localization.judge.error_model import ErrorModel
@@ -113,11 +112,11 @@ def _check_head(pantilt: PanTiltSettings, rangefinder: RangefinderSettings) -> N
 
 def _check_floor(pantilt: PanTiltSettings, sweep: SweepSettings, rangefinder: RangefinderSettings) -> None:
     """Refuse a slant whose beams meet the floor where they are believed: it would be taken for walls all round."""
-    floor = floor_m(pantilt.height_m, sweep.tilt_rad) if pantilt.height_m else math.inf
-    if floor <= rangefinder.range_max_m:
+    floor_m = slanted_beam(pantilt.mount, 0.0, sweep.tilt_rad).floor_m
+    if floor_m <= rangefinder.range_max_m:
         raise ValueError(
             f"sweep.tilt_rad must be such that the beam meets the floor beyond rangefinder.range_max_m, got"
-            f" {sweep.tilt_rad} rad, at which it does at {floor:.2f} m, and {rangefinder.range_max_m} m"
+            f" {sweep.tilt_rad} rad, at which it does at {floor_m:.2f} m, and {rangefinder.range_max_m} m"
         )
 
 

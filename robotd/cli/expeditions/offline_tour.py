@@ -55,7 +55,7 @@ def _walls(world: World, spec: GridSpec) -> NDArray[np.bool_]:
     """Return the cells that walls run through, ``bool[rows, cols]``."""
     walls = np.zeros(spec.shape, np.bool_)
     for wall in world.wall:
-        for start_m, end_m, _ in wall.segments():
+        for start_m, end_m, *_ in wall.segments():
             ends = spec.positions_at(np.array((start_m, end_m)))
             touched = touched_cells((ends[0, 0], ends[0, 1]), (ends[1, 0], ends[1, 1]))
             walls[touched[:, 0], touched[:, 1]] = True

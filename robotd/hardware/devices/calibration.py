@@ -10,6 +10,7 @@ from robotd.core.bounds import Within, refuse_outside
 CountsPerM = Annotated[float, Within(100.0, 1e8, "counts/m", either_sign=True)]
 CountsPerRad = Annotated[float, Within(10.0, 1e8, "counts/rad", either_sign=True)]
 Offset = Annotated[float, Within(-3.0, 3.0, "m")]
+Reach = Annotated[float, Within(-1.0, 1.0, "m")]
 Zero = Annotated[float, Within(-math.pi, math.pi, "rad")]
 Height = Annotated[float, Within(0.0, 3.0, "m")]
 Play = Annotated[float, Within(0.0, 0.5, "rad")]
@@ -46,6 +47,12 @@ class HeadMount:
     """Added to the tilt that the head reads back, to get the angle up from level."""
     backlash_rad: Play = 0.0
     """Play of the pan gears, which no readback shows: in a sweep the beam lags behind its motor by half of it."""
+    height_m: Height = 0.0
+    """Of the level beam above the floor; 0 if nobody measured it."""
+    lens_ahead_m: Reach = 0.0
+    """How far ahead of both axes the beam leaves the head; it turns with the head."""
+    lens_up_m: Reach = 0.0
+    """How far above the tilt axis it does, when the head looks level."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be a mount."""

@@ -19,6 +19,7 @@ from robotd.hardware.devices.calibration import (
     Offset,
     Play,
     RangefinderCalibration,
+    Reach,
     Zero,
 )
 from robotd.hardware.transport.line_format import LineFormat
@@ -121,8 +122,12 @@ class PanTiltSettings(PortSettings):
     backlash_rad: Play = 0.0
     """Play of the pan gears, which no readback shows: in a sweep the beam lags behind its motor by half of it."""
     height_m: Height = 0.0
-    """Of the beam above the floor; a tilt at which it would meet the floor before the cut-off is then refused. 0 if
-    nobody measured it."""
+    """Of the level beam above the floor; a tilt at which it would meet the floor before the cut-off is then refused. 0
+    if nobody measured it."""
+    lens_ahead_m: Reach = 0.0
+    """How far ahead of both axes the beam leaves the head; it turns with the head."""
+    lens_up_m: Reach = 0.0
+    """How far above the tilt axis it does, when the head looks level."""
 
     def __post_init__(self) -> None:
         """Refuse what the port or the mount refuses."""
@@ -131,7 +136,12 @@ class PanTiltSettings(PortSettings):
     @property
     def mount(self) -> HeadMount:
         """Where the head sits."""
-        return HeadMount(self.x_m, self.y_m, self.pan_zero_rad, self.tilt_zero_rad, self.backlash_rad)
+        return HeadMount(
+            *(self.x_m, self.y_m, self.pan_zero_rad, self.tilt_zero_rad, self.backlash_rad),
+            height_m=self.height_m,
+            lens_ahead_m=self.lens_ahead_m,
+            lens_up_m=self.lens_up_m,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

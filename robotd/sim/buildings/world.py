@@ -13,7 +13,7 @@ import msgspec
 
 from robotd.core.errors import ConfigError
 from robotd.core.pose import Pose2
-from robotd.sim.physics.walls import Point, WallSegments
+from robotd.sim.physics.walls import Plate, Point, WallSegments
 
 WORLDS_DIR = Path(__file__).parent / "worlds"
 
@@ -27,7 +27,9 @@ class Wall:
     closed: bool = True
     """Whether the last corner is joined to the first."""
     height_m: float = math.inf
-    """How high it reaches from the floor; to the ceiling if not given."""
+    """How high it reaches above the floor; to the ceiling if not given."""
+    from_m: float = 0.0
+    """Where it begins above the floor: a table's top stands on air."""
     name: str = ""
     """For people."""
 
@@ -39,11 +41,22 @@ class Wall:
             raise ValueError("points_m must be finite")
         if not self.height_m > 0.0:
             raise ValueError(f"height_m must be positive, got {self.height_m}")
+        if not 0.0 <= self.from_m < self.height_m:
+            raise ValueError(f"from_m must lie in [0, height_m), got {self.from_m}")
 
-    def segments(self) -> tuple[tuple[Point, Point, float], ...]:
-        """Return its ``(start, end, height)``."""
-        ends = self.points_m[1:] + (self.points_m[:1] if self.closed and len(self.points_m) > 2 else ())
-        return tuple((start, end, self.height_m) for start, end in zip(self.points_m, ends, strict=False))
+    def segments(self) -> tuple[tuple[Point, Point, float, float], ...]:
+        """Return its ``(start, end, height, where it begins)``."""
+        ends = self.points_m[1:] + (self.points_m[:1] if self._is_solid else ())
+        return tuple((start, end, self.height_m, self.from_m) for start, end in zip(self.points_m, ends, strict=False))
+
+    def plates(self) -> tuple[Plate, ...]:
+        """Return its faces that lie level: the top, unless it is out of sight, and the bottom, unless it stands."""
+        heights_m = [height_m for height_m in (self.from_m, self.height_m) if 0.0 < height_m < math.inf]
+        return tuple(Plate(self.points_m, height_m) for height_m in heights_m) if self._is_solid else ()
+
+    @property
+    def _is_solid(self) -> bool:
+        return self.closed and len(self.points_m) > 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +88,8 @@ class World:
     @cached_property
     def walls(self) -> WallSegments:
         """All its walls as segments."""
-        return WallSegments.of(segment for wall in self.wall for segment in wall.segments())
+        plates = (plate for wall in self.wall for plate in wall.plates())
+        return WallSegments.of((segment for wall in self.wall for segment in wall.segments()), *plates)
 
     @property
     def start_pose(self) -> Pose2:

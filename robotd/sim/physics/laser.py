@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from firmware_proto.rangefinder_messages import ShotStatus
 from robotd.core.pose import Pose2
-from robotd.hardware.devices.slant import floor_m
+from robotd.hardware.devices.calibration import HeadMount
+from robotd.hardware.devices.slant import slanted_beam
 from robotd.sim.physics.body import Body
 from robotd.sim.physics.noise import NoiseSettings
 from robotd.sim.physics.plant import ShotAnswer
@@ -38,6 +39,9 @@ class LaserSettings:
     """Where the beam points in the robot frame when the head reads pan 0."""
     tilt_zero_rad: float = 0.0
     """How far above level the beam points when the head reads tilt 0."""
+    lens_ahead_m: float = 0.0
+    lens_up_m: float = 0.0
+    """Where the beam leaves the head, ahead of its axes and above them, when it looks level."""
 
     def __post_init__(self) -> None:
         """Refuse an instrument that cannot measure."""
@@ -47,6 +51,17 @@ class LaserSettings:
             raise ValueError(f"height_m must be positive, got {self.height_m}")
         if self.takes_us < 1:
             raise ValueError(f"takes_us must be at least 1, got {self.takes_us}")
+
+    @property
+    def mount(self) -> HeadMount:
+        """Where the beam begins, with no zeros: those are added to what the head reads."""
+        return HeadMount(
+            self.mount_x_m,
+            self.mount_y_m,
+            height_m=self.height_m,
+            lens_ahead_m=self.lens_ahead_m,
+            lens_up_m=self.lens_up_m,
+        )
 
 
 class Laser:
@@ -66,6 +81,7 @@ class Laser:
         self._body = body
         self._head = head
         self._settings = settings
+        self._mount = settings.mount
         self._noise = noise
         self._random = randomness
         self._on = False
@@ -100,18 +116,17 @@ class Laser:
     def _true_range_m(self, pan_rad: float, tilt_rad: float) -> float:
         """Return the way of the light to the first wall or the floor; ``inf`` if there is neither."""
         settings = self._settings
-        tilt_rad += settings.tilt_zero_rad
-        world_from_beam = self._body.true_pose @ Pose2(
-            settings.mount_x_m, settings.mount_y_m, pan_rad + settings.pan_zero_rad
-        )
+        pan_rad, tilt_rad = pan_rad + settings.pan_zero_rad, tilt_rad + settings.tilt_zero_rad
+        beam = slanted_beam(self._mount, pan_rad, tilt_rad)
+        world_from_beam = self._body.true_pose @ Pose2(beam.start_x_m, beam.start_y_m, pan_rad)
         wall_m = ray_cast(
             self._walls,
             (world_from_beam.x_m, world_from_beam.y_m),
             world_from_beam.heading_rad,
-            eye_height_m=settings.height_m,
+            eye_height_m=beam.start_z_m,
             climb=math.tan(tilt_rad),
         )
-        return min(wall_m, floor_m(settings.height_m, tilt_rad)) / math.cos(tilt_rad)  # from level to along the beam
+        return min(wall_m, beam.floor_m) / beam.per_m  # from level to along the beam
 
     def _measured_m(self, true_m: float) -> float:
         """Return what the instrument makes of it; every shot draws the same amount of randomness."""
