@@ -104,6 +104,9 @@ spread: .venv/.dev  ## A thousand short recordings asked by one worker and by tw
 senses: .venv/.dev  ## How few readings tell where it is, which of two equal rooms it is, and whether being carried off shows (minutes; PLACES=20)
 	@$(BIN)/python -m tests.studies.senses.run $(if $(PLACES),--places $(PLACES) --twins $(PLACES) --carried $(PLACES)) $(if $(CUTOFF),--cutoff $(CUTOFF))
 
+height: .venv/.dev  ## What maps at several tilts gain among tables, sideboards and crates: looks and ways, a table (minutes; PLACES=20)
+	@$(BIN)/python -m tests.studies.height.run $(if $(PLACES),--places $(PLACES))
+
 heart: .venv/.dev  ## Whether a stop is on the wires in time, whatever clients do and whatever becomes of the front: writes docs/benchmarks/heart.md (two hours; TRIALS=20)
 	@$(BIN)/python -m tests.studies.heart.run $(if $(TRIALS),--trials $(TRIALS) --endings $(TRIALS)) $(if $(ONLY),--only "$(ONLY)")
 

@@ -119,6 +119,21 @@ class Ends:
 
 
 @dataclass(frozen=True, slots=True)
+class LayerSaid:
+    """What a further layer of the map said of the answers."""
+
+    tilt_rad: float
+    readings: int
+    """Made at its tilt."""
+    best_rank: int
+    """How many of them it explains at best at one of the poses that were left; 0 where it has seen none of these."""
+
+    def __str__(self) -> str:
+        """Say it for people."""
+        return f"{self.best_rank} of {self.readings} at {math.degrees(self.tilt_rad):.1f} deg"
+
+
+@dataclass(frozen=True, slots=True)
 class PoseEstimate:
     """A pose estimate as served to clients."""
 
@@ -176,6 +191,8 @@ class PoseEstimate:
     smallest_error_m: float | None = None
     """The least error radius at which nine of ten readings agree on some pose of the best answer's heading; None where
     that was not asked for, or none is large enough."""
+    layers: tuple[LayerSaid, ...] = ()
+    """What each further layer said, in the order in which they were asked; none unless the robot looked at its tilt."""
 
     def __str__(self) -> str:
         """Say in one line what people ask first."""

@@ -14,7 +14,7 @@ from msgspec import Meta
 
 from robotd.contract.answers import MissionStarted
 from robotd.contract.area import Area, Bounds
-from robotd.contract.arguments import Coordinate, Heading, LeaseTime, MapName, PoseArgument, Stops
+from robotd.contract.arguments import Coordinate, Heading, LeaseTime, MapName, PoseArgument, Stops, TiltArgument, Tilts
 from robotd.contract.request import Request
 from robotd.core.pose import IDENTITY, Pose2
 
@@ -64,6 +64,8 @@ class MapStart(MissionRequest, frozen=True):
     """Where the robot stands now: it defines the map frame."""
     legs: Legs = Legs.PLANNED
     lease_s: LeaseTime | None = None
+    tilts: Tilts = ()
+    """Further tilts to look at from each stop: what is seen at each is a layer of the map."""
 
     @classmethod
     def of(
@@ -72,9 +74,10 @@ class MapStart(MissionRequest, frozen=True):
         stops_m: tuple[tuple[float, float], ...] = (),
         start: Pose2 = IDENTITY,
         legs: Legs = Legs.PLANNED,
+        tilts: tuple[TiltArgument, ...] = (),
     ) -> "MapStart":
         """Return the request of a robot that stands at ``start``."""
-        return cls(name, stops_m, PoseArgument.of(start), legs)
+        return cls(name, stops_m, PoseArgument.of(start), legs, tilts=tilts)
 
 
 class MapContinue(MissionRequest, frozen=True):
@@ -124,6 +127,8 @@ class Explore(MissionRequest, frozen=True):
     returns: bool = False
     """Whether to drive back to where it began, in the end."""
     lease_s: LeaseTime | None = None
+    tilts: Tilts = ()
+    """Of a new map, as those of :class:`MapStart`; a map that is gone on with has its own."""
 
     @classmethod
     def of(cls, name: str, start: Pose2 = IDENTITY, **options: Any) -> "Explore":
@@ -147,9 +152,13 @@ class Localize(MissionRequest, frozen=True):
     """Whether to read to all sides until two answers in a row agree, instead of a whole sweep."""
     smallest_error: bool = False
     """Whether to tell, too, how far the readings must be trusted so that nearly all agree."""
+    layers: bool = False
+    """Whether to look at the tilts of the map's layers, too: a place must then agree with each of them."""
 
     def __post_init__(self) -> None:
-        """Refuse a heading that is known and unknown."""
+        """Refuse a heading that is known and unknown, and a look that is short and long."""
+        if self.adaptive and self.layers:
+            raise ValueError("layers take whole sweeps: they cannot be asked of an adaptive look")
         if self.heading is PriorHeading.UNKNOWN and self.heading_rad is not None:
             raise ValueError("heading_rad cannot be given where the heading is unknown")
 

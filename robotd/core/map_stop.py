@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.pose import Pose2
-from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.core.reading import RangeReading, ReadingStatus, Slant, Sweep, Tilt
 
 STATUSES = tuple(ReadingStatus)
 READING = np.dtype(
@@ -33,6 +33,15 @@ _CODES = {status: code for code, status in enumerate(STATUSES)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class StopSlant:
+    """What was seen from a stop at a further tilt."""
+
+    tilt: Tilt
+    readings: NDArray[np.void]
+    """As those of :class:`MapStop`."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class MapStop:
     """A sweep and its place on a map.
 
@@ -46,6 +55,8 @@ class MapStop:
     """Where it stood."""
     readings: NDArray[np.void]
     """Of type :data:`READING`, in the order in which they were made; robot frame. Never changed."""
+    slants: tuple[StopSlant, ...] = ()
+    """Those of other layers of the map."""
 
     @classmethod
     def of(cls, sweep: Sweep, map_from_robot: Pose2) -> "MapStop":
@@ -54,25 +65,21 @@ class MapStop:
         Raises:
             OverflowError: a number of it needs more than 64 bits.
         """
-        readings = [
-            (
-                reading.time_ns,
-                reading.bearing_rad,
-                reading.range_m or 0.0,
-                reading.origin_x_m,
-                reading.origin_y_m,
-                reading.strength or 0,
-                _CODES[reading.status],
-                reading.strength is not None,
-            )
-            for reading in sweep.readings
-        ]
-        return cls(sweep.number, sweep.in_odom, map_from_robot, np.array(readings, READING))
+        slants = tuple(StopSlant(slant.tilt, _array(slant.readings)) for slant in sweep.slants)
+        return cls(sweep.number, sweep.in_odom, map_from_robot, _array(sweep.readings), slants)
 
     @property
     def sweep(self) -> Sweep:
         """What was seen, as it was when it was taken."""
-        return Sweep(self.number, self.in_odom, tuple(map(_reading, self.readings.tolist())))
+        slants = tuple(Slant(slant.tilt, _readings(slant.readings)) for slant in self.slants)
+        return Sweep(self.number, self.in_odom, _readings(self.readings), slants)
+
+    def at(self, tilt_rad: float) -> "MapStop | None":
+        """Return what was seen here at a further tilt as a stop of its own; None if the robot did not look so."""
+        for slant in self.slants:
+            if slant.tilt.tilt_rad == tilt_rad:
+                return MapStop(self.number, self.in_odom, self.map_from_robot, slant.readings)
+        return None
 
     def beams(self, *, misses: bool) -> NDArray[np.float64]:
         """Return the hits, and the misses if they are asked for, as :class:`robotd.grid.readings.Readings` has them.
@@ -95,9 +102,31 @@ class MapStop:
         return hash(self._content)
 
     @property
-    def _content(self) -> tuple[int, Pose2, Pose2, bytes]:
+    def _content(self) -> tuple[object, ...]:
         # As bytes: NaN is not equal to itself, and a map is the same if its bits are.
-        return self.number, self.in_odom, self.map_from_robot, self.readings.tobytes()
+        slants = tuple((slant.tilt, slant.readings.tobytes()) for slant in self.slants)
+        return self.number, self.in_odom, self.map_from_robot, self.readings.tobytes(), slants
+
+
+def _array(readings: Sequence[RangeReading]) -> NDArray[np.void]:
+    rows = [
+        (
+            reading.time_ns,
+            reading.bearing_rad,
+            reading.range_m or 0.0,
+            reading.origin_x_m,
+            reading.origin_y_m,
+            reading.strength or 0,
+            _CODES[reading.status],
+            reading.strength is not None,
+        )
+        for reading in readings
+    ]
+    return np.array(rows, READING)
+
+
+def _readings(rows: NDArray[np.void]) -> tuple[RangeReading, ...]:
+    return tuple(map(_reading, rows.tolist()))
 
 
 def _reading(row: Sequence[Any]) -> RangeReading:

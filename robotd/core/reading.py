@@ -60,6 +60,24 @@ class RangeReading:
         return self.range_m is not None
 
 
+@dataclass(frozen=True, slots=True)
+class Tilt:
+    """A further tilt of the beam, beside that of the first look round: a layer of the map is what is seen at it."""
+
+    tilt_rad: float
+    """Up from level."""
+    cut_off_m: float
+    """What is horizontally farther than this counts as not met: the floor must lie beyond it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Slant:
+    """What was seen at a further tilt, all the way round."""
+
+    tilt: Tilt
+    readings: tuple[RangeReading, ...]
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Sweep:
     """The readings of one stop, evenly round the robot, all in the robot frame of ``in_odom``."""
@@ -69,6 +87,9 @@ class Sweep:
     in_odom: Pose2
     """Where the robot stood, by odometry, when the sweep began."""
     readings: tuple[RangeReading, ...]
+    """Of the first look round, mostly a level one."""
+    slants: tuple[Slant, ...] = ()
+    """What was seen at further tilts, if the robot looked so: they are of other layers of the map."""
 
     @classmethod
     def of(cls, bearings_rad: Iterable[float], ranges_m: Iterable[float], cutoff_m: float) -> "Sweep":
@@ -93,6 +114,10 @@ class Sweep:
         counts = ((self.count(status), status) for status in ReadingStatus)
         told = ", ".join(f"{count} {status}" for count, status in counts if count)
         return f"Sweep({len(self.readings)} readings{': ' if told else ''}{told})"
+
+    def at(self, slant: Slant) -> "Sweep":
+        """Return what was seen at a further tilt as a sweep of its own, taken in the same place."""
+        return Sweep(self.number, self.in_odom, slant.readings)
 
     @property
     def is_clockwise(self) -> bool:

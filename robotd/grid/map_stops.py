@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 
 from robotd.core.grid_spec import GridSpec
 from robotd.core.map_stop import MapStop
+from robotd.core.reading import Tilt
 from robotd.grid.arithmetic import arithmetic
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
@@ -33,6 +34,17 @@ class MapStops:
         # Once mixed it stays so: no machine makes all of these cells again, bit for bit.
         same = self.arithmetic if self.is_of_this_arithmetic else _SEVERAL
         return replace(self, stops=(*self.stops, stop), arithmetic=same)
+
+    @property
+    def tilts(self) -> tuple[Tilt, ...]:
+        """The further tilts of its layers, ascending, each with the cut-off that it was looked at with last."""
+        latest = {slant.tilt.tilt_rad: slant.tilt for stop in self.stops for slant in stop.slants}
+        return tuple(latest[tilt_rad] for tilt_rad in sorted(latest))
+
+    def layer(self, tilt_rad: float) -> "MapStops":
+        """Return what a layer was made of: the stops from which the robot looked at that tilt, as a map of its own."""
+        seen = (stop.at(tilt_rad) for stop in self.stops)
+        return replace(self, stops=tuple(stop for stop in seen if stop is not None))
 
     def grid_on(self, spec: GridSpec) -> OccupancyGrid:
         """Return the grid that they make on these cells. O(stops x readings x cells a beam)."""

@@ -5,6 +5,7 @@ One job at a time, each to its end, so nothing here waits, reads a clock or shar
 
 from collections.abc import Callable
 
+from robotd.core.reading import Tilt
 from robotd.head.held import Held
 from robotd.head.jobs import MapRef, Prepare
 from robotd.head.parts import Parts
@@ -65,6 +66,12 @@ class Desk:
         self.hold(ref, held)
         return ready
 
+    def layers(self, ref: MapRef) -> tuple[tuple[Tilt, ReadyMap], ...]:
+        """Return the further layers of a map made ready for localization; NotHeld if there is none."""
+        held, ready = self.map(ref).layers_ready(self.settings.localization, self.settings.error_model)
+        self.hold(ref, held)
+        return ready
+
     def begin(self, job: Prepare) -> None:
         """Hold a stop, on its map made ready."""
         self._stops[job.number] = self._begin(self.ready(job.map), job)
@@ -92,6 +99,7 @@ class Desk:
             job.headings_rad,
             job.within,
             judgement=judgement,
+            layers=self.layers(job.map) if job.layers else (),
             threads=self._threads,
             tells_smallest_error=job.tells_smallest_error,
         )

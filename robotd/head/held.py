@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from robotd.core.grid_bytes import packed_cells
 from robotd.core.map_stop import MapStop
 from robotd.core.pose import Pose2
-from robotd.core.reading import Sweep
+from robotd.core.reading import Slant, Sweep, Tilt
 from robotd.grid.latest import HIT, latest_with
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
+from robotd.grid.tables import NO_INFORMATION
 from robotd.grid.window import CellWindow
 from robotd.head.jobs import HeldMap
 from robotd.localization.judge.error_model import ErrorModel
@@ -41,22 +42,39 @@ class Held:
     """Where the grid changed since that one."""
     survey: Survey | None = None
     """What is known of its stops together, if they were placed one after the other."""
+    layers: tuple["Layer", ...] = ()
+    """What was seen at further tilts, on the same cells, by tilt; this map alone says where its stops are."""
 
     @classmethod
     def of(cls, grid: OccupancyGrid, stops: MapStops | None) -> "Held":
-        """Return a map of which no sweep was laid in here."""
-        return cls(grid, grid.digest(), stops, np.zeros(grid.spec.shape, np.uint8))
+        """Return a map of which no sweep was laid in here; its layers are made of its stops."""
+        layers = tuple(
+            Layer(tilt, cls.of(layer.grid_on(grid.spec), layer))
+            for tilt, layer in (() if stops is None else ((tilt, stops.layer(tilt.tilt_rad)) for tilt in stops.tilts))
+        )
+        return cls(grid, grid.digest(), stops, np.zeros(grid.spec.shape, np.uint8), layers=layers)
 
     @property
     def told(self) -> HeldMap:
         """What is told of it."""
         stops = None if self.stops is None else len(self.stops.stops)
-        return HeldMap(self.grid.spec, self.digest, packed_cells(self.grid.cells), stops, self.grid.settings)
+        packed = packed_cells(self.grid.cells)
+        return HeldMap(self.grid.spec, self.digest, packed, stops, self.grid.settings, self.tilts)
+
+    @property
+    def tilts(self) -> tuple[Tilt, ...]:
+        """The tilts of its layers, ascending."""
+        return tuple(layer.tilt for layer in self.layers)
 
     def obstacles(self, met_m: Sequence[tuple[float, float]] = ()) -> NDArray[np.bool_]:
-        """Return the cells that are obstacles whatever their value, ``bool[rows, cols]``: hit last, or met there."""
+        """Return the cells that are obstacles whatever their value, ``bool[rows, cols]``.
+
+        What was hit last, what was met there, and what is an obstacle at any other height.
+        """
         # One beam is enough (decision 20).
         hit: NDArray[np.bool_] = self.latest == HIT
+        for layer in self.layers:
+            hit |= layer.held.obstacles() | (layer.held.grid.cells > NO_INFORMATION)
         cells = self.grid.spec.flat_at(np.array(met_m).reshape(-1, 2))
         hit.reshape(-1)[cells[cells >= 0]] = True
         return hit
@@ -64,7 +82,7 @@ class Held:
     def with_sweep(self, sweep: Sweep, map_from_robot: Pose2) -> tuple["Held", NDArray[np.intp]]:
         """Return the map with a sweep laid in that was taken at ``map_from_robot``, and the cells that it changed.
 
-        Those are flat indices, ascending; this map stays as it is.
+        Those are flat indices of its own grid, ascending; this map stays as it is.
         """
         # A copy: who holds the generation before must find it as it was.
         grid = OccupancyGrid(self.grid.spec, self.grid.cells, self.grid.settings)
@@ -73,7 +91,17 @@ class Held:
         stops = None if self.stops is None else self.stops.with_stop(MapStop.of(sweep, map_from_robot))
         # Joined with what changed before: what is ready may be some generations old.
         changed = self.changed.joined(CellWindow.bounding(cells, grid.spec.shape))
-        return Held(grid, grid.digest(), stops, latest, self.ready, changed), cells
+        layers = {layer.tilt.tilt_rad: layer for layer in self.layers}
+        for slant in sweep.slants:
+            before = layers.get(slant.tilt.tilt_rad) or Layer(slant.tilt, self._blank())
+            layers[slant.tilt.tilt_rad] = before.with_slant(sweep, slant, map_from_robot)
+        in_order = tuple(layers[tilt_rad] for tilt_rad in sorted(layers))
+        return Held(grid, grid.digest(), stops, latest, self.ready, changed, layers=in_order), cells
+
+    def _blank(self) -> "Held":
+        """Return a map of the same cells on which nothing is known."""
+        settings = self.grid.settings
+        return Held.of(OccupancyGrid(self.grid.spec, settings=settings), MapStops(settings))
 
     def made_ready(self, settings: LocalizationSettings, errors: ErrorModel) -> tuple["Held", ReadyMap]:
         """Return it with what localization works on: made from nothing, or from what was ready and where it changed."""
@@ -82,3 +110,23 @@ class Held:
         else:
             ready = self.ready.updated(self.grid, self.changed)
         return replace(self, ready=ready, changed=_NOTHING), ready
+
+    def layers_ready(
+        self, settings: LocalizationSettings, errors: ErrorModel
+    ) -> tuple["Held", tuple[tuple[Tilt, ReadyMap], ...]]:
+        """Return the same of its layers, each with its tilt."""
+        made = [(layer.tilt, *layer.held.made_ready(settings, errors)) for layer in self.layers]
+        held = replace(self, layers=tuple(Layer(tilt, held) for tilt, held, _ in made))
+        return held, tuple((tilt, ready) for tilt, _, ready in made)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layer:
+    """What a map is at a further tilt: a map of its own, with the stops of the other."""
+
+    tilt: Tilt
+    held: Held
+
+    def with_slant(self, sweep: Sweep, slant: Slant, map_from_robot: Pose2) -> "Layer":
+        """Return it with what a sweep saw at its tilt laid in."""
+        return Layer(slant.tilt, self.held.with_sweep(sweep.at(slant), map_from_robot)[0])

@@ -144,13 +144,16 @@ def _prepare(desk: Desk, job: Prepare) -> Done:
 
 
 def _take_readings(desk: Desk, job: TakeReadings) -> Done:
-    desk.stop(job.stop).add(*job.readings)
+    estimator = desk.stop(job.stop)
+    estimator.add(*job.readings)
+    estimator.add_slants(*job.slants)
     return Done()
 
 
 def _narrow(desk: Desk, job: Narrow) -> Narrowed:
     estimator = desk.stop(job.stop)
     estimator.add(*job.readings)
+    estimator.add_slants(*job.slants)
     estimate = estimator.estimate(job.time_ns, final=job.final)
     entry = result_of(estimate)
     return Narrowed(estimate, None, None) if entry is None else Narrowed(estimate, entry.digest, entry.encoded)

@@ -15,7 +15,7 @@ from robotd.contract.ways import Point, Way
 from robotd.core.grid_spec import GridSpec
 from robotd.core.motion_error import Travel
 from robotd.core.pose import Pose2
-from robotd.core.reading import RangeReading, Sweep
+from robotd.core.reading import RangeReading, Slant, Sweep, Tilt
 from robotd.core.rectangle import Rectangle
 from robotd.exploring.settings import Pace
 from robotd.exploring.tried import Tried
@@ -45,6 +45,8 @@ class HeldMap(msgspec.Struct, frozen=True):
     """How many stops it was made of; None if that is not known."""
     settings: GridSettings
     """How further readings change it."""
+    tilts: tuple[Tilt, ...] = ()
+    """Of its layers."""
 
 
 class BeginMap(Job[HeldMap], frozen=True):
@@ -222,6 +224,8 @@ class Prepare(Job[Done], frozen=True):
     """What the best place must have over any other, if that is more than the settings say."""
     tells_smallest_error: bool = False
     """Whether estimates of a whole sweep tell it."""
+    layers: bool = False
+    """Whether what will be seen at the tilts of its layers has a word in it, too."""
 
     @property
     def makes(self) -> Made:
@@ -236,6 +240,8 @@ class TakeReadings(Job[Done], frozen=True):
     stop: int
     readings: tuple[RangeReading, ...]
     """Measured ones."""
+    slants: tuple[Slant, ...] = ()
+    """What was seen at the tilts of the layers."""
 
 
 class Narrowed(msgspec.Struct, frozen=True):
@@ -265,6 +271,8 @@ class Narrow(Job[Narrowed], frozen=True):
     """When the robot was there."""
     final: bool
     """Whether the sweep is whole."""
+    slants: tuple[Slant, ...] = ()
+    """What was seen at the tilts of the layers."""
 
     @property
     def makes(self) -> Made:
@@ -273,7 +281,7 @@ class Narrow(Job[Narrowed], frozen=True):
 
     def again(self, answer: Narrowed) -> TakeReadings:
         """Return the readings alone: what they say was told."""
-        return TakeReadings(self.stop, self.readings)
+        return TakeReadings(self.stop, self.readings, self.slants)
 
 
 class Ranks(msgspec.Struct, frozen=True):

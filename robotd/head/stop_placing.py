@@ -6,16 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.errors import MissionError
+from robotd.core.grid_spec import GridSpec
 from robotd.core.map_stop import MapStop
 from robotd.core.motion_error import Travel
 from robotd.core.pose import Pose2
-from robotd.core.reading import Sweep
+from robotd.core.reading import Sweep, Tilt
 from robotd.grid.latest import latest_with
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
 from robotd.grid.window import CellWindow
-from robotd.head.held import Held
+from robotd.head.held import Held, Layer
 from robotd.localization.settings import LocalizationSettings
 from robotd.slam.local_map import LocalMaps
 from robotd.slam.survey import Decision, Reconciled, Survey, SurveySettings
@@ -97,12 +98,24 @@ def _made_again(held: Held, sweep: Sweep, survey: Survey) -> tuple[Held, NDArray
     moved = tuple(
         replace(stop, map_from_robot=graph.pose(at)) for stop, at in zip(stops, graph.laid.tolist(), strict=True)
     )
-    # In the order of the stops, as they were laid in: cells saturate, so another order gives another map.
-    grid, latest = OccupancyGrid(held.grid.spec, settings=held.grid.settings), np.zeros_like(held.latest)
-    for stop in moved:
-        grid.lay_in(stop)
-        latest = latest_with(latest, grid.usable(stop.sweep), stop.map_from_robot, grid.spec)
+    of_stops = MapStops(held.stops.settings, moved, held.stops.arithmetic)
+    grid, latest = _laid(of_stops, held.grid.spec)
     cells = np.flatnonzero(grid.cells != held.grid.cells)
     changed = held.changed.joined(CellWindow.bounding(cells, grid.spec.shape))
-    of_stops = MapStops(held.stops.settings, moved, held.stops.arithmetic)
-    return Held(grid, grid.digest(), of_stops, latest, held.ready, changed), cells
+    layers = tuple(_layer_of(of_stops, tilt, held) for tilt in of_stops.tilts)
+    return Held(grid, grid.digest(), of_stops, latest, held.ready, changed, layers=layers), cells
+
+
+def _laid(stops: MapStops, spec: GridSpec) -> tuple[OccupancyGrid, NDArray[np.uint8]]:
+    """Return the grid that stops make, and what the latest sweep that met each cell said of it."""
+    # In the order of the stops, as they were laid in: cells saturate, so another order gives another map.
+    grid, latest = stops.grid_on(spec), np.zeros(spec.shape, np.uint8)
+    for stop in stops.stops:
+        latest = latest_with(latest, grid.usable(stop.sweep), stop.map_from_robot, spec)
+    return grid, latest
+
+
+def _layer_of(stops: MapStops, tilt: Tilt, held: Held) -> Layer:
+    of_layer = stops.layer(tilt.tilt_rad)
+    grid, latest = _laid(of_layer, held.grid.spec)
+    return Layer(tilt, Held(grid, grid.digest(), of_layer, latest))

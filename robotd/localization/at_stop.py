@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from robotd.contract.area import Area
+from robotd.core.reading import Tilt
 from robotd.localization.by_walls import ByWalls
 from robotd.localization.estimator import Estimator
 from robotd.localization.heading_search import HeadingSearch
@@ -19,6 +20,7 @@ def estimator_at_stop(
     within: Area | None = None,
     *,
     judgement: Judgement | None = None,
+    layers: Sequence[tuple[Tilt, ReadyMap]] = (),
     threads: int = 1,
     tells_smallest_error: bool = False,
 ) -> Estimator:
@@ -30,5 +32,7 @@ def estimator_at_stop(
     settings = the_map.settings
     is_open = tuple(headings_rad) == settings.headings_all_round() and not settings.conservative
     kind = ByWalls if is_open and settings.heading is HeadingSearch.WALLS else Localizer
-    estimator: Estimator = kind.at_stop(the_map, map_id, headings_rad, within, judgement=judgement, threads=threads)
+    estimator: Estimator = kind.at_stop(
+        the_map, map_id, headings_rad, within, judgement=judgement, layers=layers, threads=threads
+    )
     return SmallestErrorTold(estimator, the_map, threads) if tells_smallest_error else estimator

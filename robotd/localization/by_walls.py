@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.walls_verdict import WallsVerdict
-from robotd.core.reading import RangeReading
+from robotd.core.reading import RangeReading, Slant, Tilt
 from robotd.localization.count.heat import Heat
 from robotd.localization.judge.judgement import Judgement
 from robotd.localization.localizer import Localizer
@@ -47,10 +47,13 @@ class ByWalls:
         within: Area | None = None,
         *,
         judgement: Judgement | None = None,
+        layers: Sequence[tuple[Tilt, ReadyMap]] = (),
         threads: int = 1,
     ) -> "ByWalls":
         """Begin with no readings; arguments as of :meth:`.Localizer.at_stop`, ``headings_rad`` all round."""
-        everywhere = Localizer.at_stop(the_map, map_id, headings_rad, within, judgement=judgement, threads=threads)
+        everywhere = Localizer.at_stop(
+            the_map, map_id, headings_rad, within, judgement=judgement, layers=layers, threads=threads
+        )
         return cls(everywhere, within, threads)
 
     def add(self, *readings: RangeReading) -> None:
@@ -61,6 +64,10 @@ class ByWalls:
         """
         self.everywhere.add(*readings)
         self.readings.extend(readings)
+
+    def add_slants(self, *slants: Slant) -> None:
+        """Take what was seen at the tilts of the map's layers."""
+        self.everywhere.add_slants(*slants)
 
     def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
         """Return what the readings so far say, and what the walls said of the heading."""
@@ -89,7 +96,7 @@ class ByWalls:
             threads=self.threads,
         )
         localizer.stop.add(all_round.stop.readings)
-        return localizer
+        return replace(localizer, layers=all_round.layers)
 
 
 _axes: WeakKeyDictionary[ReadyMap, Axis | None] = WeakKeyDictionary()

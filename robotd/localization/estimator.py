@@ -3,7 +3,7 @@
 from typing import Protocol
 
 from robotd.contract.estimate import PoseEstimate
-from robotd.core.reading import RangeReading
+from robotd.core.reading import RangeReading, Slant
 from robotd.localization.count.heat import Heat
 
 
@@ -19,6 +19,9 @@ class Estimator(Protocol):
         Raises:
             ValueError: a reading measured nothing; then none is taken.
         """
+
+    def add_slants(self, *slants: Slant) -> None:
+        """Take what was seen at the tilts of the map's layers."""
 
     def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
         """Return what the readings so far say.

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.contract.area import Area
-from robotd.contract.estimate import PoseEstimate, PoseState
-from robotd.core.reading import RangeReading
+from robotd.contract.estimate import LayerSaid, PoseEstimate, PoseState
+from robotd.core.reading import RangeReading, Slant, Tilt
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
 from robotd.localization.claim import state_by_belief, state_by_proof
@@ -24,6 +24,7 @@ from robotd.localization.judge.judgement import Judgement
 from robotd.localization.judge.likeliest import likeliest_look
 from robotd.localization.judge.second_look import SecondLook
 from robotd.localization.judged_regions import JudgedRegion, judged_regions
+from robotd.localization.layer_seen import LayerSeen
 from robotd.localization.ready_map import ReadyMap
 from robotd.localization.stop import Stop
 
@@ -37,6 +38,8 @@ class Localizer:
     map_id: str
     """What estimates call the map."""
     judgement: Judgement
+    layers: tuple[LayerSeen, ...] = ()
+    """Further ones, which narrow down what the first one leaves."""
 
     @classmethod
     def at_stop(
@@ -47,6 +50,7 @@ class Localizer:
         within: Area | None = None,
         *,
         judgement: Judgement | None = None,
+        layers: Sequence[tuple[Tilt, ReadyMap]] = (),
         threads: int = 1,
     ) -> "Localizer":
         """Begin with no readings.
@@ -57,9 +61,12 @@ class Localizer:
             headings_rad: the robot's possible headings in the map frame, ascending; one if odometry knows it.
             within: where on the map it is, if that is known; then no other place is an answer.
             judgement: what counts as an answer.
+            layers: further layers of the map, which have a word in it once something was seen at their tilts.
             threads: how many threads may share the work when it is much; no estimate depends on it.
         """
-        return cls(the_map, the_map.stop(headings_rad, within, threads=threads), map_id, judgement or Judgement())
+        stop = the_map.stop(headings_rad, within, threads=threads)
+        seen = tuple(LayerSeen(tilt, ready) for tilt, ready in layers)
+        return cls(the_map, stop, map_id, judgement or Judgement(), seen)
 
     def add(self, *readings: RangeReading) -> None:
         """Count measured readings, hits or misses; many at once cost less than one after the other.
@@ -68,6 +75,13 @@ class Localizer:
             ValueError: a reading measured nothing; then none is counted.
         """
         self.stop.add(Readings.of(readings))
+
+    def add_slants(self, *slants: Slant) -> None:
+        """Take what was seen at further tilts; of a tilt that the map has no layer of, nothing is known."""
+        for slant in slants:
+            for layer in self.layers:
+                if layer.tilt.tilt_rad == slant.tilt.tilt_rad:
+                    layer.add(Readings.of(tuple(reading for reading in slant.readings if reading.is_measured)))
 
     def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
         """Return what the readings so far say.
@@ -79,10 +93,13 @@ class Localizer:
         readings, least = self.stop.readings, self.the_map.settings.readings_min
         # A handful of readings is explained nearly anywhere: saying nothing is better than naming half of the map.
         found = self.stop.best_poses() if len(readings) >= least else PoseSet.nothing()
+        seen = [layer for layer in self.layers if len(layer.readings)]
+        found, said = self._agreed(found, seen)
         poses_m = found.in_metres(self.the_map.spec, self.stop.headings_rad)
         meanings = self.the_map.meanings
         likelihoods = [meaning.likelihood for meaning in meanings]
-        meant, look = likeliest_look(likelihoods, readings, poses_m, found.ranks, self.judgement.second_look)
+        look_by, views = self.judgement.second_look, [layer.view for layer in seen]
+        meant, look = likeliest_look(likelihoods, readings, poses_m, found.ranks, look_by, *views)
         state = self._claimed(found, look)
         # After the judgement: connecting is dear where poses are many, and a robot that is lost has no region
         # to tell.
@@ -110,6 +127,7 @@ class Localizer:
             ends=look.ends,
             # In the order of each region's `explained`, so that a reader knows which reading that was.
             bearings_rad=tuple(readings.bearing_rad.tolist()),
+            layers=said,
         )
 
     def heat(self) -> Heat:
@@ -118,6 +136,14 @@ class Localizer:
         if ranks is None:
             return counted_apart(levels, self.stop.readings, headings_rad)
         return pictured(levels.spec, ranks.heat(block_of(levels.spec)), ranks.readings, len(headings_rad))
+
+    def _agreed(self, found: PoseSet, seen: Sequence[LayerSeen]) -> tuple[PoseSet, tuple[LayerSaid, ...]]:
+        """Return the poses that no layer speaks against, and what each says of the rest."""
+        said = []
+        for layer in seen:
+            found, best_rank = layer.agreeing(found, self.stop.headings_rad)
+            said.append(LayerSaid(layer.tilt.tilt_rad, len(layer.readings), best_rank))
+        return found, tuple(said)
 
     def _claimed(self, found: PoseSet, look: SecondLook) -> PoseState:
         if self.the_map.settings.conservative:

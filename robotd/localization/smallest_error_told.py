@@ -8,7 +8,7 @@ this says by how much.
 from dataclasses import dataclass, field, replace
 
 from robotd.contract.estimate import PoseEstimate
-from robotd.core.reading import RangeReading
+from robotd.core.reading import RangeReading, Slant
 from robotd.localization.count.heat import Heat
 from robotd.localization.erring.error_map import ErrorMap
 from robotd.localization.erring.share_errors import errors_on
@@ -37,6 +37,10 @@ class SmallestErrorTold:
         """
         self.estimator.add(*readings)
         self.readings.extend(readings)
+
+    def add_slants(self, *slants: Slant) -> None:
+        """Take what was seen at the tilts of the map's layers: of the error nothing is asked there."""
+        self.estimator.add_slants(*slants)
 
     def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
         """Return what the readings so far say; of a whole sweep with an answer its smallest error too, O(cells)."""

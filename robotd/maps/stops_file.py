@@ -1,8 +1,8 @@
 """The file ``stops.bin`` of a stored map: what it was made of.
 
 A line that says what it is and of which format, then zlib of a msgpack map: ``settings`` and ``arithmetic`` as
-:class:`~robotd.grid.map_stops.MapStops` has them, and the columns of :mod:`robotd.maps.stop_columns`. Its checksum is
-in the manifest.
+:class:`~robotd.grid.map_stops.MapStops` has them, the columns of :mod:`robotd.maps.stop_columns` and, if the map has
+layers, theirs. Its checksum is in the manifest.
 """
 
 import zlib
@@ -14,13 +14,15 @@ import msgspec
 from robotd.core.errors import MapError
 from robotd.grid.map_stops import MapStops
 from robotd.grid.settings import BetweenBeams, GridSettings
-from robotd.maps.stop_columns import StopColumns, columns_of, stops_of
+from robotd.maps.stop_columns import LayerColumns, StopColumns, columns_of, layers_of, stops_of
 
-FORMAT = 1
+FORMAT, FORMAT_WITH_LAYERS = 1, 2
 STOPS_MAX = 1 << 14
 """Bounds what a damaged file can ask for; the longest mission has a thousand."""
 READINGS_MAX = 1 << 19
-"""Of all stops together: a thousand stops of 500, the most that one mission makes. They take 26 MB in memory."""
+"""Of all stops and layers together: a thousand stops of 500, the most that one mission makes, take 26 MB in memory."""
+LAYERS_MAX = 64
+"""A mission has eight at most, and they may change."""
 _UNPACKED_MAX_BYTES = 32 << 20
 """More than that many stops and readings take; nothing is unpacked beyond it."""
 _HEAD = b"robotd stops "
@@ -31,10 +33,12 @@ SETTINGS_SINCE: dict[str, Any] = {"between_beams": BetweenBeams.UNSEEN}
 """What settings that came later were when a file did not have them yet: not what they are by default now."""
 
 
-class _Content(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+# Layers are left out where there are none: such a file is what it was before there were layers.
+class _Content(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
     settings: dict[str, Any]
     arithmetic: Annotated[str, msgspec.Meta(max_length=16)]
     columns: StopColumns
+    layers: Annotated[tuple[LayerColumns, ...], msgspec.Meta(max_length=LAYERS_MAX)] = ()
 
 
 def encode_stops(stops: MapStops) -> bytes:
@@ -43,8 +47,10 @@ def encode_stops(stops: MapStops) -> bytes:
     Raises:
         MapError: it could not be read again: there are too many readings, or numbers that no robot has.
     """
-    content = _Content(asdict(stops.settings), stops.arithmetic, columns_of(stops.stops))
-    data = _HEAD + b"%d\n" % FORMAT + zlib.compress(msgspec.msgpack.encode(content), _LEVEL)
+    content = _Content(asdict(stops.settings), stops.arithmetic, columns_of(stops.stops), layers_of(stops.stops))
+    # So that a version of before there were layers says what it lacks.
+    form = FORMAT_WITH_LAYERS if content.layers else FORMAT
+    data = _HEAD + b"%d\n" % form + zlib.compress(msgspec.msgpack.encode(content), _LEVEL)
     # Before anything is written: what is reported saved must be found again.
     if decode_stops(data) != stops:
         raise MapError("the stops would not come back as they are")
@@ -69,14 +75,13 @@ def decode_stops(data: bytes) -> MapStops:
     head, line_end, packed = data.partition(b"\n")
     if not line_end or not head.startswith(_HEAD):
         raise MapError(f"it does not begin with {_HEAD.decode()!r}")
-    if head != _HEAD + b"%d" % FORMAT:
+    if head not in {_HEAD + b"%d" % form for form in (FORMAT, FORMAT_WITH_LAYERS)}:
         named = head[len(_HEAD) : len(_HEAD) + 20].decode(errors="replace")
-        raise MapError(f"it has format {named!r}, this version reads format {FORMAT}")
+        raise MapError(f"it has format {named!r}, this version reads formats {FORMAT} and {FORMAT_WITH_LAYERS}")
     try:
         content = msgspec.msgpack.decode(_unpacked(packed), type=_Content)
-        return MapStops(
-            _settings_of(content.settings), stops_of(content.columns, STOPS_MAX, READINGS_MAX), content.arithmetic
-        )
+        stops = stops_of(content.columns, content.layers, STOPS_MAX, READINGS_MAX)
+        return MapStops(_settings_of(content.settings), stops, content.arithmetic)
     except (ValueError, zlib.error, RecursionError) as error:
         raise MapError(str(error)[:200]) from error
 

@@ -68,12 +68,19 @@ _UNSAID: dict[str, object] = {
     "contradiction": None,
     "walls": None,
     "smallest_error_m": None,
+    "layers": (),
 }
 
 
 def _sweep(sweep: Sweep) -> dict[str, Any]:
     content: dict[str, Any] = msgspec.to_builtins(sweep)
-    return content | {"readings": [_without_time(reading) for reading in content["readings"]]}
+    # Without a word of slants where there are none: as in recordings of before there were any.
+    slants = [slant | _without_times(slant) for slant in content.pop("slants")]
+    return content | _without_times(content) | ({"slants": slants} if slants else {})
+
+
+def _without_times(seen: dict[str, Any]) -> dict[str, Any]:
+    return {"readings": [_without_time(reading) for reading in seen["readings"]]}
 
 
 def _without_time(content: dict[str, Any]) -> dict[str, Any]:

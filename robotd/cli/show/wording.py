@@ -90,6 +90,7 @@ def estimate_in_words(estimate: PoseEstimate) -> str:
     support = f"{estimate.best_rank or 'too few'} of {estimate.readings} readings explained"
     if estimate.smallest_error_m is not None:
         support += f"; nine of ten agree once ranges may be {1000 * estimate.smallest_error_m:.0f} mm off"
+    support += "".join(f", {said}" for said in estimate.layers)
     so_far = "" if estimate.final else ", so far"
     if estimate.best is not None:
         by_history = f"; by history, {estimate.unreachable} more cannot be reached" if estimate.by_history else ""

@@ -6,7 +6,7 @@ from robotd.cli.exit_codes import AMBIGUOUS, LOST, OK
 from robotd.cli.motion import MissionOutcome, carry_out, mission_verb
 from robotd.cli.quantities import number, positive, whole
 from robotd.cli.show.wording import as_json, ending_in_words
-from robotd.cli.verbs.map_making import map_name, pose_argument, stops_argument, taken_up
+from robotd.cli.verbs.map_making import map_name, pose_argument, stops_argument, taken_up, tilts_argument, tilts_named
 from robotd.client.mission_run import MissionEvent
 from robotd.contract.area import Bounds
 from robotd.contract.explored import ExploringEnded
@@ -29,6 +29,7 @@ def _explore(arguments: argparse.Namespace) -> int:
         way_max_m=arguments.way_max,
         time_max_s=None if arguments.minutes is None else arguments.minutes * _S_PER_MINUTE,
         returns=arguments.back,
+        tilts=tilts_named(arguments.tilt),
     )
     return carry_out(arguments, mission, _explored)
 
@@ -62,6 +63,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--way-max", type=positive, metavar="M", help="no further stop after so long a way [m]")
     parser.add_argument("--minutes", type=positive, metavar="MIN", help="no further stop after this time")
     parser.add_argument("--return", action="store_true", dest="back", help="drive back to where it began, in the end")
+    tilts_argument(parser)
 
 
 class _BoundsAction(argparse.Action):

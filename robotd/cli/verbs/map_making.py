@@ -1,6 +1,8 @@
 """``map start`` and ``map continue``: mapping at stops that somebody names."""
 
 import argparse
+import math
+from collections.abc import Sequence
 
 import msgspec
 
@@ -12,7 +14,7 @@ from robotd.cli.show.terminal import err
 from robotd.cli.verbs.where import found_in_words
 from robotd.cli.wheels import odometry_argument
 from robotd.contract.answers import ErrorCode
-from robotd.contract.arguments import MapName
+from robotd.contract.arguments import MapName, TiltArgument
 from robotd.contract.estimate import PoseEstimate
 from robotd.contract.missions import Legs, Localize, MapContinue, MapStart, PriorHeading
 from robotd.contract.topics import Topic
@@ -33,7 +35,10 @@ def _start(arguments: argparse.Namespace) -> int:
 
         robot = load_robot(arguments.world, odometry=OdometrySource(arguments.odometry))
         start, stops_m = start or robot.start, stops_m or robot.stops_m
-    return carry_out(arguments, MapStart.of(arguments.name, stops_m, start or IDENTITY, Legs(arguments.legs)))
+    legs = Legs(arguments.legs)
+    return carry_out(
+        arguments, MapStart.of(arguments.name, stops_m, start or IDENTITY, legs, tilts_named(arguments.tilt))
+    )
 
 
 def _give_up(arguments: argparse.Namespace) -> None:
@@ -54,6 +59,7 @@ def _start_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", metavar="WORLD", help="take start and stops from a world of robotctl sim")
     odometry_argument(parser)
     legs_argument(parser)
+    tilts_argument(parser)
     parser.add_argument(
         "--discard",
         action="store_true",
@@ -131,6 +137,25 @@ def pose_argument(parser: argparse.ArgumentParser, name: str, summary: str) -> N
 def stops_argument(parser: argparse.ArgumentParser, summary: str) -> None:
     """Let the command line name stops, ``--stop X Y`` once for each."""
     parser.add_argument("--stop", action="append", nargs=2, type=number, default=[], metavar=("X", "Y"), help=summary)
+
+
+def tilts_argument(parser: argparse.ArgumentParser) -> None:
+    """Let the command line name further tilts, ``--tilt DEG CUT_OFF`` once for each."""
+    parser.add_argument(
+        "--tilt",
+        action="append",
+        nargs=2,
+        type=number,
+        default=[],
+        metavar=("DEG", "CUT_OFF"),
+        help="look round at this tilt as well, up from level [degrees], for a layer of the map of its own, and take"
+        " what is farther than the cut-off [m] for not met: before the floor; once for each",
+    )
+
+
+def tilts_named(named: Sequence[Sequence[float]]) -> tuple[TiltArgument, ...]:
+    """Return the tilts that the command line names."""
+    return tuple(TiltArgument(math.radians(tilt_deg), cut_off_m) for tilt_deg, cut_off_m in named)
 
 
 VERBS = (

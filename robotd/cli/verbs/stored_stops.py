@@ -27,11 +27,12 @@ def _stops(arguments: argparse.Namespace) -> int:
         print_json(rows)
         return OK
     print_table(
-        ("stop", "x [m]", "y [m]", "heading [deg]", "readings", "off odometry's step [mm]", "[deg]"),
+        ("stop", "x [m]", "y [m]", "heading [deg]", "readings", "at tilts [deg]", "off odometry's step [mm]", "[deg]"),
         (
             (
                 *(row["stop"], f"{row['x_m']:.3f}", f"{row['y_m']:.3f}", f"{math.degrees(row['heading_rad']):.1f}"),
-                *(row["readings"], f"{1000.0 * row['off_m']:.0f}", f"{math.degrees(row['off_rad']):.2f}"),
+                *(row["readings"], ", ".join(f"{math.degrees(tilt_rad):.1f}" for tilt_rad in row["tilts_rad"])),
+                *(f"{1000.0 * row['off_m']:.0f}", f"{math.degrees(row['off_rad']):.2f}"),
             )
             for row in rows
         ),
@@ -52,6 +53,7 @@ def _row(number: int, before: MapStop | None, stop: MapStop) -> dict[str, Any]:
         "y_m": pose.y_m,
         "heading_rad": pose.heading_rad,
         "readings": len(stop.beams(misses=True)),
+        "tilts_rad": [slant.tilt.tilt_rad for slant in stop.slants],
         "off_m": off_m,
         "off_rad": off_rad,
     }

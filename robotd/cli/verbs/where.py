@@ -38,6 +38,7 @@ def _localize(arguments: argparse.Namespace) -> int:
         within=arguments.within,
         adaptive=arguments.adaptive,
         smallest_error=arguments.smallest_error,
+        layers=arguments.layers,
     )
     return carry_out(arguments, localize, found_in_words)
 
@@ -63,10 +64,16 @@ def _known(parser: argparse.ArgumentParser) -> None:
         help="the robot's heading on the map, if you know it better than its odometry",
     )
     headings.add_argument("--heading-unknown", action="store_true", help="try all headings: it is not known")
-    parser.add_argument(
+    looks = parser.add_mutually_exclusive_group()
+    looks.add_argument(
         "--adaptive",
         action="store_true",
         help="read to all sides until two answers agree, instead of a whole sweep: some twenty readings of 300",
+    )
+    looks.add_argument(
+        "--layers",
+        action="store_true",
+        help="look at the tilt of each layer of the map, too: a place must then agree with each of them",
     )
     parser.add_argument(
         "--smallest-error",

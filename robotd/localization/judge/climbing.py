@@ -25,11 +25,37 @@ class Hill:
     """``m`` readings."""
     weights: NDArray[np.float64]
     """``float64[m]``, how much each has to say."""
+    further: tuple["Hill", ...] = ()
+    """What other layers of the map say of the readings at their tilts: evidence adds up."""
+
+    def logs(self, poses: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the weighted logarithms of the likelihoods at poses ``float64[n, 3]``, ``float64[n, readings]``.
+
+        Those of its own readings come first, then those of each further layer.
+        """
+        own: NDArray[np.float64] = self.likelihood.logs(self.sight, poses) * self.weights
+        return np.concatenate((own, *(hill.logs(poses) for hill in self.further)), axis=1) if self.further else own
 
     def heights(self, poses: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the weighted sum of the logarithms of the likelihoods at poses ``float64[n, 3]``, ``float64[n]``."""
-        heights: NDArray[np.float64] = (self.likelihood.logs(self.sight, poses) * self.weights).sum(axis=1)
+        """Return the sum of all that is said at poses ``float64[n, 3]``, ``float64[n]``."""
+        heights: NDArray[np.float64] = self.logs(poses).sum(axis=1)
         return heights
+
+    @property
+    def elsewhere(self) -> float:
+        """How high a robot would stand that is not on the map."""
+        own = float((self.likelihood.elsewhere_logs(self.sight) * self.weights).sum())
+        return own + sum(hill.elsewhere for hill in self.further)
+
+    @property
+    def all_say(self) -> float:
+        """How many things all readings say."""
+        return float(self.weights.sum()) + sum(hill.all_say for hill in self.further)
+
+    @property
+    def hits_say(self) -> float:
+        """How many things the hits say."""
+        return float(self.weights[self.sight.is_hit].sum()) + sum(hill.hits_say for hill in self.further)
 
 
 def climb(

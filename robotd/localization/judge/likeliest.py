@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from robotd.contract.estimate import PoseState
 from robotd.grid.readings import Readings
 from robotd.localization.judge.likelihood import Likelihood
-from robotd.localization.judge.second_look import SecondLook, second_look
+from robotd.localization.judge.second_look import LayerView, SecondLook, second_look
 from robotd.localization.judge.second_look_settings import SecondLookSettings
 from robotd.localization.judge.shortlist import near
 
@@ -24,6 +24,7 @@ def likeliest_look(
     poses: NDArray[np.float64],
     ranks: NDArray[np.integer],
     settings: SecondLookSettings,
+    *further: LayerView,
 ) -> tuple[int, SecondLook]:
     """Take a second look on everything that a map may mean, and return which has the greatest evidence, and its look.
 
@@ -35,8 +36,9 @@ def likeliest_look(
         poses: see there.
         ranks: see there.
         settings: see there.
+        further: see there.
     """
-    looks = [second_look(likelihood, readings, poses, ranks, settings) for likelihood in likelihoods]
+    looks = [second_look(likelihood, readings, poses, ranks, settings, *further) for likelihood in likelihoods]
     # Of equal ones the first: walls as they are drawn.
     number = max(range(len(looks)), key=lambda number: _evidence(looks[number]))
     first = looks[number]

@@ -18,7 +18,9 @@ differences that are as small as such luck.
 """
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +56,13 @@ _HOPELESS_SHARE, _HOPELESS = 0.5, 10.0
 far less."""
 
 
+class LayerView(NamedTuple):
+    """Readings at a further tilt, and what that layer of the map says of readings."""
+
+    likelihood: Likelihood
+    readings: Readings
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SecondLook:
     """What the second look found."""
@@ -81,6 +90,7 @@ def second_look(
     poses: NDArray[np.float64],
     ranks: NDArray[np.integer],
     settings: SecondLookSettings,
+    *further: LayerView,
 ) -> SecondLook:
     """Look closely at the places that poses of high rank stand for.
 
@@ -90,15 +100,16 @@ def second_look(
         poses: ``float64[n, 3]``: x, y [m] and heading [rad]: the best poses of the count and all that come near them.
         ranks: ``[n]``: how many readings each explains.
         settings: what counts as one place, and how sure is sure.
+        further: what other layers of the map have to say.
 
     Depends on nothing but its arguments. O(starts x readings x length of a beam in cells).
     """
-    starts = _glance(likelihood, readings, poses[shortlist(poses, ranks, 0.2, 0.07, settings.starts_max)], settings)
+    views = (LayerView(likelihood, readings), *further)
+    starts = _glance(views, poses[shortlist(poses, ranks, 0.2, 0.07, settings.starts_max)], settings)
     if len(starts) == 0 or len(readings) == 0:
         return SecondLook(PoseState.LOST, np.zeros((0, 3)), np.zeros(0), np.zeros(0), 0.0, 1.0, 0.0)
     # Half a patch apart: nearer ones would share their weight nearly whole, and cost as much as any.
-    kept = thinned(readings, settings.patch_m / 2.0, settings.readings_max)
-    hill = Hill(likelihood, likelihood.sight(kept), weights(kept, settings.patch_m))
+    hill = _hill(views, settings.patch_m, lambda of: thinned(of, settings.patch_m / 2.0, settings.readings_max))
     found, scores = climb(hill, starts, _LOOK_STEPS)
     # After the climb: starts from several sides end on one hill, which must not be its own rival.
     apart = shortlist(found, _in_order(scores), _TOGETHER_M, _TOGETHER_RAD, len(found))
@@ -109,9 +120,9 @@ def second_look(
     found, scores = found[is_rival], scores[is_rival]
     # Climbed as well: a ring of fixed poses would miss the ridge of a corridor by a few centimetres.
     _, aside = climb(hill, _around(found[0], settings), _ASIDE_STEPS, _ASIDE_MOVES)
-    to_beat = float((likelihood.elsewhere_logs(hill.sight) * hill.weights).sum())
     # Before any reading, each place has an equal share of the belief that the robot is on the map at all.
-    to_beat += math.log(_places(likelihood, settings) * settings.off_map_share / (1.0 - settings.off_map_share))
+    shares = _places(likelihood, settings) * settings.off_map_share / (1.0 - settings.off_map_share)
+    to_beat = hill.elsewhere + math.log(shares)
     # Belief alone was 0.9999 sure of the wrong one of two rooms that are alike (decision 16).
     elsewhere, beside = _contrasts(hill, found)
     on_walls = share_on_walls(likelihood, readings, found[0], settings.on_wall_m)
@@ -121,18 +132,32 @@ def second_look(
     return replace(weighed, contrast=elsewhere, ends=ends_at(hill, found[0]))
 
 
+def _hill(views: Sequence[LayerView], patch_m: float, thin: Callable[[Readings], Readings]) -> Hill:
+    """Return what all views say of poses, of each some readings."""
+    kept = [thin(view.readings) for view in views]
+    together = kept[0]
+    for later in kept[1:]:
+        together = together.joined(later)
+    # Of all together: a wall that is met level and aslant is one wall, and says what it says once.
+    shared = np.split(weights(together, patch_m), np.cumsum([len(of) for of in kept])[:-1])
+    first, *others = (
+        Hill(view.likelihood, view.likelihood.sight(of), share)
+        for view, of, share in zip(views, kept, shared, strict=True)
+    )
+    return replace(first, further=tuple(others))
+
+
 def _glance(
-    likelihood: Likelihood, readings: Readings, starts: NDArray[np.float64], settings: SecondLookSettings
+    views: Sequence[LayerView], starts: NDArray[np.float64], settings: SecondLookSettings
 ) -> NDArray[np.float64]:
     """Return the starts, moved uphill, that are worth a closer look: with half the sharpness and fewer readings."""
-    if len(starts) == 0 or len(readings) == 0:
+    if len(starts) == 0 or len(views[0].readings) == 0:
         return starts
-    blurred = likelihood.with_model(_blurred(likelihood.model))
-    kept = thinned(readings, settings.patch_m, settings.glance_readings_max)
-    hill = Hill(blurred, blurred.sight(kept), weights(kept, settings.patch_m))
+    blurred = [view._replace(likelihood=view.likelihood.with_model(_blurred(view.likelihood.model))) for view in views]
+    hill = _hill(blurred, settings.patch_m, lambda of: thinned(of, settings.patch_m, settings.glance_readings_max))
     highest = np.argsort(-hill.heights(starts), kind="stable")[: _CLIMBERS_PER_PLACE * settings.places_max]
     found, scores = climb(hill, starts[highest], _GLANCE_STEPS, _GLANCE_MOVES)
-    hopeless = float(scores.max()) - _HOPELESS_SHARE * float(hill.weights.sum()) - _HOPELESS
+    hopeless = float(scores.max()) - _HOPELESS_SHARE * hill.all_say - _HOPELESS
     found, scores = found[scores >= hopeless], scores[scores >= hopeless]
     chosen = shortlist(found, _in_order(scores), _TOGETHER_M, _TOGETHER_RAD, settings.places_max)
     best: NDArray[np.float64] = found[chosen]
@@ -173,11 +198,11 @@ def _contrasts(hill: Hill, poses: NDArray[np.float64]) -> tuple[float, float]:
     and its standard error widened by what all readings have in common: how sharply the map shows a place.
     A pose beside it sees the same walls: what the map has wrong of them is as wrong for both, and widens nothing.
     """
-    logs = hill.likelihood.logs(hill.sight, poses) * hill.weights
+    logs = hill.logs(poses)
     said = logs[0] - logs[1:]
     is_beside = near(poses[1:], poses[0], _ELSEWHERE_M, _ELSEWHERE_RAD)
     # A miss ends on no wall: there is nothing that the map could show more sharply in one place.
-    in_common = hill.likelihood.model.map_sharpness_sigma * float(hill.weights[hill.sight.is_hit].sum())
+    in_common = hill.likelihood.model.map_sharpness_sigma * hill.hits_say
     errors = np.sqrt((said * said).sum(axis=1) + np.where(is_beside, 0.0, in_common**2))
     contrasts = np.divide(said.sum(axis=1), errors, out=np.zeros(len(said)), where=errors > 0.0)
     return float(contrasts[~is_beside].min(initial=math.inf)), float(contrasts[is_beside].min(initial=math.inf))

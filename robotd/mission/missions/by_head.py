@@ -5,10 +5,10 @@ import statistics
 
 from robotd.contract.events import MissionPhase, RangeMeasured
 from robotd.contract.missions import Look, Measure, Scan
-from robotd.core.errors import MissionError
 from robotd.core.reading import ReadingStatus
 from robotd.hardware.devices.rangefinder import Shot
 from robotd.mission.missions.context import MissionContext, Reporter
+from robotd.mission.missions.tilts import require_reach
 
 
 async def run_look(context: MissionContext, mission: Look) -> str:
@@ -20,8 +20,8 @@ async def run_look(context: MissionContext, mission: Look) -> str:
     """
     head, pan_rad, tilt_rad = context.robot.pantilt, mission.pan_rad, mission.tilt_rad
     reach = await head.limits()
-    _require("pan", pan_rad, reach.pan_min_rad, reach.pan_max_rad)
-    _require("tilt", tilt_rad, reach.tilt_min_rad, reach.tilt_max_rad)
+    require_reach("pan", pan_rad, reach.pan_min_rad, reach.pan_max_rad)
+    require_reach("tilt", tilt_rad, reach.tilt_min_rad, reach.tilt_max_rad)
     timeout_s = context.settings.sweep.aim_timeout_s
     # Through holds: a stop also stops the head, and what stopped half-way would be told as where it looks.
     aim = await context.hold.through(lambda: head.aim(pan_rad, tilt_rad, timeout_s=timeout_s))
@@ -70,11 +70,3 @@ async def run_scan(context: MissionContext, mission: Scan, report: Reporter) -> 
     sweep = await context.sweep(next(context.sweep_numbers), base_turns=mission.base_turns)
     hits = sum(reading.status is ReadingStatus.OK for reading in sweep.readings)
     return f"{hits} of {len(sweep.readings)} readings met an obstacle"
-
-
-def _require(what: str, angle_rad: float, lowest_rad: float, highest_rad: float) -> None:
-    if not lowest_rad <= angle_rad <= highest_rad:
-        low_deg, high_deg, deg = map(math.degrees, (lowest_rad, highest_rad, angle_rad))
-        raise MissionError(
-            f"the head cannot look there: {what} must be {low_deg:.1f} to {high_deg:.1f} deg, got {deg:.1f}"
-        )

@@ -1,12 +1,12 @@
 """What a mission works with, handed to it by the supervisor."""
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from robotd.contract.events import MissionPhase, MissionProgress, SweepDone
 from robotd.core.clock import now_ns
-from robotd.core.reading import Sweep
+from robotd.core.reading import Sweep, Tilt
 from robotd.core.text import printable
 from robotd.head.head import Head
 from robotd.mission.missions.ranks_told import RanksTold
@@ -73,9 +73,12 @@ class MissionContext:
             self.robot, settings.head_mount, settings.rangefinder, settings.sweep, settings.driving, self.hold
         )
 
-    async def sweep(self, number: int, *listeners: SweepListener, base_turns: bool = True) -> Sweep:
+    async def sweep(
+        self, number: int, *listeners: SweepListener, base_turns: bool = True, tilts: Sequence[Tilt] = ()
+    ) -> Sweep:
         """Take a sweep and publish how it goes; arguments as of :meth:`Sweeper.sweep`."""
-        return self._done(await self.sweeper.sweep(number, self._told(number), *listeners, base_turns=base_turns))
+        told = self._told(number)
+        return self._done(await self.sweeper.sweep(number, told, *listeners, base_turns=base_turns, tilts=tilts))
 
     async def look(self, number: int, wants: Wants, *listeners: SweepListener) -> Sweep:
         """Take as much of a sweep as is wanted, published as a sweep is; arguments as of :meth:`Sweeper.look`."""

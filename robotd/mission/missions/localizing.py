@@ -18,11 +18,12 @@ from robotd.core.angles import wrap_rad
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import IDENTITY, Odometry, Pose2
-from robotd.core.reading import RangeReading
+from robotd.core.reading import RangeReading, Slant, Tilt
 from robotd.head.jobs import Narrow, Narrowed, Prepare
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.looking_until_sure import LookingUntilSure
 from robotd.mission.missions.stop_and_sweep import faults_text, standing
+from robotd.mission.missions.tilts import require_tilts
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.results import result_of
 from robotd.sensing.until_sure import CONTRAST_MIN
@@ -45,7 +46,7 @@ async def run_localizing(
     context: MissionContext, place: MapInUse, mission: Localize, report: Reporter, number: int
 ) -> LookedRound:
     """Carry out a :class:`Localize`: sweep, estimate, and tie odometry to the map if the answer is unique."""
-    settings = context.settings
+    settings, tilts = context.settings, await _tilts(context, place, mission)
     # Before headings are chosen: the prior is of where it stands now, not of where it was still turning.
     here = await context.hold.through(lambda: standing(context.robot, settings.sweep.settle_s, settings.driving))
     headings_rad = _headings(context, mission, here)
@@ -59,27 +60,43 @@ async def run_localizing(
         # A whole sweep is judged at its end and nowhere else; one that may end early must not end on a chance.
         contrast_min = CONTRAST_MIN if mission.adaptive else 0.0
         where = place.ref, place.map_id, headings_rad, mission.within
-        await context.head.ask(Prepare(stop, *where, contrast_min, tells_smallest_error=mission.smallest_error))
+        await context.head.ask(Prepare(stop, *where, contrast_min, mission.smallest_error, mission.layers))
         of = LookRound(report.mission_id, number)
         show = partial(context.ranks.show, stop, place, place.generation, number)
         narrowing = Narrowing(context, stop, _between(context, mission), of, show, ties=mission.tie)
         if mission.adaptive:
             looking = LookingUntilSure(context, place.ref, narrowing)
             return await _looked_until_sure(context, report, narrowing, looking, number)
-        return await _looked_round(context, report, narrowing, number)
+        return await _looked_round(context, report, narrowing, number, tilts)
     finally:
         context.head.forget(stop)
 
 
-async def _looked_round(context: MissionContext, report: Reporter, narrowing: "Narrowing", number: int) -> LookedRound:
+async def _tilts(context: MissionContext, place: MapInUse, mission: Localize) -> tuple[Tilt, ...]:
+    """Return the further tilts to look at: those of the map's layers, if they are wanted."""
+    if not mission.layers:
+        return ()
+    if not place.tilts:
+        raise MissionError(
+            "the map in use has no layers: it was made at one tilt; make one at several, with robotctl map start NAME"
+            " --tilt DEG"
+        )
+    if context.settings.localization.conservative:
+        raise MissionError("layers exclude places that they explain badly, localization.conservative by proof alone")
+    return await require_tilts(context, place.tilts)
+
+
+async def _looked_round(
+    context: MissionContext, report: Reporter, narrowing: "Narrowing", number: int, tilts: tuple[Tilt, ...]
+) -> LookedRound:
     """Sweep, and narrow down meanwhile."""
     # Beside the sweep: the head works while the laser turns, so the last word comes a batch after the last
     # reading, not a whole sweep later.
     narrowed = asyncio.create_task(narrowing.run(), name="narrowing")
     try:
-        sweep = await context.sweep(number, narrowing)
+        sweep = await context.sweep(number, narrowing, tilts=tilts)
         report.at(MissionPhase.COMPUTING, message=faults_text(sweep))
-        narrowing.end()
+        narrowing.end(sweep.slants)
         return LookedRound(await narrowed, sweep.in_odom)
     finally:
         # Whatever ended the sweep: a task is not left behind by its owner.
@@ -168,6 +185,8 @@ class Narrowing:
         """Quarters of the sweep."""
         self._in_odom = IDENTITY
         """Where odometry put the robot when the sweep began."""
+        self._slants: tuple[Slant, ...] = ()
+        """What was seen at further tilts, once the sweep is whole."""
 
     def begun(self, in_odom: Pose2) -> None:
         """Take note of where it begins."""
@@ -179,8 +198,9 @@ class Narrowing:
         if len(self._batch) == self._readings_between:
             self._flush()
 
-    def end(self) -> None:
-        """Say that the sweep is whole."""
+    def end(self, slants: tuple[Slant, ...] = ()) -> None:
+        """Say that the sweep is whole, and what was seen at further tilts."""
+        self._slants = slants
         if self._batch:
             self._flush()
         self._batches.put_nowait(None)
@@ -198,9 +218,10 @@ class Narrowing:
 
     async def answer(self, batch: Sequence[RangeReading], *, final: bool = False) -> PoseEstimate:
         """Take more readings; return and publish what all of them say, so far or, of a whole sweep, in the end."""
+        slants = self._slants if final else ()
         # By count, failed ones among them: after which reading is estimated must not depend on what was measured.
         readings = tuple(reading for reading in batch if reading.is_measured)
-        estimate = self._told(await self._context.head.ask(Narrow(self._stop, readings, now_ns(), final)))
+        estimate = self._told(await self._context.head.ask(Narrow(self._stop, readings, now_ns(), final, slants)))
         self._taken += len(batch)
         self._show_quarters(estimate)
         return estimate

@@ -31,6 +31,7 @@ from robotd.mission.missions.looking_again import looking_again
 from robotd.mission.missions.mapping import run_mapping
 from robotd.mission.missions.resolving import run_resolving
 from robotd.mission.missions.surveying import here_on
+from robotd.mission.missions.tilts import tilts_of
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.mission.whereabouts.tie import Tie
@@ -180,7 +181,7 @@ async def _begin_map(
     report: Reporter,
 ) -> MapInUse:
     """Begin a map with room for some points, take it into use, and tie odometry to it."""
-    settings = context.settings.grid
+    settings, tilts = context.settings.grid, await tilts_of(context, mission.tilts)
     try:
         spec = settings.spec_covering(points_m, _MARGIN_M)
     except ValueError as error:
@@ -192,6 +193,7 @@ async def _begin_map(
     silence_s = context.settings.driving.silence_s
     here = await context.hold.through(lambda: next_odometry(context.robot.drive, silence_s))
     place = MapInUse(f"new-{report.mission_id}", mission.name, number, begun)
+    place.tilts = tilts
     # Tied from the first moment: a client said where it stands, and there is nothing on the map that could
     # contradict.
     host.adopt(place, Tie.between(mission.start.pose, here.in_odom))
@@ -201,6 +203,7 @@ async def _begin_map(
 def describe(estimate: PoseEstimate) -> str:
     """Return an estimate in one line for people."""
     share = f"{estimate.best_rank or 'too few'} of {estimate.readings} readings"
+    share += "".join(f", {said}" for said in estimate.layers)
     if estimate.best is not None:
         by_history = f"; by history: it cannot have come to {estimate.unreachable} more" if estimate.by_history else ""
         return f"{estimate.state} at {pose_text(estimate.best)}: {share}{by_history}"

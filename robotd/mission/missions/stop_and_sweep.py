@@ -14,7 +14,7 @@ from robotd.core.angles import wrap_rad
 from robotd.core.clock import now_ns
 from robotd.core.errors import MissionError
 from robotd.core.pose import IDENTITY, STANDSTILL, Odometry, Pose2
-from robotd.core.reading import RangeReading, ReadingStatus, Sweep, goes_clockwise
+from robotd.core.reading import RangeReading, ReadingStatus, Slant, Sweep, Tilt, goes_clockwise
 from robotd.hardware.devices.calibration import HeadMount, RangefinderCalibration
 from robotd.hardware.devices.pantilt import PanTiltLimits
 from robotd.hardware.devices.reading_in_robot import reading_in_robot
@@ -91,10 +91,13 @@ class Sweeper:
     driving: DrivingSettings
     hold: Hold
 
-    async def sweep(self, number: int, *listeners: SweepListener, base_turns: bool = True) -> Sweep:
-        """Take sweep ``number`` here.
+    async def sweep(
+        self, number: int, *listeners: SweepListener, base_turns: bool = True, tilts: Sequence[Tilt] = ()
+    ) -> Sweep:
+        """Take sweep ``number`` here, and look round at further tilts.
 
         Without a base, or if it is not to turn, only the directions are read that the head reaches by itself.
+        Listeners follow the first look round.
 
         Raises:
             MissionError: the head pans too little, or too many readings failed; the robot stands, and the laser is off.
@@ -105,11 +108,22 @@ class Sweeper:
         if not (base_turns and self.robot.has_base):
             parts = parts[:1]
         start = await self.hold.through(lambda: standing(self.robot, self.settings.settle_s, self.driving))
-        taken = _Taken(start, listeners)
+        taken, slanted = _Taken(start, listeners), [(self.tilted(tilt), tilt, _Taken(start, ())) for tilt in tilts]
         for part in parts:
-            here = await self._turn_base(start, part)
-            await self._take(part.bearings_rad, here, taken, clockwise=goes_clockwise(number))
-        return Sweep(number, start.in_odom, tuple(taken.readings))
+            here, clockwise = await self._turn_base(start, part), goes_clockwise(number)
+            await self.take(part.bearings_rad, here, taken, clockwise=clockwise)
+            for sweeper, _, seen in slanted:
+                # There and back, and all tilts before the base turns on.
+                clockwise = not clockwise
+                in_order = sorted(part.bearings_rad, reverse=clockwise)
+                await sweeper.take(in_order, here, seen, clockwise=clockwise)
+        slants = tuple(Slant(tilt, tuple(seen.readings)) for _, tilt, seen in slanted)
+        return Sweep(number, start.in_odom, tuple(taken.readings), slants)
+
+    def tilted(self, tilt: Tilt) -> "Sweeper":
+        """Return what looks at a further tilt with the same robot."""
+        settings = replace(self.settings, tilt_rad=tilt.tilt_rad)
+        return replace(self, settings=settings, calibration=replace(self.calibration, range_max_m=tilt.cut_off_m))
 
     async def look(self, number: int, wants: Wants, *listeners: SweepListener) -> Sweep:
         """Take of sweep ``number`` what is wanted, some bearings at a time, until it wants no more.
@@ -127,11 +141,11 @@ class Sweeper:
                     here, current = await self._turn_base(start, parts[bearings.part]), bearings.part
                 # There and back: a head that does not turn without end would go back all the way for nothing.
                 in_order = sorted(bearings.bearings_rad, reverse=clockwise)
-                await self._take(in_order, here, taken, clockwise=clockwise)
+                await self.take(in_order, here, taken, clockwise=clockwise)
                 clockwise = not clockwise
         return Sweep(number, start.in_odom, tuple(taken.readings))
 
-    async def _take(self, bearings_rad: Sequence[float], here: Odometry, taken: "_Taken", *, clockwise: bool) -> None:
+    async def take(self, bearings_rad: Sequence[float], here: Odometry, taken: "_Taken", *, clockwise: bool) -> None:
         """Read at bearings that follow each other in one sense, from where the base stands now."""
         await self.robot.rangefinder.switch_laser(on=True)
         # By odometry, not by plan: the base turns only roughly as far as it should.
@@ -262,5 +276,6 @@ async def standing(robot: Robot, settle_s: float, driving: DrivingSettings) -> O
 
 def faults_text(sweep: Sweep) -> str:
     """Say how many readings of a sweep failed; empty if none did."""
-    failed = sum(reading.status in FAILED for reading in sweep.readings)
-    return f"{failed} of {len(sweep.readings)} readings failed" if failed else ""
+    readings = [*sweep.readings, *(reading for slant in sweep.slants for reading in slant.readings)]
+    failed = sum(reading.status in FAILED for reading in readings)
+    return f"{failed} of {len(readings)} readings failed" if failed else ""

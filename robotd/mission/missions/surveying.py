@@ -14,6 +14,7 @@ from robotd.localization.stop_poses import StopPoses
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.looking_again import looking_again
 from robotd.mission.missions.stop_and_sweep import faults_text
+from robotd.mission.missions.tilts import require_tilts
 from robotd.mission.motion.legs import next_odometry
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.results import map_result
@@ -59,11 +60,14 @@ async def survey_stop(
     With ``found_again`` it goes on with a map on which it was found by other means than its wheels.
 
     Raises:
-        MissionError: too many readings failed; the robot stands.
+        MissionError: too many readings failed, or the map has a layer at a tilt that must not be looked at; the robot
+            stands.
         DeviceError, LinkTimeout, TransportError: a device failed; the robot must be stopped.
     """
     report.at(MissionPhase.SWEEPING)
-    sweep = await looking_again(context, report, lambda: context.sweep(next(context.sweep_numbers)))
+    # Each time: the map may be of another robot, whose head sat elsewhere.
+    tilts = await require_tilts(context, place.tilts)
+    sweep = await looking_again(context, report, lambda: context.sweep(next(context.sweep_numbers), tilts=tilts))
     faults = faults_text(sweep)
     report.at(MissionPhase.COMPUTING, message=faults)
     travel = context.whereabouts.stopped(sweep.in_odom)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from robotd.contract.events import MapChanged
 from robotd.contract.ways import Point
 from robotd.core.grid_spec import GridSpec
+from robotd.core.reading import Tilt
 from robotd.exploring.errand import Errand
 from robotd.head.jobs import HeldMap, Inserted, MapRef
 
@@ -44,6 +45,8 @@ class MapInUse:
     """Of the map as it is now."""
     stops: int | None = field(init=False)
     """How many stops it is made of by now; None if that is not known, as of maps that did not keep them."""
+    tilts: tuple[Tilt, ...] = field(init=False)
+    """Further ones at which each of its stops is looked round, each for a layer."""
     generation: int = 0
     """Counts its changes since it came into use."""
     remarks: int = 0
@@ -61,7 +64,7 @@ class MapInUse:
 
     def __post_init__(self) -> None:
         """Begin as it came."""
-        self.digest, self.stops = self.begun.digest, self.begun.stops
+        self.digest, self.stops, self.tilts = self.begun.digest, self.begun.stops, self.begun.tilts
 
     @property
     def spec(self) -> GridSpec:

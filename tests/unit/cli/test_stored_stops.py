@@ -1,6 +1,7 @@
 """``map stops`` on a store, without a daemon."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from robotd.cli.main import main
 from robotd.core.map_stop import MapStop
 from robotd.core.pose import Pose2
-from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.core.reading import RangeReading, ReadingStatus, Slant, Sweep, Tilt
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
@@ -25,7 +26,9 @@ def swept(number: int, in_odom: Pose2) -> Sweep:
 
 @pytest.fixture
 def maps(tmp_path: Path) -> Path:
-    first = MapStop.of(swept(0, Pose2(5.0, 5.0, 0.0)), Pose2(0.0, 0.0, 0.0))
+    level = swept(0, Pose2(5.0, 5.0, 0.0))
+    slants = tuple(Slant(tilt, level.readings[:5]) for tilt in (Tilt(-0.24, 2.1), Tilt(0.105, 4.0)))
+    first = MapStop.of(replace(level, slants=slants), Pose2(0.0, 0.0, 0.0))
     second = MapStop.of(swept(1, Pose2(5.5, 5.0, 0.0)), Pose2(0.4, 0.0, 0.1))
     stops = MapStops(GRID).with_stop(first).with_stop(second)
     store = MapStore(tmp_path / "maps")
@@ -44,8 +47,10 @@ def test_each_stop_says_where_it_is_and_how_far_it_corrects_odometry(
     assert second["off_m"] == pytest.approx(0.1)
     assert second["off_rad"] == pytest.approx(0.1)
     assert main(["map", "stops", "lab", "--maps", str(maps)]) == 0
-    last = capsys.readouterr().out.splitlines()[-1].split()
+    *_, before, last = (line.split() for line in capsys.readouterr().out.splitlines())
+    assert before == ["0", "0.000", "0.000", "0.0", "20", "-13.8,", "6.0", "0", "0.00"]
     assert last == ["1", "0.400", "0.000", "5.7", "20", "100", "5.73"]
+    assert (first["tilts_rad"], second["tilts_rad"]) == ([-0.24, 0.105], [])
 
 
 def test_a_map_whose_stops_are_not_known_says_so(maps: Path, capsys: pytest.CaptureFixture[str]) -> None:

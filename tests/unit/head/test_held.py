@@ -1,16 +1,18 @@
 """A map that changed is made ready from what changed, to the same result; no generation is touched by the next."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from robotd.core.pose import IDENTITY, Pose2
-from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.core.reading import RangeReading, ReadingStatus, Slant, Sweep, Tilt
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings
+from robotd.grid.tables import NO_INFORMATION
 from robotd.head.held import Held
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.meaning import Meaning
@@ -128,3 +130,71 @@ def test_a_map_is_made_of_the_stops_that_were_laid_in_and_no_snapshot_of_them_ch
 
 def test_a_map_whose_stops_are_not_known_does_not_get_to_know_them() -> None:
     assert laid(blank(), 0.0).stops is None
+
+
+DOWN, UP = Tilt(-0.24, 2.1), Tilt(0.1, 4.0)
+
+
+def slanted(x_m: float, *tilts: Tilt) -> Sweep:
+    """Return a sweep that sees at each further tilt something of its own."""
+    seen = (
+        Slant(
+            tilt,
+            tuple(
+                replace(reading, range_m=(reading.range_m or 0.0) + tilt.tilt_rad) for reading in swept(x_m).readings
+            ),
+        )
+        for tilt in tilts
+    )
+    return replace(swept(x_m), slants=tuple(seen))
+
+
+def test_a_layer_is_the_map_of_what_was_seen_at_its_tilt_and_the_first_one_knows_nothing_of_it() -> None:
+    sweeps = slanted(0.1, DOWN, UP), slanted(0.2), slanted(-0.3, UP)
+    held, plain = blank(MapStops(GRID)), blank(MapStops(GRID))
+    for sweep in sweeps:
+        held, cells = held.with_sweep(sweep, sweep.in_odom)
+        plain, same = plain.with_sweep(replace(sweep, slants=()), sweep.in_odom)
+        assert np.array_equal(cells, same)
+    assert held.digest == plain.digest
+    assert held.tilts == held.told.tilts == (DOWN, UP)
+    for layer in held.layers:
+        alone = OccupancyGrid(held.grid.spec, settings=GRID)
+        for sweep in sweeps:
+            for slant in sweep.slants:
+                if slant.tilt == layer.tilt:
+                    alone.insert(Sweep(0, sweep.in_odom, slant.readings), sweep.in_odom)
+        assert layer.held.digest == alone.digest() != held.digest
+
+
+def test_a_map_from_the_store_has_the_layers_that_it_was_laid_with() -> None:
+    held = blank(MapStops(GRID))
+    for sweep in (slanted(0.1, DOWN, UP), slanted(-0.3, UP)):
+        held, _ = held.with_sweep(sweep, sweep.in_odom)
+    again = Held.of(held.grid, held.stops)
+    assert [(layer.tilt, layer.held.digest) for layer in again.layers] == [
+        (layer.tilt, layer.held.digest) for layer in held.layers
+    ]
+
+
+def test_what_stands_at_any_height_is_an_obstacle() -> None:
+    held, _ = blank(MapStops(GRID)).with_sweep(slanted(0.1, DOWN), Pose2(0.1, 0.2, 0.0))
+    stored = Held.of(held.grid, held.stops)
+    (layer,) = stored.layers
+    met = layer.held.grid.cells > NO_INFORMATION
+    assert met.any()
+    assert not (met & (held.grid.cells > NO_INFORMATION)).all()
+    # Nothing was laid in since it was loaded, so the first layer has nothing beyond its cells.
+    assert np.array_equal(stored.obstacles(), met)
+    assert (held.obstacles() & met).sum() == met.sum()
+
+
+def test_layers_are_made_ready_from_what_changed() -> None:
+    held = blank(MapStops(GRID))
+    for x_m in (0.1, 0.2):
+        held, _ = held.with_sweep(slanted(x_m, DOWN), Pose2(x_m, 0.2, 0.0))
+        held, ((tilt, ready),) = held.layers_ready(SETTINGS, ERRORS)
+    (layer,) = held.layers
+    assert tilt == layer.tilt == DOWN
+    remade = ReadyMap.of(layer.held.grid, SETTINGS, ERRORS)
+    assert all(np.array_equal(one, other) for one, other in zip(arrays(ready), arrays(remade), strict=True))

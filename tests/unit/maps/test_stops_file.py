@@ -154,7 +154,7 @@ def test_what_no_store_wrote_is_refused(changes: dict[str, Any], says: str) -> N
         (b"", "does not begin with"),
         (b"PK\x03\x04\n", "does not begin with"),
         (b"robotd stops 1", "does not begin with"),
-        (b"robotd stops 2\n", "format '2', this version reads format 1"),
+        (b"robotd stops 3\n", "format '3', this version reads formats 1 and 2"),
         (b"robotd stops " + b"9" * 4000 + b"\n", "format '99999999999999999999',"),
         (HEAD, "expected the end of its zlib"),
         (HEAD + b"not zlib", "incorrect header"),

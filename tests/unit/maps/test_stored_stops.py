@@ -2,22 +2,25 @@
 
 import dataclasses
 import logging
+import math
+import zlib
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 
 from robotd.core.errors import MapError
-from robotd.core.map_stop import MapStop
+from robotd.core.map_stop import MapStop, StopSlant
 from robotd.core.pose import IDENTITY
-from robotd.core.reading import RangeReading, ReadingStatus, Sweep
+from robotd.core.reading import RangeReading, ReadingStatus, Sweep, Tilt
 from robotd.grid import map_stops
 from robotd.grid.map_stops import MapStops
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.settings import GridSettings, UpdatePolicy
 from robotd.maps.manifest import FileSum, decode_manifest
-from robotd.maps.stops_file import encode_stops
+from robotd.maps.stops_file import decode_stops, encode_stops
 from robotd.maps.store import MapStore
 from tests.support.made_maps import SPEC, made_stops
 
@@ -168,3 +171,54 @@ def test_a_kept_map_is_saved_in_place_with_its_stops_alone(tmp_path: Path) -> No
     save(tmp_path, made_stops(2), unsaved=True)
     assert MapStore(tmp_path).save("lab", made_stops(2).grid_on(SPEC), {}, 5).version == 3
     assert MapStore(tmp_path).load("lab").stops is None
+
+
+def layered(*tilts: Tilt) -> MapStops:
+    """Return stops of which the first looks at all tilts, and the others at all but the first."""
+    made, slants = made_stops(3, settings=OTHER), made_stops(4).stops[0].readings
+    stops = tuple(
+        dataclasses.replace(stop, slants=tuple(StopSlant(tilt, slants[at:]) for tilt in tilts[min(at, 1) :]))
+        for at, stop in enumerate(made.stops)
+    )
+    return dataclasses.replace(made, stops=stops)
+
+
+def test_what_was_seen_at_further_tilts_comes_back_with_its_stop(tmp_path: Path) -> None:
+    made = layered(Tilt(-0.24, 2.1), Tilt(0.1, 4.0))
+    save(tmp_path, made)
+    stops = MapStore(tmp_path).load("lab").stops
+    assert stops == made
+    assert stops.tilts == (Tilt(-0.24, 2.1), Tilt(0.1, 4.0))
+    assert [len(stops.layer(tilt_rad).stops) for tilt_rad in (-0.24, 0.1)] == [1, len(made.stops)]
+    assert stops != dataclasses.replace(made, stops=made_stops(3).stops)
+
+
+def test_a_map_without_layers_is_written_as_before_there_were_any() -> None:
+    made = made_stops(3)
+    plain, more = (zlib.decompress(encode_stops(one).partition(b"\n")[2]) for one in (made, layered(Tilt(0.1, 4.0))))
+    keys = "numbers counts in_odom in_map times_ns bearings_rad ranges_m origins_m states statuses strong strengths"
+    content = msgspec.msgpack.decode(plain)
+    assert list(content) == ["settings", "arithmetic", "columns"]
+    assert list(content["columns"]) == keys.split()
+    assert list(msgspec.msgpack.decode(more)) == ["settings", "arithmetic", "columns", "layers"]
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "complaint"),
+    [
+        ("tilt_rad", math.nan, "expected a tilt"),
+        ("tilt_rad", 2.0, "expected a tilt"),
+        ("cut_off_m", 0.0, "expected a tilt"),
+        ("counts", b"", "counts: expected 2 numbers"),
+        ("bearings_rad", b"", "bearings_rad: expected"),
+        ("ranges_m", None, "Object missing required field"),
+    ],
+)
+def test_a_layer_that_contradicts_itself_is_refused_by_name(field: str, value: object, complaint: str) -> None:
+    head, _, packed = encode_stops(layered(Tilt(0.1, 4.0))).partition(b"\n")
+    content = msgspec.msgpack.decode(zlib.decompress(packed))
+    content["layers"][0][field] = value
+    if value is None:
+        del content["layers"][0][field]
+    with pytest.raises(MapError, match=complaint):
+        decode_stops(head + b"\n" + zlib.compress(msgspec.msgpack.encode(content)))

@@ -5,7 +5,7 @@ from typing import cast
 
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.core.pose import Pose2
-from robotd.core.reading import RangeReading, ReadingStatus
+from robotd.core.reading import RangeReading, ReadingStatus, Slant
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.head.desk import Desk
 from robotd.head.jobs import Prepare
@@ -27,6 +27,10 @@ class Counting:
 
     def add(self, *readings: RangeReading) -> None:
         self.taken.extend(readings)
+
+    def add_slants(self, *slants: Slant) -> None:
+        for slant in slants:
+            self.taken.extend(slant.readings)
 
     def estimate(self, time_ns: int, *, final: bool) -> PoseEstimate:
         return PoseEstimate(time_ns, PoseState.LOST, None, (), 0, len(self.taken), final, "another estimator's")
