@@ -4,7 +4,7 @@ import math
 import sys
 from dataclasses import dataclass
 from statistics import median
-from typing import Self
+from typing import NamedTuple, Self
 
 from rich.console import Console
 from rich.table import Table
@@ -16,6 +16,7 @@ from robotd.client import Client
 from robotd.client.mission_run import MissionEvent, final_estimate
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.events import MissionPhase, MissionProgress, Status, SweepDone
+from robotd.contract.explored import ExploringEnded
 from robotd.contract.missions import Explore, Mission
 from robotd.core.angles import wrap_rad
 from robotd.core.errors import MissionError
@@ -32,18 +33,29 @@ def stage() -> Console:
     return plain_console(sys.stdout, None if sys.stdout.isatty() else _WIDTH)
 
 
-def follow(console: Console, client: Client, mission: Mission) -> tuple[tuple[Sweep, ...], PoseEstimate | None]:
-    """Run a mission to its end and return its sweeps and, of a localization, what it found."""
+class Followed(NamedTuple):
+    """What a mission came to."""
+
+    sweeps: tuple[Sweep, ...]
+    estimate: PoseEstimate | None
+    """What a localization found."""
+    explored: ExploringEnded | None
+    """Why exploring ended, and what it left open."""
+
+
+def follow(console: Console, client: Client, mission: Mission) -> Followed:
+    """Run a mission to its end and return what it came to."""
     events: list[MissionEvent] = []
     with MissionBars() if console.is_terminal else _Narrator(console) as teller:
         for event in client.run_mission(mission, LEASE_S):
             teller.show(event)
             events.append(event)
     sweeps = tuple(event.sweep for event in events if isinstance(event, SweepDone))
+    explored = next((event for event in events if isinstance(event, ExploringEnded)), None)
     try:
-        return sweeps, final_estimate(events)
+        return Followed(sweeps, final_estimate(events), explored)
     except MissionError:
-        return sweeps, None
+        return Followed(sweeps, None, explored)
 
 
 class _Narrator:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from robotd.cli.demo.before_and_after import draw_before_and_after
 from robotd.cli.demo.mission import Trial, follow, print_readings, stage
 from robotd.cli.demo.rig import Rig, rig, wired
 from robotd.cli.demo.room import fresh
@@ -49,8 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
     with rig(directory, wired(_config(), directory), emulator) as parts:
         parts.client.arm()
         console.print("Making the map, along straight legs as the recorded robot went:")
-        sweeps, _ = follow(console, parts.client, MapStart.of("building", robot.stops_m, robot.start, Legs.STRAIGHT))
-        print_readings(console, sweeps)
+        mapping = MapStart.of("building", robot.stops_m, robot.start, Legs.STRAIGHT)
+        print_readings(console, follow(console, parts.client, mapping).sweeps)
         entry = parts.client.map_save()
         console.print(f"  map saved: {directory / 'maps' / entry.name / str(entry.version)} ({entry.digest[:12]})")
         the_map = parts.client.map_show()
@@ -59,6 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
         trials = [_localize_at(parts, console, number, probe_m) for number, probe_m in enumerate(probes_m, 1)]
     _report(console, trials)
     _draw(directory, the_map, ((robot.start.x_m, robot.start.y_m), *robot.stops_m))
+    draw_before_and_after(console, directory, log)
     return OK
 
 
@@ -83,7 +85,7 @@ def _config() -> Config:
 
 def _localize_at(parts: Rig, console: Console, number: int, probe_m: tuple[float, float]) -> Trial:
     follow(console, parts.client, DriveTo(*probe_m, legs=Legs.STRAIGHT))
-    (sweep,), estimate = follow(console, parts.client, Localize(tie=False))
+    (sweep,), estimate, _ = follow(console, parts.client, Localize(tie=False))
     if estimate is None:
         raise MissionError("a localization ended without an estimate")
     trial = Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)

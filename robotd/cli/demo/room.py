@@ -3,6 +3,7 @@
 import argparse
 import shutil
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from rich.console import Console
 
 from robotd.cli.demo.mission import Trial, follow, print_readings, print_trials, stage
 from robotd.cli.demo.rig import FINISHED, Rig, rig, wired
-from robotd.cli.demo.true_pose import true_pose
+from robotd.cli.demo.true_pose import true_pose, true_way
 from robotd.cli.exit_codes import FAILED, OK
 from robotd.cli.outputs import DEMO_MARK, write
 from robotd.cli.pictures.plots_extra import require_plots
@@ -19,8 +20,11 @@ from robotd.cli.show.terminal import bold, command_line
 from robotd.client import Client
 from robotd.config import Config
 from robotd.contract.events import MapChanged
-from robotd.contract.missions import DriveTo, Explore, Localize, MapStart, PriorHeading
+from robotd.contract.explored import ExploringEnded
+from robotd.contract.missions import DriveTo, Explore, Localize, MapStart, Mission, PriorHeading
+from robotd.contract.ways import Point
 from robotd.core.errors import RobotdError
+from robotd.core.pose import Pose2
 from robotd.core.reading import Sweep
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
@@ -46,8 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
         client = parts.client
         recording = client.record_start("recording.mcap")
         client.arm()
-        sweeps, stops_m = _mapped(parts, console, world, arguments.stops)
-        print_readings(console, sweeps)
+        made = _mapped(parts, console, world, arguments.stops)
+        print_readings(console, made.sweeps)
         entry = client.map_save()
         console.print(f"  map saved: {directory / 'maps' / entry.name / str(entry.version)} ({entry.digest[:12]})")
         trials = [_localize_at(parts, console, probe_m) for probe_m in world.probes_m[: arguments.localizations]]
@@ -60,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     console.print(f"Found in it, {len(trials)} times (position unknown in the whole map, {known}):")
     print_trials(console, trials)
-    _draw(directory, world, stops_m, the_map, trials[-1])
+    _draw(directory, world, made, the_map, trials[-1])
     console.print(f"  every byte recorded: {recording}; try: {command_line('robotctl', 'replay', recording)}")
     console.print(f"  pictures: {', '.join(str(file) for file in sorted(directory.glob('*.png')))}")
     return OK if all(trial.error_m is not None for trial in trials) else FAILED
@@ -95,26 +99,43 @@ def brisk() -> DrivingSettings:
     return DrivingSettings(speed_mps=0.6, turn_radps=1.5, deceleration_mps2=0.4, turn_deceleration_radps2=2.0)
 
 
-def _mapped(
-    parts: Rig, console: Console, world: World, stops: int | None
-) -> tuple[tuple[Sweep, ...], tuple[tuple[float, float], ...]]:
-    """Make the map; return the sweeps, and where the robot stopped after the start."""
+@dataclass(frozen=True, slots=True)
+class _Made:
+    """How the map was made."""
+
+    sweeps: tuple[Sweep, ...]
+    stops_m: tuple[Point, ...]
+    """Where the robot really stopped, the start first."""
+    way_m: tuple[Point, ...]
+    """The way that it really went between them, corner by corner."""
+    explored: ExploringEnded | None
+    """What exploring left open; None if the robot was told where to stop."""
+
+
+def _mapped(parts: Rig, console: Console, world: World, stops: int | None) -> _Made:
+    """Make the map."""
     if stops is not None:
         console.print("Making the map, stop by stop:")
-        stops_m = world.stops_m[:stops]
-        sweeps, _ = follow(console, parts.client, MapStart.of(world.name, stops_m, world.start_pose))
-        return sweeps, stops_m
-    console.print("Exploring: after each look round it goes where the most is expected to be seen.")
-    sweeps, _ = follow(console, parts.client, Explore.of(world.name, world.start_pose))
-    truths = [true_pose(parts.truth_file, sweep.readings[0].time_ns) for sweep in sweeps[1:]]
-    return sweeps, tuple((truth.x_m, truth.y_m) for truth in truths)
+        mission: Mission = MapStart.of(world.name, world.stops_m[:stops], world.start_pose)
+    else:
+        console.print("Exploring: after each look round it goes where the most is expected to be seen.")
+        mission = Explore.of(world.name, world.start_pose)
+    sweeps, _, explored = follow(console, parts.client, mission)
+    times_ns = [sweep.readings[0].time_ns for sweep in sweeps]
+    stood = [true_pose(parts.truth_file, time_ns) for time_ns in times_ns]
+    went = true_way(parts.truth_file, times_ns[-1])
+    return _Made(sweeps, tuple(map(_place, stood)), tuple(map(_place, went)), explored)
+
+
+def _place(pose: Pose2) -> Point:
+    return pose.x_m, pose.y_m
 
 
 def _carried_off(parts: Rig, console: Console, name: str) -> Trial:
     """Load the map again, as if the robot had been carried there: odometry says nothing of where it is on it."""
     console.print("Carried off: the map is loaded again, neither place nor heading is known, and it looks round:")
     parts.client.map_load(name)
-    (sweep,), estimate = follow(console, parts.client, Localize(heading=PriorHeading.UNKNOWN))
+    (sweep,), estimate, _ = follow(console, parts.client, Localize(heading=PriorHeading.UNKNOWN))
     assert estimate is not None  # a localization that is done has one
     return Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)
 
@@ -122,7 +143,7 @@ def _carried_off(parts: Rig, console: Console, name: str) -> Trial:
 def _localize_at(parts: Rig, console: Console, probe_m: tuple[float, float]) -> Trial:
     console.print(f"Driving to ({probe_m[0]:.1f}, {probe_m[1]:.1f}) m and looking round:")
     follow(console, parts.client, DriveTo(*reachable(parts.client, console, probe_m)))
-    (sweep,), estimate = follow(console, parts.client, Localize())
+    (sweep,), estimate, _ = follow(console, parts.client, Localize())
     assert estimate is not None  # a localization that is done has one
     return Trial(sweep, true_pose(parts.truth_file, sweep.readings[0].time_ns), estimate)
 
@@ -140,16 +161,24 @@ def reachable(client: Client, console: Console, probe_m: tuple[float, float]) ->
     return way.nearest_m
 
 
-def _draw(
-    directory: Path, world: World, stops_m: tuple[tuple[float, float], ...], the_map: MapChanged, last: Trial
-) -> None:
+def _draw(directory: Path, world: World, made: _Made, the_map: MapChanged, last: Trial) -> None:
     from robotd.cli.pictures import rooms as pictures  # noqa: PLC0415  # heavy, and only needed now
+    from robotd.cli.pictures.maps_in_the_making import draw_explored  # noqa: PLC0415  # as above
 
-    stops = ((world.start_pose.x_m, world.start_pose.y_m), *stops_m)
     walls = [np.array(wall.points_m) for wall in world.wall]
-    radius_m = Config().planning.robot_radius_m
-    pictures.draw_room(directory / "room.png", f"The {world.name}", walls, stops_m=stops, robot_radius_m=radius_m)
-    pictures.draw_map(directory / "map.png", "The robot's map", the_map.spec, the_map.values, stops_m=stops)
+    radius_m, way_m = Config().planning.robot_radius_m, np.array(made.way_m)
+    pictures.draw_room(
+        *(directory / "room.png", f"The {world.name}", walls),
+        stops_m=made.stops_m,
+        path_m=way_m,
+        robot_radius_m=radius_m,
+    )
+    draw_explored(
+        *(directory / "map.png", "The robot's map", the_map.spec, the_map.values),
+        stops_m=made.stops_m,
+        way_m=way_m,
+        left=() if made.explored is None else made.explored.left,
+    )
     ranks = rank_of(the_map, last.sweep, last.estimate.best.heading_rad if last.estimate.best else 0.0)
     pictures.draw_localization(
         directory / "localization.png",

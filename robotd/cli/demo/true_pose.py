@@ -13,9 +13,13 @@ def true_pose(file: Path, time_ns: int) -> Pose2:
     Raises:
         RobotdError: nothing was noted before.
     """
-    lines = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
-    before = [line for line in lines if line["t_ns"] <= time_ns]
+    before = true_way(file, time_ns)
     if not before:
         raise RobotdError(f"{file} says nothing before {time_ns} ns")
-    last = before[-1]
-    return Pose2(last["x_m"], last["y_m"], last["heading_rad"])
+    return before[-1]
+
+
+def true_way(file: Path, until_ns: int) -> tuple[Pose2, ...]:
+    """Return where the robot stood, one rest after the other, up to a time: it goes straight from each to the next."""
+    lines = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+    return tuple(Pose2(line["x_m"], line["y_m"], line["heading_rad"]) for line in lines if line["t_ns"] <= until_ns)

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from robotd.cli.pictures.sheet import (
     ESTIMATE,
     FURNITURE,
-    INK,
     PATH,
     TRUTH,
     WALL,
@@ -26,6 +25,7 @@ from robotd.cli.pictures.sheet import (
     extent_of,
     known_box,
     legend,
+    numbered_stop,
     paper,
     save,
 )
@@ -73,7 +73,7 @@ def draw_room(
     way = np.array(stops_m, dtype=np.float64).reshape(-1, 2) if path_m is None else path_m
     axes.plot(way[:, 0], way[:, 1], color=PATH, linewidth=1.6, alpha=0.9, zorder=3, solid_joinstyle="round")
     for number, (x_m, y_m) in enumerate(stops_m):
-        _stop(axes, number, x_m, y_m, robot_radius_m)
+        numbered_stop(axes, number, x_m, y_m, robot_radius_m)
     save(axes, file)
 
 
@@ -135,13 +135,6 @@ def draw_localization(
 
 def _extent_m(wall: Points) -> float:
     return float(np.ptp(wall, axis=0).max())
-
-
-def _stop(axes: Axes, number: int, x_m: float, y_m: float, robot_radius_m: float) -> None:
-    if robot_radius_m:
-        axes.add_patch(Circle((x_m, y_m), robot_radius_m, facecolor=PATH, alpha=0.16, edgecolor="none", zorder=3))
-    axes.plot(x_m, y_m, "o", markersize=15, color="white", markeredgecolor=PATH, markeredgewidth=1.8, zorder=4)
-    axes.text(x_m, y_m, str(number), ha="center", va="center_baseline", fontsize=8.5, color=INK, zorder=5)
 
 
 def _overlay(axes: Axes, spec: GridSpec, obstacles: NDArray[np.bool_]) -> None:

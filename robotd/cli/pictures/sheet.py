@@ -14,6 +14,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from robotd.cli.outputs import PNG, check, write
@@ -168,3 +169,11 @@ def evidence(axes: Axes, spec: GridSpec, occupancy: NDArray[np.uint8], *, opacit
         interpolation="none",
         alpha=opacity,
     )
+
+
+def numbered_stop(axes: Axes, number: int, x_m: float, y_m: float, robot_radius_m: float = 0.0) -> None:
+    """Mark where the robot stopped, with its number, and if a radius is given, how much room it takes."""
+    if robot_radius_m:
+        axes.add_patch(Circle((x_m, y_m), robot_radius_m, facecolor=PATH, alpha=0.16, edgecolor="none", zorder=3))
+    axes.plot(x_m, y_m, "o", markersize=15, color="white", markeredgecolor=PATH, markeredgewidth=1.8, zorder=4)
+    axes.text(x_m, y_m, str(number), ha="center", va="center_baseline", fontsize=8.5, color=INK, zorder=5)

@@ -1,15 +1,23 @@
 """Pictures are to scale, are cropped to what is known, and show what they were given."""
 
+import io
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from rich.console import Console
 
+from robotd.cli.demo.before_and_after import draw_before_and_after
+from robotd.cli.pictures.maps_in_the_making import draw_explored
 from robotd.cli.pictures.rooms import Mark, draw_localization, draw_map, draw_room
 from robotd.cli.pictures.sheet import bar_length_m, known_box
+from robotd.contract.explored import LeftOpen
 from robotd.core.grid_spec import GridSpec
 from robotd.core.pose import Pose2
+from robotd.logs.carmen import parse_carmen
+from tests.support.carmen_room import POSES, flaser
 
 SPEC = GridSpec(0.1, -1.0, -2.0, (60, 40))
 
@@ -63,3 +71,22 @@ def test_a_room_and_a_localization_are_drawn_with_their_marks(tmp_path: Path) ->
 
 def count_red(pixels: np.ndarray) -> int:
     return int(((pixels[..., 0] > 0.7) & (pixels[..., 1] < 0.2) & (pixels[..., 2] < 0.3)).sum())
+
+
+def test_a_map_that_was_explored_shows_what_is_left_open(tmp_path: Path) -> None:
+    occupancy = np.full(SPEC.shape, 255, np.uint8)
+    occupancy[10:50, 5:35] = 0
+    whole, open_ = tmp_path / "whole.png", tmp_path / "open.png"
+    stops_m, way_m = [(0.0, 0.0), (1.0, 1.0)], np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    left = LeftOpen(2.0, 2.0, 1.2, "no_way")
+    draw_explored(whole, "A map", SPEC, occupancy, stops_m=stops_m, way_m=way_m, left=())
+    draw_explored(open_, "A map", SPEC, occupancy, stops_m=stops_m, way_m=way_m, left=(left,))
+    assert [count_red(imread(file)) > 200 for file in (whole, open_)] == [False, True]
+
+
+def test_a_log_is_drawn_before_and_after_it_was_mapped_from_its_odometry(tmp_path: Path) -> None:
+    log = parse_carmen(flaser(poses=[*POSES, *reversed(POSES)]))
+    said = Console(record=True, width=120, file=io.StringIO())
+    draw_before_and_after(said, tmp_path, log)
+    assert re.search(r"\d+ stops over \d+ m, 0 loops closed; stops moved by up to 0\.\d m", said.export_text())
+    assert all((tmp_path / name).stat().st_size > 10_000 for name in ("odometry.png", "survey.png"))
