@@ -68,7 +68,7 @@ class Machine:
         shutil.rmtree(copy, ignore_errors=True)
         for name in _listed(source):  # a clean copy: what was compiled here must not get into it
             (copy / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(source / name, copy / name)
+            shutil.copy(source / name, copy / name, follow_symlinks=False)
         headers = self._root / "usr/include"
         compiler = "aarch64-linux-gnu-gcc"
         environment = {
@@ -128,7 +128,8 @@ def _listed(source: Path) -> list[str]:
         capture_output=True,
         text=True,
     ).stdout
-    return [name for name in said.splitlines() if (source / name).is_file()]
+    # Links, too: by one of them the package has what lies beside it for systemd.
+    return [name for name in said.splitlines() if (source / name).is_file() or (source / name).is_symlink()]
 
 
 def _pip(python: Path, *words: object, **environment: str) -> None:

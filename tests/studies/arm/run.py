@@ -54,6 +54,9 @@ def main(words: Sequence[str]) -> int:
     wheel = machine.wheel(ROOT)
     print(f"wheel: {wheel.name}", flush=True)
     machine.install(wheel)
+    if not (machine.site / "robotd/systemd/robotd.service").exists():
+        print("the wheel brings no units", file=sys.stderr)
+        return 1
     native = machine.site / "robotd/grid/kernels/_native.abi3.so"
     found = vector_instructions(native)
     most = ", ".join(f"{name} {count}" for name, count in list(found.items())[:8])
