@@ -8,7 +8,7 @@ import { compared, KINDS } from '../../robotd/gateway/web/app/map/compare.js';
 import { Grid, unpacked } from '../../robotd/gateway/web/app/map/grid.js';
 import { distances } from '../../robotd/gateway/web/app/map/overlays.js';
 import { boundsOf, colours, paint } from '../../robotd/gateway/web/app/map/paint.js';
-import { tilesIn } from '../../robotd/gateway/web/app/map/tiles.js';
+import { levelOf, tilesIn } from '../../robotd/gateway/web/app/map/tiles.js';
 import { fitted, toMap, toPixel, zoomed } from '../../robotd/gateway/web/app/map/view.js';
 import { boundOf } from '../../robotd/gateway/web/app/pages/health/counted.js';
 import { placed } from '../../robotd/gateway/web/app/pages/maps/stored-picture.js';
@@ -46,11 +46,10 @@ test('a whole map and a change are laid in; gaps wait for the whole', async () =
   assert.equal(grid.placement, null, 'a change of an unknown map is none');
   await grid.accept(frame('whole').fields);
   assert.equal(grid.cells.reduce((sum, value) => sum + value, 0), vectors.sum_before);
-  assert.equal(grid.dirty.size, 4, '700 x 530 cells are 2 x 2 tiles');
-  grid.dirty.clear();
+  const before = grid.version;
   await grid.accept(frame('change').fields);
   assert.equal(crc32(grid.cells), vectors.crc_after);
-  assert.deepEqual([...grid.dirty].sort(), [0, 3]);
+  assert.deepEqual([0, 1, 2, 3].filter((tile) => grid.tileVersion(tile) > before), [0, 3], '700 x 530 cells are 2 x 2 tiles');
   await grid.accept({ ...frame('change').fields, generation: 9 });
   assert.equal(grid.generation, 5);
   await grid.accept({ map_id: null });
@@ -66,19 +65,28 @@ test('a map that is larger than it says, or than any, is left out', async () => 
   assert.equal(grid.placement, null);
 });
 
-test('tiles are what a slow twin paints', () => {
-  const rows = 600, cols = 520;
-  const cells = Uint8Array.from({ length: rows * cols }, (_, n) => (n * 7919) % 256);
+test('tiles are what a slow twin paints, at each level, and no wall is lost', () => {
+  const rows = 1400, cols = 1100;
+  const cells = Uint8Array.from({ length: rows * cols }, (_, n) => (n * 7919) % 251 === 0 ? 200 : 128 - ((n * 31) % 100));
   const table = colours({ free: [1, 2, 3], wall: [250, 251, 252], unknown: [100, 100, 100] });
-  for (const tile of [0, 1, 2, 3]) {
-    const bounds = boundsOf(tile, { rows, cols });
-    const pixels = new Uint32Array(bounds.width * bounds.height);
+  for (const [level, tile] of [[0, 0], [0, 8], [1, 1], [1, 3], [2, 0], [3, 0]]) {
+    const bounds = boundsOf(tile, level, { rows, cols }), { block } = bounds;
+    const high = Math.ceil(bounds.height / block), wide = Math.ceil(bounds.width / block);
+    const pixels = new Uint32Array(wide * high);
     paint(pixels, cells, cols, bounds, table);
-    for (const [row, col] of [[0, 0], [bounds.height - 1, bounds.width - 1], [bounds.height >> 1, bounds.width >> 1]]) {
-      const cell = cells[(bounds.row + row) * cols + bounds.col + col];
-      assert.equal(pixels[(bounds.height - 1 - row) * bounds.width + col], table[cell]);
+    for (const [row, col] of [[0, 0], [high - 1, wide - 1], [high >> 1, wide >> 1], [0, wide - 1]]) {
+      const found = [];
+      for (let r = bounds.row + row * block; r < Math.min(rows, bounds.row + (row + 1) * block); r++) {
+        for (let c = bounds.col + col * block; c < Math.min(cols, bounds.col + (col + 1) * block); c++) found.push(cells[r * cols + c]);
+      }
+      const wanted = found.some((value) => value > 128) ? Math.max(...found) : Math.min(...found);
+      assert.equal(pixels[(high - 1 - row) * wide + col], table[wanted], `${level} ${tile} ${row} ${col}`);
     }
   }
+});
+
+test('a picture has no more pixels than the screen has for it', () => {
+  assert.deepEqual([2, 1, 0.9, 0.5, 0.3, 0.001].map(levelOf), [0, 0, 1, 1, 2, 6]);
 });
 
 test('distances are those of a slow twin, within 2 %', () => {
@@ -271,10 +279,11 @@ test('how late a loop is, is told by the bound that nearly all lie within', () =
 test('only tiles that are seen are drawn, those in the middle first', () => {
   const place = { rows: 4096, cols: 4096, resolution_m: 0.05, origin_x_m: -102.4, origin_y_m: -102.4, map_id: 'm' };
   const side = 512 * 0.05;
-  assert.deepEqual(tilesIn(place, { x0: -1, y0: -1, x1: 1, y1: 1 }).sort((a, b) => a - b), [27, 28, 35, 36]);
-  assert.equal(tilesIn(place, { x0: -1e6, y0: -1e6, x1: 1e6, y1: 1e6 }).length, 64);
-  assert.equal(tilesIn(place, { x0: 500, y0: 500, x1: 600, y1: 600 }).length, 0);
-  assert.equal(tilesIn(place, { x0: -1.5 * side, y0: 0.1, x1: 1.5 * side, y1: 0.2 })[0], 35, 'the nearest to the middle');
+  assert.deepEqual(tilesIn(place, 0, { x0: -1, y0: -1, x1: 1, y1: 1 }).sort((a, b) => a - b), [27, 28, 35, 36]);
+  assert.equal(tilesIn(place, 0, { x0: -1e6, y0: -1e6, x1: 1e6, y1: 1e6 }).length, 64);
+  assert.equal(tilesIn(place, 3, { x0: -1e6, y0: -1e6, x1: 1e6, y1: 1e6 }).length, 1);
+  assert.equal(tilesIn(place, 0, { x0: 500, y0: 500, x1: 600, y1: 600 }).length, 0);
+  assert.equal(tilesIn(place, 0, { x0: -1.5 * side, y0: 0.1, x1: 1.5 * side, y1: 0.2 })[0], 35, 'the nearest to the middle');
 });
 
 test('what becomes of a mission is kept, each step once', () => {

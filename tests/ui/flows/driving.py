@@ -91,7 +91,7 @@ async def test_a_page_that_is_offline_stops_the_robot_and_says_that_nothing_is_h
             await page.close()
 
 
-async def test_a_page_that_is_hidden_warns_and_one_that_is_frozen_stops_the_robot(opening: Opening) -> None:
+async def test_a_page_that_is_hidden_warns_and_drives_on_as_long_as_it_answers(opening: Opening) -> None:
     async with opening() as rig, chromium() as browser:
         page = await open_page(browser, rig)
         await started(page, rig)
@@ -100,13 +100,8 @@ async def test_a_page_that_is_hidden_warns_and_one_that_is_frozen_stops_the_robo
         await wait_for(page, ".banner.warning", "You drive, and this page was hidden")
         await page.evaluate((hidden % "false") + "document.dispatchEvent(new Event('visibilitychange'))")
         await wait_for(page, ".banner", "A hidden page may fall silent, which stops the robot.")
-        rig.control.halted.clear()
-        devtools = await page.context.new_cdp_session(page)
-        await devtools.send(
-            "Page.setWebLifecycleState", {"state": "frozen"}
-        )  # what phones do to pages in the background
-        await until(rig.control.halted.is_set)
-        assert "the page of some operator, who drove, has not answered for" in rig.control.calls[-1]
+        assert rig.control.is_busy, "it answers all the same; one that does not is one that hangs"
+        rig.control.release.set()
 
 
 async def test_by_keyboard_alone(opening: Opening) -> None:
@@ -117,7 +112,8 @@ async def test_by_keyboard_alone(opening: Opening) -> None:
         async def tab_to(name: str) -> None:
             for _ in range(60):
                 await page.keyboard.press("Tab")
-                if name in await page.evaluate("document.activeElement.textContent + document.activeElement.ariaLabel"):
+                said = "((one) => `${one.textContent} ${one.ariaLabel} ${one.labels?.[0]?.textContent}`)"
+                if name in await page.evaluate(f"{said}(document.activeElement)"):
                     assert await page.evaluate("document.activeElement.matches(':focus-visible')"), "it is seen"
                     return
             raise AssertionError(f"{name} is not reached")

@@ -108,6 +108,11 @@ export class MapCanvas {
     this.wake();
   }
 
+  /** Whether all is drawn that there is to draw now. */
+  get isDrawn() {
+    return this.#sheet !== null && !this.#isOld && !this.#isWanted;
+  }
+
   /** The place in the middle of what is seen: where keys pick. */
   get middle() {
     return { x: this.view.x, y: this.view.y };
@@ -145,7 +150,7 @@ export class MapCanvas {
     if (this.follows && best !== null) this.view = { ...this.view, x: best.x_m, y: best.y_m };
     this.#frame.classList.toggle('picks', this.onPick !== null);
     if (this.#sheet === null || !isWithin(this.#sheet, this.view)) {
-      this.#sheet = { ...this.view };
+      this.#sheet = ahead(this.#sheet, this.view);
       this.#isOld = true;
     }
     if (this.#isOld) this.#draw(this.#sheet);
@@ -200,6 +205,14 @@ function apart(sheet, view) {
 function isWithin(sheet, view) {
   const { dx, dy } = apart(sheet, view);
   return sheet.scale === view.scale && Math.abs(dx) <= ROOM_PX && Math.abs(dy) <= ROOM_PX;
+}
+
+/** A sheet for a view that left one: with most of its room where the view goes, and so twice as long before the next. @param {View | null} sheet @param {View} view */
+function ahead(sheet, view) {
+  if (sheet === null || sheet.scale !== view.scale) return { ...view };
+  const { dx, dy } = apart(sheet, view);
+  const lead = (/** @type {number} */ px) => (Math.abs(px) > 2 * ROOM_PX ? 0 : (0.8 * px * ROOM_PX) / Math.max(Math.abs(dx), Math.abs(dy)) / view.scale);
+  return { ...view, x: view.x - lead(dx), y: view.y + lead(dy) };
 }
 
 /** The channels of `#rrggbb`. @param {string} colour @returns {[number, number, number]} */

@@ -14,8 +14,9 @@ export class Grid {
   generation = -1;
   /** Counts the changes that were laid in. */
   version = 0;
-  /** @type {Set<number>} tiles of which a cell changed since they were painted */
-  dirty = new Set();
+  /** At which version a cell of each tile changed last; of a map that came whole, all of them. @type {Map<number, number>} */
+  changedAt = new Map();
+  #wholeAt = 0;
   #turn = Promise.resolve();
 
   /** Take a `map_changed`, after those before it: unpacking takes a while. @param {any} fields */
@@ -26,6 +27,11 @@ export class Grid {
 
   forget() {
     this.#turn = this.#turn.then(() => this.#clear());
+  }
+
+  /** At which version a cell of a tile changed last. @param {number} tile */
+  tileVersion(tile) {
+    return this.changedAt.get(tile) ?? this.#wholeAt;
   }
 
   /** The value of the cell at a place of the map; null where there is none. @param {number} x @param {number} y */
@@ -41,8 +47,8 @@ export class Grid {
     this.placement = null;
     this.cells = new Uint8Array(0);
     this.generation = -1;
-    this.version++;
-    this.dirty.clear();
+    this.#wholeAt = ++this.version;
+    this.changedAt.clear();
   }
 
   /** @param {any} fields */
@@ -51,6 +57,7 @@ export class Grid {
     if (fields.whole) return this.#layWhole(fields);
     // What does not follow on what is known waits for the whole map, which the gateway asks for.
     if (!isPlacedAs(this.placement, fields) || fields.generation !== this.generation + 1) return;
+    this.version++;
     const indices = words(fields.indices_u32le);
     indices.forEach((index, n) => {
       if (index >= this.cells.length) return;
@@ -58,7 +65,6 @@ export class Grid {
       this.#touch(index);
     });
     this.generation = fields.generation;
-    this.version++;
   }
 
   /** @param {any} fields */
@@ -74,21 +80,18 @@ export class Grid {
     };
     this.generation = fields.generation;
     this.version++;
-    if (!isSame) this.dirty = new Set(tilesOf(rows, cols));
-    else for (let index = 0; index < cells.length; index++) if (cells[index] !== before[index]) this.#touch(index);
+    if (!isSame) {
+      this.#wholeAt = this.version;
+      this.changedAt.clear();
+    } else for (let index = 0; index < cells.length; index++) if (cells[index] !== before[index]) this.#touch(index);
   }
 
   /** @param {number} index */
   #touch(index) {
     const cols = this.placement?.cols ?? 1;
     const across = Math.ceil(cols / SIDE);
-    this.dirty.add(Math.floor(Math.floor(index / cols) / SIDE) * across + Math.floor((index % cols) / SIDE));
+    this.changedAt.set(Math.floor(Math.floor(index / cols) / SIDE) * across + Math.floor((index % cols) / SIDE), this.version);
   }
-}
-
-/** @param {number} rows @param {number} cols */
-export function tilesOf(rows, cols) {
-  return Array.from({ length: Math.ceil(rows / SIDE) * Math.ceil(cols / SIDE) }, (_, tile) => tile);
 }
 
 /** @param {Placement | null} place @param {any} fields */

@@ -2,6 +2,7 @@
 // one of these, the place or the scale is another; a robot that drives, or a map that is moved a little, paints nothing.
 import { drawLines } from './layers.js';
 import { Clearance, drawOverlay } from './overlays.js';
+import { colours } from './paint.js';
 import { Tiles } from './tiles.js';
 
 /**
@@ -24,10 +25,10 @@ export class Ground {
     this.tiles = new Tiles(grid);
   }
 
-  /** @param {import('./paint.js').Palette} palette @param {Record<string, string>} colours */
-  recolour(palette, colours) {
-    this.#colours = colours;
-    this.tiles.recolour(palette);
+  /** @param {import('./paint.js').Palette} palette @param {Record<string, string>} names */
+  recolour(palette, names) {
+    this.#colours = names;
+    this.tiles.recolour(colours(palette));
     this.#painted = [];
   }
 

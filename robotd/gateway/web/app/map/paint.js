@@ -1,6 +1,8 @@
 // Cells to colours. Pure: into the pixels of a picture whose first row is the highest y.
 import { SIDE } from './grid.js';
 
+const UNSEEN = 128;
+
 /** @typedef {[number, number, number]} Colour */
 
 /** @typedef {{ free: Colour, wall: Colour, unknown: Colour }} Palette */
@@ -25,28 +27,46 @@ export function colours(palette) {
   return table;
 }
 
+/** @typedef {{ row: number, col: number, height: number, width: number, block: number }} Bounds cells; each pixel is a block of so many of them along each side */
+
 /**
- * Where a tile lies, in cells.
- * @param {number} tile @param {{ rows: number, cols: number }} place
+ * Where a tile of a level lies: 512 x 512 pixels, of 1 x 1 cells at level 0, of 2 x 2 at level 1, and so on.
+ * @param {number} tile @param {number} level @param {{ rows: number, cols: number }} place @returns {Bounds}
  */
-export function boundsOf(tile, place) {
-  const across = Math.ceil(place.cols / SIDE);
-  const row = Math.floor(tile / across) * SIDE, col = (tile % across) * SIDE;
-  return { row, col, height: Math.min(SIDE, place.rows - row), width: Math.min(SIDE, place.cols - col) };
+export function boundsOf(tile, level, place) {
+  const block = 1 << level, side = SIDE * block;
+  const across = Math.ceil(place.cols / side);
+  const row = Math.floor(tile / across) * side, col = (tile % across) * side;
+  return { row, col, height: Math.min(side, place.rows - row), width: Math.min(side, place.cols - col), block };
 }
 
 /**
- * Paint a tile.
- * @param {Uint32Array} pixels of it, `height * width`
+ * Paint a tile: of each block its wall, if it has one, else what is most surely free, so that no wall is lost.
+ * @param {Uint32Array} pixels of it, a row of blocks after the other, the highest y first
  * @param {Uint8Array} cells of the whole map
  * @param {number} cols of the whole map
- * @param {{ row: number, col: number, height: number, width: number }} bounds
+ * @param {Bounds} bounds
  * @param {Uint32Array} table
  */
-export function paint(pixels, cells, cols, bounds, table) {
+export function paint(pixels, cells, cols, { row, col, height, width, block }, table) {
   let pixel = 0;
-  for (let row = bounds.row + bounds.height - 1; row >= bounds.row; row--) {
-    const from = row * cols + bounds.col;
-    for (let cell = from; cell < from + bounds.width; cell++) pixels[pixel++] = table[cells[cell] ?? 128] ?? 0;
+  for (let top = Math.ceil(height / block) - 1; top >= 0; top--) {
+    for (let left = 0; left < width; left += block) {
+      const value = block === 1 ? cells[(row + top) * cols + col + left] : blockOf(cells, cols, row + top * block, Math.min(row + height, row + (top + 1) * block), col + left, col + Math.min(width, left + block));
+      pixels[pixel++] = /** @type {number} */ (table[/** @type {number} */ (value)]);
+    }
   }
+}
+
+/** What a block is painted as. @param {Uint8Array} cells @param {number} cols @param {number} r0 @param {number} r1 @param {number} c0 @param {number} c1 */
+export function blockOf(cells, cols, r0, r1, c0, c1) {
+  let least = UNSEEN, most = UNSEEN;
+  for (let row = r0; row < r1; row++) {
+    for (let cell = row * cols + c0; cell < row * cols + c1; cell++) {
+      const value = /** @type {number} */ (cells[cell]);
+      if (value > most) most = value;
+      else if (value < least) least = value;
+    }
+  }
+  return most > UNSEEN ? most : least;
 }
