@@ -56,6 +56,7 @@ async def main() -> None:
         page = await context.new_page()
         await page.goto(address)
         await page.locator(".mode.disarmed").wait_for(timeout=60_000)
+        await page.evaluate("robotd.command('record_start')")
         await _map_the_room(page)
         await page.get_by_role("button", name="Where am I").click()
         await page.keyboard.press("1")
@@ -64,11 +65,12 @@ async def main() -> None:
         await shot(page, ALL / "drive-desk-dark.png")
         await _show_a_way(page)
         await page.evaluate("robotd.command('map_save')")
+        await page.evaluate("robotd.command('record_stop')")
         for theme in THEMES:
-            await page.evaluate(f"localStorage.setItem('robotd.theme', '{theme}'); location.reload()")
-            await page.locator(".mode.idle").wait_for(timeout=60_000)
             for size in SIZES:
                 await page.set_viewport_size(_size(size))
+                await page.evaluate(f"localStorage.setItem('robotd.theme', '{theme}'); location.reload()")
+                await page.locator(".mode.idle").wait_for(timeout=60_000)
                 await _every_page(page, f"{size}-{theme}")
     SHOWN.mkdir(parents=True, exist_ok=True)
     for name in IN_THE_DOCUMENTATION:

@@ -9,7 +9,7 @@ from robotd.contract.missions import MapStart
 from tests.support.console_page import until
 from tests.support.real_gateway import Relay
 from tests.ui.browser import chromium, hold, open_page, wait_for
-from tests.unit.gateway.rig import Opening
+from tests.unit.gateway.rig import Opening, tell_odometry
 
 pytestmark = [pytest.mark.real_clock, pytest.mark.shares_descriptors]
 
@@ -104,6 +104,12 @@ async def test_a_page_that_is_hidden_warns_and_drives_on_as_long_as_it_answers(o
         rig.control.release.set()
 
 
+_NAME_OF_WHAT_HAS_THE_FOCUS = """(() => {
+  const one = document.activeElement;
+  return one.matches('body, main') ? '' : `${one.textContent} ${one.ariaLabel} ${one.labels?.[0]?.textContent}`;
+})()"""
+
+
 async def test_by_keyboard_alone(opening: Opening) -> None:
     async with opening() as rig, chromium() as browser:
         page = await open_page(browser, rig)
@@ -112,8 +118,7 @@ async def test_by_keyboard_alone(opening: Opening) -> None:
         async def tab_to(name: str) -> None:
             for _ in range(60):
                 await page.keyboard.press("Tab")
-                said = "((one) => `${one.textContent} ${one.ariaLabel} ${one.labels?.[0]?.textContent}`)"
-                if name in await page.evaluate(f"{said}(document.activeElement)"):
+                if name in await page.evaluate(_NAME_OF_WHAT_HAS_THE_FOCUS):
                     assert await page.evaluate("document.activeElement.matches(':focus-visible')"), "it is seen"
                     return
             raise AssertionError(f"{name} is not reached")
@@ -132,6 +137,7 @@ async def test_by_keyboard_alone(opening: Opening) -> None:
         await page.keyboard.down("Enter")
         await until(lambda: rig.control.armed)
         await page.keyboard.up("Enter")
+        driving = asyncio.create_task(tell_odometry(rig.control))
         await wait_for(page, ".mode", "armed, idle")
         await tab_to("Make a map")
         await page.keyboard.press("Enter")
@@ -142,6 +148,7 @@ async def test_by_keyboard_alone(opening: Opening) -> None:
         await until(lambda: rig.control.asked)
         assert isinstance(rig.control.asked[0], MapStart)
         assert rig.control.asked[0].name == "lab"
+        driving.cancel()
         await page.keyboard.press("Escape")
         await until(lambda: not rig.control.armed)
         await page.keyboard.press("Shift+Tab")

@@ -11,6 +11,8 @@ import aiohttp
 import pytest
 from yarl import URL
 
+from robotd.core.clock import now_ns
+from robotd.core.pose import Odometry, Pose2, Twist2
 from robotd.gateway.access.roles import Role
 from robotd.gateway.access.tokens import TokenFile, Tokens, make_token
 from robotd.gateway.composed import gateway
@@ -61,6 +63,13 @@ async def telling(control: FakeControl) -> AsyncIterator[None]:
     finally:
         task.cancel()
         await asyncio.wait((task,))
+
+
+async def tell_odometry(control: FakeControl) -> None:
+    """Tell it as a base does, for an armed one that is silent lets nobody drive."""
+    while True:
+        control.events.publish(Odometry(now_ns(), Pose2(0.0, 0.0, 0.0), Twist2(0.0, 0.0)))
+        await asyncio.sleep(0.2)
 
 
 Opening = Callable[..., contextlib.AbstractAsyncContextManager[GatewayRig]]

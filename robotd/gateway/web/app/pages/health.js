@@ -36,9 +36,9 @@ function able(app) {
   const localize = drive ?? (status?.map_id === null ? { why: 'no_map', remedy: 'load' } : null);
   const go = localize ?? (pose?.best == null ? { why: 'not_localized', remedy: 'localize' } : null);
   const acts = /** @type {const} */ ([['arm', hindrance(app.state, 'arm', now)], ['localize', localize], ['drive', go]]);
-  return acts.map(([act, why]) => html`<li class=${why === null ? 'yes' : 'no'}>${why === null
+  return acts.map(([act, why]) => html`<li class=${why === null || why.why === 'armed' ? 'yes' : 'no'}>${why === null
     ? t('health.can', { act: t(`health.${act}`) })
-    : t('health.cannot', { act: t(`health.${act}`), why: t(`why.${why.why}`), remedy: t(`remedy.${why.remedy}`) })}</li>`);
+    : why.why === 'armed' ? t('why.armed') : t('health.cannot', { act: t(`health.${act}`), why: t(`why.${why.why}`), remedy: t(`remedy.${why.remedy}`) })}</li>`);
 }
 
 /** @param {App} app */

@@ -52,8 +52,8 @@ function daemon(app) {
       <button @click=${download}>${t('log.download')}</button></div>
     <p class="quiet" role="status">${t('log.shown', { shown: Math.min(found.length, SHOWN), all: all.length })} ${lost > 0 ? t('log.lost', { count: lost }) : ''}</p>
     <div class="table-scroll lines" tabindex="0" role="region" aria-label=${t('log.title')}><table>
-      <thead><tr><th scope="col">${t('log.when')}</th><th scope="col">${t('log.level')}</th><th scope="col">${t('log.source')}</th><th scope="col">${t('log.message')}</th></tr></thead>
-      <tbody>${found.slice(-SHOWN).reverse().map((line) => html`<tr class=${line.level.toLowerCase()}><td class="value">${clock(unix(line.time_ns))}</td><td>${line.level}</td><td class="quiet">${line.logger.replace('robotd.', '')}</td><td>${line.message}</td></tr>`)}</tbody></table></div>`;
+      <thead><tr><th scope="col">${t('log.when')}</th><th scope="col">${t('log.severity')}</th><th scope="col">${t('log.source')}</th><th scope="col">${t('log.message')}</th></tr></thead>
+      <tbody>${found.slice(-SHOWN).reverse().map((line) => html`<tr class=${line.level.toLowerCase()}><td class="value">${clock(unix(line.time_ns))}</td><td>${line.level}</td><td class="quiet source">${line.logger.replace('robotd.', '')}</td><td>${line.message}</td></tr>`)}</tbody></table></div>`;
 }
 
 /** @param {App} app */

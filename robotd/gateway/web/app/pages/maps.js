@@ -77,7 +77,7 @@ function card(app, name, versions) {
     ${newest.damage === null ? html`<img src=${`api/maps/${name}/${newest.version}.png?small`} alt="" loading="lazy" width="320" height="200">` : html`<div class="no-picture" aria-hidden="true">×</div>`}
     <h2 class="name">${name}</h2>
     ${version(app, newest)}
-    ${others.length === 0 ? nothing : html`<button class="link" aria-expanded=${unfolded.has(name)} @click=${() => { if (!unfolded.delete(name)) unfolded.add(name); app.wake(true); }}>${t('maps.older', { count: others.length })}</button>
+    ${others.length === 0 ? nothing : html`<button class="link" aria-expanded=${unfolded.has(name)} @click=${() => { if (!unfolded.delete(name)) unfolded.add(name); app.wake(true); }}>${others.length === 1 ? t('maps.older_one') : t('maps.older', { count: others.length })}</button>
       ${unfolded.has(name) ? others.map((entry) => version(app, entry)) : nothing}`}
     ${changes(app, name)}
   </article>`;

@@ -32,6 +32,6 @@ export async function curves(element, app, what) {
   const ink = getComputedStyle(element).color;
   const axis = { stroke: ink, grid: { stroke: '#88888833' }, ticks: { stroke: '#88888833' } };
   const series = [{ label: 's' }, ...names.map((label, index) => ({ label, stroke: COLOURS[index % 3], width: 2, dash: index === 0 ? [] : index === 1 ? [8, 4] : [2, 3] }))];
-  const plot = new Plot({ width, height: 150, series, axes: [axis, { ...axis, size: 55 }], scales: { x: { time: false } }, cursor: { show: false } }, data, element);
+  const plot = new Plot({ width, height: 150, series, axes: [axis, { ...axis, size: 55 }], scales: { x: { time: false } }, cursor: { show: false }, legend: { live: false } }, data, element);
   plots.set(element, { plot, at: performance.now(), width });
 }

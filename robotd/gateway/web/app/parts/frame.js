@@ -61,8 +61,8 @@ function standing(app) {
   const since = Math.max(0, performance.now() - state.statusAt) / 1000;
   return html`
     <div class="standing">
-      <p class=${`where ${where}`} role="status">${mark(shape)}<span>${where === 'ambiguous' && places === 0 ? t('where.ambiguous_beyond') : t(`where.${where}`, { places })}</span></p>
-      <p class=${`mode ${status?.mode ?? ''}`}><strong>${status === null ? '…' : word('mode', status.mode)}</strong> <span class="reason">${status?.reason ?? ''}</span></p>
+      <p class=${`where ${where}`} role="status">${mark(shape)}<span>${where === 'ambiguous' && places < 2 ? t(places === 0 ? 'where.ambiguous_beyond' : 'where.ambiguous_one') : t(`where.${where}`, { places })}</span></p>
+      <p class=${`mode ${status?.mode ?? ''}`}><strong>${status === null ? '…' : word('mode', status.mode)}</strong> <span class="reason" title=${status?.reason ?? ''}>${status?.reason ?? ''}</span></p>
       <p class="doing">
         ${isUnderWay && mission.stops > 1 ? html`<span>${t('head.stop_of', { stop: Math.min(mission.stop + 1, mission.stops), stops: mission.stops })}</span>` : nothing}
         ${isUnderWay && state.progress !== null ? html`<progress max=${state.progress.total} value=${state.progress.taken} aria-label=${t('head.readings', state.progress)}></progress>` : nothing}

@@ -82,7 +82,7 @@ function takeStatus(state, fields, now) {
   if (fields.mission_id === null) state.progress = null;
   const at = fields.time_ns / 1e9;
   const passed = before === null ? 0 : (fields.time_ns - before.time_ns) / 1e9;
-  if (passed < 0.5 && state.lines.length > 0) return;
+  if (before === null || (passed < 0.5 && state.lines.length > 0)) return; // of one look alone there is no rate
   /** @type {Record<string, number>} */
   const rates = {};
   for (const device of fields.devices) {

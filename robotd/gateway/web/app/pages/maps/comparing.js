@@ -2,6 +2,7 @@
 import { html, nothing } from 'lit-html';
 import { ref } from 'lit-html/directives/ref.js';
 import { compared, KINDS } from '../../map/compare.js';
+import { inSight } from '../../parts/in-sight.js';
 import { t } from '../../texts/texts.js';
 import { fetched } from './stored-picture.js';
 
@@ -47,7 +48,7 @@ export function comparison(app) {
   const label = (/** @type {Entry} */ entry) => `${entry.name} ${entry.version}`;
   if (other === undefined) return html`<section class="card bench"><p>${t('compare.one', { name: label(one) })}</p><button @click=${end}>${t('cancel')}</button></section>`;
   const found = result;
-  return html`<section class="card bench" aria-label=${t('compare.title', { first: label(one), second: label(other) })}>
+  return html`<section class="card bench" ${ref(inSight)} aria-label=${t('compare.title', { first: label(one), second: label(other) })}>
     <h2 class="name">${t('compare.title', { first: label(one), second: label(other) })}</h2>
     ${found === null ? html`<p>${t('compare.under_way')}</p>` : html`
       <canvas class="picture" role="img" aria-label=${t('compare.title', { first: label(one), second: label(other) })} ${ref((element) => paint(element, found))}></canvas>
@@ -66,7 +67,7 @@ function paint(element, found) {
   [element.width, element.height] = [cols, rows];
   const context = element.getContext('2d');
   if (context === null) return;
-  const style = getComputedStyle(element);
+  const style = getComputedStyle(document.documentElement); // the picture itself is not on the page yet
   const table = KINDS.map((kind) => pixelOf(style.getPropertyValue(COLOURS[kind]).trim()));
   const image = context.createImageData(cols, rows);
   const pixels = new Uint32Array(image.data.buffer);

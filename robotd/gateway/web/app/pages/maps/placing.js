@@ -1,6 +1,7 @@
 // Loading a map and saying where the robot stands on it: by a drag on its picture, or in numbers.
 import { html, nothing } from 'lit-html';
 import { ref } from 'lit-html/directives/ref.js';
+import { inSight } from '../../parts/in-sight.js';
 import { t } from '../../texts/texts.js';
 import { fetched } from './stored-picture.js';
 
@@ -34,7 +35,7 @@ export function placingCard(app, load) {
   };
   const field = (/** @type {'x' | 'y' | 'degrees'} */ name, /** @type {number} */ value) => html`<label class="inline">${t(`placing.${name}`)}
     <input inputmode="decimal" .value=${String(value)} @change=${(/** @type {any} */ event) => { if (placing !== null) placing[name] = Number.parseFloat(event.target.value); app.wake(true); }}></label>`;
-  return html`<form class="card bench" @submit=${(/** @type {Event} */ event) => { event.preventDefault(); if (isRight) carryOut(); }}>
+  return html`<form class="card bench" ${ref(inSight)} @submit=${(/** @type {Event} */ event) => { event.preventDefault(); if (isRight) carryOut(); }}>
     <h2 class="name">${t('placing.title', { name: entry.name, version: entry.version })}</h2><p>${t('placing.how')}</p>
     <canvas class="picture" aria-hidden="true" ${ref((element) => listen(app, element))}></canvas>
     <div class="tools">${field('x', x)}${field('y', y)}${field('degrees', degrees)}</div>
