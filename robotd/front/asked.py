@@ -72,7 +72,6 @@ class Asked:
         self._stopped_at = -1
         """Number of the latest stop."""
         self._under_way: dict[asyncio.Task[None], Request[Any]] = {}
-        self._overtaken: set[asyncio.Task[Any]] = set()
 
     async def take(self, *lanes: Channel) -> NoReturn:
         """Carry out what comes over these lanes, until cancelled.
@@ -126,28 +125,15 @@ class Asked:
             return
         task = asyncio.create_task(self._answer(numbered), name=f"carry out {request.cmd}")
         self._under_way[task] = request
-        task.add_done_callback(self._forget)
-
-    def _forget(self, task: "asyncio.Task[None]") -> None:
-        del self._under_way[task]
-        self._overtaken.discard(task)
+        task.add_done_callback(self._under_way.pop)
 
     def _obey(self, stop: Stop | Disarm) -> None:
         try:
             # Here, where it is taken, without a task in between: a task would have its turn after all that is
-            # ready now.
+            # ready now. An arming under way ends of it by itself, and is not cancelled: a replay cancels nothing.
             self._heart.halt(stop)
         except Exception:  # what takes the next stop must live on
             log.exception("%s", stop.cmd)
-        # An arm under way would go on to the next device after the stop.
-        for task in self._arming():
-            # Noted before it is cancelled: its end is answered as overtaken, which is not how a dying front's
-            # end is.
-            self._overtaken.add(task)
-            task.cancel()
-
-    def _arming(self) -> "list[asyncio.Task[None]]":
-        return [task for task, request in self._under_way.items() if isinstance(request, Arm)]
 
     async def _answer(self, numbered: NumberedRequest) -> None:
         parts = await self._carried_out(numbered)
@@ -158,11 +144,6 @@ class Asked:
     async def _carried_out(self, numbered: NumberedRequest) -> Parts:
         try:
             return answer(numbered.id, await self._perform(numbered))
-        except asyncio.CancelledError:
-            # Cancelled because the front is gone: nobody is there to be answered.
-            if asyncio.current_task() not in self._overtaken:
-                raise
-            return refusal(numbered.id, _OVERTAKEN)
         except RobotdError as error:
             return refusal(numbered.id, as_refusal(error))
         except Exception as error:
@@ -196,7 +177,7 @@ class Asked:
     async def _give_up(self) -> None:
         # Nobody reads any more: what is made for readers alone stops with them.
         self._heart.watch(frozenset())
-        if self._arming():
+        if any(isinstance(request, Arm) for request in self._under_way.values()):
             self._obey(Stop("stopped, as the front that asked to arm is gone"))
         tasks = list(self._under_way)
         for task in tasks:

@@ -118,6 +118,8 @@ async def test_a_stop_overtakes_an_arm_that_is_under_way() -> None:
         stopped = front.stop()
         answers = await front.answers(2)
         assert (answers[arming], answers[stopped]) == ("refused", {})
+        # It ended of the stop: given up besides, it would end a turn sooner than in a replay.
+        assert front.control.given_up == 0
         front.control.arming.set()
         await asyncio.sleep(0.1)
         assert front.control.status.mode == "disarmed"

@@ -108,6 +108,9 @@ class FakeControl:
         self._lease: Lease | None = None
         self._recording: str | None = None
         self._stop_reason = ""
+        self._halts = 0
+        self.given_up = 0
+        """Armings that were cancelled."""
 
     @property
     def is_busy(self) -> bool:
@@ -131,6 +134,10 @@ class FakeControl:
     def halt(self, request: Stop | Disarm) -> None:
         self.calls.append(f"stop: {request.reason}")
         self.armed = False
+        self._halts += 1
+        if not self.arming.is_set():  # an arming under way ends of a stop
+            self.arming.set()
+            self.arming.clear()
         self.halted.set()
         self._stop_reason = request.reason
         if self._mission is not None:
@@ -213,7 +220,14 @@ class FakeControl:
 
     async def _arm(self) -> Done:
         self.calls.append("arm")
-        await self.arming.wait()
+        halts = self._halts
+        try:
+            await self.arming.wait()
+        except asyncio.CancelledError:
+            self.given_up += 1
+            raise
+        if self._halts != halts:
+            raise MissionError("stopped while arming")
         self.armed = True
         return Done()
 
