@@ -107,6 +107,9 @@ senses: .venv/.dev  ## How few readings tell where it is, which of two equal roo
 height: .venv/.dev  ## What maps at several tilts gain among tables, sideboards and crates: looks and ways, a table (minutes; PLACES=20)
 	@$(BIN)/python -m tests.studies.height.run $(if $(PLACES),--places $(PLACES))
 
+sessions: .venv/.dev  ## A hundred stops, then fifty more with furniture moved: whether it stays found, and lists what changed (minutes each; SEEDS=1)
+	@$(BIN)/python -m tests.studies.sessions.run $(if $(SEEDS),--seeds $(SEEDS)) $(if $(FIRST),--first $(FIRST)) $(if $(LATER),--later $(LATER))
+
 heart: .venv/.dev  ## Whether a stop is on the wires in time, whatever clients do and whatever becomes of the front: writes docs/benchmarks/heart.md (two hours; TRIALS=20)
 	@$(BIN)/python -m tests.studies.heart.run $(if $(TRIALS),--trials $(TRIALS) --endings $(TRIALS)) $(if $(ONLY),--only "$(ONLY)")
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robotd.core.grid_spec import GridSpec
+from robotd.core.map_stop import MapStop
 from robotd.core.pose import Pose2
 from robotd.core.reading import RangeReading
 from robotd.grid import kernels
@@ -29,3 +30,10 @@ def latest_with(
     # At once: where a beam ends and its neighbours graze by, the hit counts, whatever their order.
     kernels.in_use().insert.insert_sweep(found, Readings.of(readings).rows, map_from_robot, spec, _TABLES, at_once=True)
     return found
+
+
+def seen_from(stop: MapStop, spec: GridSpec) -> NDArray[np.uint8]:
+    """Return what one stop says of each cell, ``uint8[rows, cols]``."""
+    seen, beams = np.full(spec.shape, NOTHING, np.uint8), stop.beams(misses=True)
+    kernels.in_use().insert.insert_sweep(seen, beams, stop.map_from_robot, spec, _TABLES, at_once=True)
+    return seen

@@ -18,7 +18,7 @@ from robotd.cli.quantities import whole
 from robotd.cli.show.half_blocks import Ink, can_draw_blocks, draw, shrink
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import Verb
-from robotd.cli.verbs import map_files, map_making, map_store, stored_stops
+from robotd.cli.verbs import map_changes, map_files, map_making, map_store, stored_stops
 from robotd.cli.verbs.map_making import map_name, pose_argument
 from robotd.contract.answers import MapEntryInfo
 from robotd.contract.estimate import PoseEstimate
@@ -190,4 +190,5 @@ VERBS = (
     *map_files.VERBS,
     *map_store.VERBS,
     *stored_stops.VERBS,
+    *map_changes.VERBS,
 )
