@@ -9,7 +9,7 @@ import importlib
 import logging
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from itertools import islice
 from typing import Any
 
@@ -111,10 +111,10 @@ def _client_at(address: str) -> Iterator[Client]:
     security = dask.Security(require_encryption=True)
     if None in (security.tls_ca_file, security.tls_client_cert, security.tls_client_key):
         raise RobotdError(f"{address}: no certificates; name them in the configuration of Dask, distributed.comm.tls")
-    try:
-        client = dask.Client(address, security=security, timeout=_PATIENCE_S)
-        client.wait_for_workers(1, timeout=_PATIENCE_S)
-    except OSError as error:  # a time-out is one
-        raise RobotdError(f"{address}: no scheduler with a worker was reached: {error}") from error
-    with client:
+    with ExitStack() as stack:
+        try:
+            client = stack.enter_context(dask.Client(address, security=security, timeout=_PATIENCE_S))
+            client.wait_for_workers(1, timeout=_PATIENCE_S)
+        except OSError as error:  # a time-out is one
+            raise RobotdError(f"{address}: no scheduler with a worker was reached: {error}") from error
         yield client

@@ -81,7 +81,7 @@ def print_calibration(tally: Tally) -> None:
 
 
 def print_summary(reports: list[LogReport]) -> None:
-    """Print one line for each log, and one for all their cases together."""
+    """Print one line for each log, one for all their cases together, and what belief means in all of them."""
     table = Table(
         *("log", "cases", *_WORDS.values(), "with truth", "right nearby", "error", *_CPU), box=None, header_style="bold"
     )
@@ -91,6 +91,8 @@ def print_summary(reports: list[LogReport]) -> None:
         _add_summary(table, f"{report.name} {1000 * report.map.spec.resolution_m:g} mm", report.tally)
     _add_summary(table, "all", Tally.of(report.tally for report in reports))
     out().print(table)
+    # On another building's map no answer is right, whatever belief it has.
+    print_calibration(Tally.of(report.tally for report in reports if not report.protocol.startswith("other=")))
 
 
 def _add_summary(table: Table, name: str, tally: Tally) -> None:
