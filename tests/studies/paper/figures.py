@@ -1,4 +1,4 @@
-"""Figs. 14-20 of [BrownDonald2000]_, its rasterized algorithms, drawn by the functions that carry them out."""
+"""Figs. 4, 6 and 14-20 of [BrownDonald2000]_, drawn by the functions that carry its rasterized algorithms out."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -7,8 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Rectangle
-from numpy.typing import NDArray
+from matplotlib.patches import Circle, Polygon, Rectangle
 
 from robotd.core.reading import RangeReading, ReadingStatus
 from robotd.grid.footprints import dilate, disk_footprint
@@ -22,12 +21,8 @@ from robotd.localization.reference.flooded_poses import (
 from robotd.localization.reference.floods import UNREACHED, Metric, flood
 from robotd.localization.reference.pixelized_vector import ray_offsets
 from robotd.localization.reference.probe import Probe, probe_of
-
-Mask = NDArray[np.bool_]
-
-_OBSTACLE, _FIRST, _SECOND, _BOTH = "#5b6770", "#9cc9e8", "#f3b562", "#b7d98c"
-_INK = "#22303c"
-_LINES = "#d5dbe0"
+from tests.studies.paper.poses_figures import POSES_FIGURES
+from tests.studies.paper.sheet import BOTH, FIRST, INK, OBSTACLE, RED, SECOND, Mask, arrow, fill, shade, sheet, write
 
 EPS = 2
 """Error radius of figs. 17-20, in cells."""
@@ -55,12 +50,12 @@ def draw_figures(directory: Path) -> None:
     for name, (title, panels) in FIGURES.items():
         figure = Figure(figsize=(4.1 * len(panels), 3.9), dpi=90, facecolor="white")
         FigureCanvasAgg(figure)
-        figure.suptitle(title, fontsize=10, fontweight="bold", color=_INK, y=0.98)
+        figure.suptitle(title, fontsize=10, fontweight="bold", color=INK, y=0.98)
         every = figure.subplots(1, len(panels), squeeze=False)[0]
         figure.subplots_adjust(left=0.01, right=0.99, bottom=0.09, top=0.9, wspace=0.04)
         for axes, (caption, draw) in zip(every, panels, strict=True):
             draw(axes)
-            axes.set_xlabel(caption, fontsize=8, color=_INK)
+            axes.set_xlabel(caption, fontsize=8, color=INK)
         figure.savefig(directory / f"{name}.png", format="png", metadata={"Software": None})
 
 
@@ -70,11 +65,11 @@ def _convolved(axes: Axes) -> None:
     p[10:12, 10:12] = True
     q = np.zeros((7, 7), np.bool_)
     q[3, 3] = q[3, 4] = q[4, 5] = q[4, 6] = True
-    _sheet(axes, p.shape)
-    _fill(axes, dilate(p, q[::-1, ::-1]), _FIRST)
-    _fill(axes, p, _OBSTACLE)
+    sheet(axes, p.shape)
+    fill(axes, dilate(p, q[::-1, ::-1]), FIRST)
+    fill(axes, p, OBSTACLE)
     for row, col in np.argwhere(q).tolist():
-        axes.add_patch(Rectangle((col - 3, row - 3), 1, 1, facecolor=_SECOND, edgecolor=_INK, linewidth=0.6))
+        axes.add_patch(Rectangle((col - 3, row - 3), 1, 1, facecolor=SECOND, edgecolor=INK, linewidth=0.6))
 
 
 def _contours(metric: Metric) -> Callable[[Axes], None]:
@@ -83,10 +78,10 @@ def _contours(metric: Metric) -> Callable[[Axes], None]:
         sources[7:9, 6:12] = True
         sources[9:12, 9] = True
         numbers = flood(sources, metric, limit=5)
-        _sheet(axes, sources.shape)
-        _shade(axes, numbers)
-        _fill(axes, sources, _OBSTACLE)
-        _write(axes, np.where(sources, UNREACHED, numbers))
+        sheet(axes, sources.shape)
+        shade(axes, numbers)
+        fill(axes, sources, OBSTACLE)
+        write(axes, np.where(sources, UNREACHED, numbers))
 
     return draw
 
@@ -95,11 +90,31 @@ def _octagons(axes: Axes) -> None:
     sources = np.zeros((23, 23), np.bool_)
     sources[11, 11] = True
     numbers = flood(sources, Metric.OCTAGON, limit=10)
-    _sheet(axes, sources.shape)
-    _shade(axes, numbers)
-    _write(axes, numbers)
+    sheet(axes, sources.shape)
+    shade(axes, numbers)
+    write(axes, numbers)
     for radius in (2, 5, 8, 10):
-        axes.add_patch(Circle((11.5, 11.5), radius + 0.5, fill=False, edgecolor="#c8102e", linewidth=1.0, zorder=6))
+        axes.add_patch(Circle((11.5, 11.5), radius + 0.5, fill=False, edgecolor=RED, linewidth=1.0, zorder=6))
+
+
+def _grazing(axes: Axes) -> None:
+    """Fig. 16 (a): a vector that begins at the edge of an object and leads out of it, and whose cells lie in it."""
+    corners = np.array([(1.0, 1.0), (15.0, 5.6), (15.0, 1.0)])
+    rows, cols = np.mgrid[:9, :18]
+    left, right = corners[0], corners[1]
+    slope = (right[1] - left[1]) / (right[0] - left[0])
+    below = rows + 0.5 <= left[1] + slope * (cols + 0.5 - left[0]) + 0.5
+    solid = below & (rows >= 1) & (cols >= 1) & (cols < 15)
+    start, angle = np.array((3.5, left[1] + slope * 2.5 + 0.05)), float(np.arctan(slope)) + 0.03
+    chain = ray_offsets(angle, 10.0) + np.floor(start[::-1]).astype(np.intp)
+    body = np.zeros_like(solid)
+    body[tuple(chain.T)] = True
+    sheet(axes, solid.shape)
+    fill(axes, solid, OBSTACLE)
+    fill(axes, body, FIRST)
+    fill(axes, body & solid, BOTH)
+    axes.add_patch(Polygon(corners, closed=True, fill=False, edgecolor=INK, linewidth=1.2, zorder=6))
+    arrow(axes, tuple(start), tuple(start + 10.0 * np.array((np.cos(angle), np.sin(angle)))))
 
 
 def _overlap_of_chains(axes: Axes) -> None:
@@ -108,11 +123,11 @@ def _overlap_of_chains(axes: Axes) -> None:
     one, other = (np.zeros((9, 18), np.bool_) for _ in range(2))
     one[chain[:, 0] + 1, chain[:, 1] + 1] = True
     other[chain[:, 0] + 1, chain[:, 1] + 2] = True
-    _sheet(axes, one.shape)
-    _fill(axes, one & ~other, _FIRST)
-    _fill(axes, other & ~one, _SECOND)
-    _fill(axes, one & other, _BOTH)
-    axes.plot([1.5, 2.5], [1.5, 1.5], "*", color=_INK, markersize=8)
+    sheet(axes, one.shape)
+    fill(axes, one & ~other, FIRST)
+    fill(axes, other & ~one, SECOND)
+    fill(axes, one & other, BOTH)
+    axes.plot([1.5, 2.5], [1.5, 1.5], "*", color=INK, markersize=8)
 
 
 def _corner(axes: Axes) -> None:
@@ -123,11 +138,11 @@ def _corner(axes: Axes) -> None:
     numbers = directional_flood(sources, chain)
     missed = np.zeros_like(sources)
     missed[1, 1:4] = True
-    _sheet(axes, sources.shape)
-    _fill(axes, numbers != UNREACHED, _FIRST)
-    _fill(axes, missed, _SECOND)
-    _fill(axes, sources, _OBSTACLE)
-    _write(axes, np.where(sources, UNREACHED, numbers))
+    sheet(axes, sources.shape)
+    fill(axes, numbers != UNREACHED, FIRST)
+    fill(axes, missed, SECOND)
+    fill(axes, sources, OBSTACLE)
+    write(axes, np.where(sources, UNREACHED, numbers))
 
 
 def _map_and_probe(axes: Axes) -> None:
@@ -137,15 +152,13 @@ def _map_and_probe(axes: Axes) -> None:
     assert probe.head is not None
     ball[probe.head[0] + tail[0], probe.head[1] + tail[1]] = True
     ball = dilate(ball, disk_footprint(EPS + 0.5))
-    _sheet(axes, body.shape)
-    _fill(axes, ball, _SECOND)
-    _fill(axes, body, _FIRST)
-    _fill(axes, shape_m(), _OBSTACLE)
+    sheet(axes, body.shape)
+    fill(axes, ball, SECOND)
+    fill(axes, body, FIRST)
+    fill(axes, shape_m(), OBSTACLE)
     along = LENGTH_CELLS * np.array((np.cos(BEARING_RAD), np.sin(BEARING_RAD)))
     start = tail[::-1] + 0.5
-    axes.annotate(
-        "", tuple(start + along), tuple(start), arrowprops={"arrowstyle": "->", "color": "#c8102e", "linewidth": 1.4}
-    )
+    arrow(axes, tuple(start), tuple(start + along))
 
 
 def _endpoints(axes: Axes) -> None:
@@ -153,18 +166,18 @@ def _endpoints(axes: Axes) -> None:
     assert probe.head is not None
     moved = translated(shape_m(), *probe.head, outside=0)
     numbers = flood(moved, Metric.OCTAGON, limit=EPS)
-    _sheet(axes, moved.shape)
-    _fill(axes, numbers != UNREACHED, _SECOND)
-    _fill(axes, shape_m(), _OBSTACLE)
-    _write(axes, numbers)
+    sheet(axes, moved.shape)
+    fill(axes, numbers != UNREACHED, SECOND)
+    fill(axes, shape_m(), OBSTACLE)
+    write(axes, numbers)
 
 
 def _blocked(axes: Axes) -> None:
     numbers = directional_flood(shape_m(), probe_z().body)
-    _sheet(axes, numbers.shape)
-    _fill(axes, numbers != UNREACHED, _FIRST)
-    _fill(axes, shape_m(), _OBSTACLE)
-    _write(axes, numbers)
+    sheet(axes, numbers.shape)
+    fill(axes, numbers != UNREACHED, FIRST)
+    fill(axes, shape_m(), OBSTACLE)
+    write(axes, numbers)
 
 
 def _feasible(axes: Axes) -> None:
@@ -175,40 +188,16 @@ def _feasible(axes: Axes) -> None:
     endpoints = flooded_endpoint_set(occupied, probe.head, EPS)[window]
     feasible = flooded_feasible_poses(occupied, probe, EPS)[window]
     assert np.array_equal(feasible, endpoints & ~flooded_blocked_set(occupied, probe.body)[window])
-    _sheet(axes, feasible.shape)
-    _fill(axes, endpoints, "#f7e3c8")
-    _fill(axes, feasible, _BOTH)
-    _fill(axes, shape_m(), _OBSTACLE)
+    sheet(axes, feasible.shape)
+    fill(axes, endpoints, "#f7e3c8")
+    fill(axes, feasible, BOTH)
+    fill(axes, shape_m(), OBSTACLE)
     moved = translated(shape_m(), *probe.head, outside=0)
-    _write(axes, np.where(feasible, flood(moved, Metric.OCTAGON, limit=EPS), UNREACHED))
-
-
-def _sheet(axes: Axes, shape: tuple[int, ...]) -> None:
-    rows, cols = shape
-    axes.set(xlim=(0, cols), ylim=(0, rows), aspect="equal", xticks=range(cols + 1), yticks=range(rows + 1))
-    axes.grid(color=_LINES, linewidth=0.5)
-    axes.set_axisbelow(True)
-    axes.tick_params(length=0, labelbottom=False, labelleft=False)
-
-
-def _fill(axes: Axes, cells: Mask, colour: str) -> None:
-    for row, col in np.argwhere(cells).tolist():
-        axes.add_patch(Rectangle((col, row), 1, 1, facecolor=colour, edgecolor="white", linewidth=0.4))
-
-
-def _shade(axes: Axes, numbers: NDArray[np.int32]) -> None:
-    for number in range(int(numbers.max()) + 1):
-        _fill(axes, numbers == number, _FIRST if number % 2 else "#dcecf7")
-
-
-def _write(axes: Axes, numbers: NDArray[np.int32]) -> None:
-    for row, col in np.argwhere(numbers != UNREACHED).tolist():
-        axes.text(
-            col + 0.5, row + 0.45, str(numbers[row, col]), ha="center", va="center", fontsize=5.5, color=_INK, zorder=7
-        )
+    write(axes, np.where(feasible, flood(moved, Metric.OCTAGON, limit=EPS), UNREACHED))
 
 
 FIGURES: dict[str, tuple[str, tuple[tuple[str, Callable[[Axes], None]], ...]]] = {
+    **POSES_FIGURES,
     "fig-14": (
         "Fig. 14: discrete convolution",
         (("P grey, Q orange; blue and grey: their Minkowski difference", _convolved),),
@@ -224,6 +213,7 @@ FIGURES: dict[str, tuple[str, tuple[tuple[str, Callable[[Axes], None]], ...]]] =
     "fig-16": (
         "Fig. 16: the directional flood, and why a look-ahead",
         (
+            ("(a) out of the object, but its cells (green) are in it", _grazing),
             ("(b) a chain (blue) and its copy one cell on (orange); green: both", _overlap_of_chains),
             ("obstacles touch at a corner; orange: what the look-ahead misses", _corner),
         ),

@@ -11,7 +11,8 @@ from tests.studies.paper.figures import FIGURES
 from tests.studies.paper.robot import CUT_OFF_M, TILT_RAD
 from tests.studies.paper.rooms import LABORATORY, OFFICE, TESTS, Test
 from tests.studies.paper.study import FOUND_WITHIN_M, POSES_A_MAP, PROBES, Tally
-from tests.studies.paper.trials import ERROR_M, OURS, PAPERS, Manner, Outcome
+from tests.studies.paper.trials import COUNTED, ERROR_M, PAPERS, Manner, Outcome
+from tests.studies.paper.why import POSES, Why
 
 Results = Mapping[tuple[int, str, int], Outcome]
 """By test, name of the manner, and seed."""
@@ -31,7 +32,7 @@ TEST_HEAD = (
 )
 
 
-def page_of(results: Results, tallies: Sequence[Tally], seeds: Sequence[int]) -> str:
+def page_of(results: Results, tallies: Sequence[Tally], why: Sequence[Why], seeds: Sequence[int]) -> str:
     """Return the whole page."""
     template = Template(Path(__file__).with_name("page.md.template").read_text(encoding="utf-8"))
     return template.substitute(
@@ -42,7 +43,7 @@ def page_of(results: Results, tallies: Sequence[Tally], seeds: Sequence[int]) ->
         error=f"{1000 * ERROR_M:g}",
         seeds=_list(seeds),
         papers=_tests(results, PAPERS, seeds[0]),
-        ours=_tests(results, OURS, seeds[0]),
+        counted=_tests(results, COUNTED, seeds[0]),
         test_pictures="\n\n".join(f"![test {test.number}](test-{test.number}.png)" for test in TESTS),
         spread=_spread(results, seeds),
         poses=POSES_A_MAP,
@@ -50,6 +51,8 @@ def page_of(results: Results, tallies: Sequence[Tally], seeds: Sequence[int]) ->
         probes=PROBES,
         found_within=FOUND_WITHIN_M,
         study=table(_STUDY_HEAD, map(_study_row, tallies)),
+        why=table(_WHY_HEAD, map(_why_row, why)),
+        why_poses=POSES,
         figures="\n\n".join(f"![{title}]({name}.png)" for name, (title, _) in FIGURES.items()),
     )
 
@@ -83,7 +86,7 @@ def test_row(test: Test, outcome: Outcome) -> tuple[str, ...]:
 
 def _spread(results: Results, seeds: Sequence[int]) -> str:
     head = ("test", "manner", "in range", "consistent", "regions", "largest off by [mm]", "nearest off by [mm]")
-    return table(head, (_spread_row(results, test, manner, seeds) for manner in (PAPERS, OURS) for test in TESTS))
+    return table(head, (_spread_row(results, test, manner, seeds) for manner in (PAPERS, COUNTED) for test in TESTS))
 
 
 def _spread_row(results: Results, test: Test, manner: Manner, seeds: Sequence[int]) -> tuple[str, ...]:
@@ -117,7 +120,8 @@ _STUDY_HEAD = (
 
 
 def _study_row(tally: Tally) -> tuple[str, ...]:
-    median, high = 1000 * np.percentile(tally.largest_off_m, (50, 95))
+    # As it is sorted, and not between two of them: one that was not found at all is off by infinity.
+    median, high = 1000 * np.percentile(tally.largest_off_m, (50, 95), method="nearest")
     return (
         tally.room.name,
         tally.manner.name,
@@ -129,6 +133,21 @@ def _study_row(tally: Tally) -> tuple[str, ...]:
         _share(tally.on_known_floor),
         _share(tally.found[tally.on_known_floor]),
     )
+
+
+_WHY_HEAD = (
+    "changed",
+    "stops",
+    "open floor that is not known",
+    "wrong obstacles on it",
+    "found",
+    "found by one of the regions",
+)
+
+
+def _why_row(why: Why) -> tuple[str, ...]:
+    unknown, found, by_one = (f"{100 * share:.0f} %" for share in (why.floor_unknown, why.found, why.found_by_one))
+    return why.cause.name, str(why.cause.stops), unknown, f"{why.wrong_obstacles} cells", found, by_one
 
 
 def _share(which: NDArray[np.bool_]) -> str:

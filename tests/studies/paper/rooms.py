@@ -59,7 +59,7 @@ class Room:
         while True:
             x_m, y_m = random.uniform(low, high).tolist()
             heading_rad = random.uniform(-math.pi, math.pi)
-            if _is_inside(walls, (x_m, y_m)) and clearance_m(walls, (x_m, y_m)) >= _CLEARANCE_M:
+            if is_inside(walls, (x_m, y_m)) and clearance_m(walls, (x_m, y_m)) >= _CLEARANCE_M:
                 yield Pose2(x_m, y_m, heading_rad)
 
 
@@ -95,7 +95,7 @@ def known_floor(grid: OccupancyGrid) -> NDArray[np.bool_]:
     return ~inflated(~free_cells(grid, PlanningSettings().gap_cells), radius_cells, 0.0)
 
 
-def _is_inside(walls: WallSegments, point_m: Point) -> bool:
+def is_inside(walls: WallSegments, point_m: Point) -> bool:
     """Return whether a point is in the room and in none of its furniture: a ray from it crosses an odd number of walls.
 
     Furniture along a wall has an edge in common with the room; the ray crosses both.

@@ -6,12 +6,13 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
+from robotd.localization.ready_map import ReadyMap
 from tests.studies.paper.robot import Tour, probes_at
 from tests.studies.paper.rooms import Room, known_floor
 from tests.studies.paper.trials import Manner, outcome_of
 
 PROBES = 24
-POSES_A_MAP = 100
+POSES_A_MAP = 50
 FOUND_WITHIN_M = 0.2
 _SEED = 1000
 
@@ -40,10 +41,10 @@ def tally_of(room: Room, manner: Manner, tours: tuple[Tour, ...], poses_a_map: i
     errors_m: list[tuple[float, float, float]] = []
     for number, tour in enumerate(tours):
         grid = tour.map_by(manner.grid, room.spec)
-        floor = known_floor(grid)
+        floor, the_map = known_floor(grid), ReadyMap.of(grid, manner.localization)
         for trial, pose in enumerate(islice(room.poses(_SEED + number), poses_a_map)):
             readings = probes_at(room.world, pose, PROBES, _SEED * (1 + number) + trial)
-            outcome = outcome_of(manner, grid, readings, pose)
+            outcome = outcome_of(manner, the_map, readings, pose)
             known.append(bool(floor[grid.spec.cell_at(pose.x_m, pose.y_m)]))
             errors_m.append((outcome.largest_off_m, outcome.nearest_off_m, outcome.farthest_off_m))
     return Tally(room, manner, np.array(known), *np.array(errors_m).T)
