@@ -141,6 +141,7 @@ def main() -> None:
         install(hour)
         calibrate(hour)
         maps_in_and_out(hour, maps)
+        recording_for_others(hour)
         print(f"{'all of it':58}{time.monotonic() - hour.began_s:7.1f} s")
 
 
@@ -161,7 +162,7 @@ def install(hour: Hour) -> None:
     with hour.step("install it into a bare environment"):
         subprocess.run([sys.executable, "-m", "venv", str(hour.directory / "venv")], check=True)
         (wheel,) = hour.directory.glob("robotd-*.whl")
-        hour.run("install", "-q", "--disable-pip-version-check", f"{wheel}[interop]", program="pip")
+        hour.run("install", "-q", "--disable-pip-version-check", f"{wheel}[interop,bags]", program="pip")
 
 
 def calibrate(hour: Hour) -> None:
@@ -214,8 +215,10 @@ def maps_in_and_out(hour: Hour, maps: Path) -> None:
     with hour.beside("robotctl", "sim", maps / MAPS[0], "--links", links, "--truth", truth):
         hour.wait_for(links / "rangefinder")
         with hour.daemon(), hour.step(f"robotctl localize in {MAPS[0]}, nothing known"):
+            hour.run("record", "start", "hour.mcap")
             hour.run("map", "load", Path(MAPS[0]).stem)
             estimate = json.loads(hour.run("localize", "--heading-unknown", "--json"))
+            hour.run("record", "stop")
         best, there = estimate["best"], hour.truth()
         off_m = math.hypot(best["x_m"] - there["x_m"], best["y_m"] - there["y_m"])
         print(f"    {estimate['state']}, {off_m:.3f} m from the truth")
@@ -228,6 +231,49 @@ def maps_in_and_out(hour: Hour, maps: Path) -> None:
         )
         said = hour.run("-c", script, "exported", name, program="python")
     print(f"    {said.strip()}")
+
+
+def recording_for_others(hour: Hour) -> None:
+    """What was recorded, written for other programs, and read by them."""
+    recording = hour.directory / "recordings" / "hour.mcap"
+    with hour.step("robotctl export tum, in the form that evo reads"):
+        hour.run("export", "tum", recording, "hour.tum", "--predicted")
+        poses = poses_of(hour.directory / "hour.tum")
+    print(f"    {poses} poses")
+    with hour.step("robotctl export bag, read by rosbags"):
+        hour.run("export", "bag", recording, "hour.bag")
+        script = (
+            "import pathlib, rosbags.highlevel as r; bag = r.AnyReader([pathlib.Path('hour.bag')]); bag.open();"
+            " print(', '.join(f'{one.topic} {one.msgcount}' for one in bag.connections)); bag.close()"
+        )
+        said = hour.run("-c", script, program="python")
+    print(f"    {said.strip()}")
+    with hour.step("robotctl export foxglove, read by mcap"):
+        hour.run("export", "foxglove", recording, "hour-foxglove.mcap")
+        script = (
+            "import mcap.reader; file = open('hour-foxglove.mcap', 'rb');"
+            " print(mcap.reader.make_reader(file).get_summary().statistics.message_count, 'messages')"
+        )
+        said = hour.run("-c", script, program="python")
+    print(f"    {said.strip()}")
+
+
+def poses_of(trajectory: Path) -> int:
+    """Return how many poses a trajectory has that evo would read: time, place, unit quaternion; times rise.
+
+    Raises:
+        SystemExit: a line is none; names it.
+    """
+    lines = [line for line in trajectory.read_text().splitlines() if not line.startswith("#")]
+    last_s = -math.inf
+    for line in lines:
+        numbers = [float(word) for word in line.split()]
+        if len(numbers) != 8 or not numbers[0] > last_s or abs(math.hypot(*numbers[4:]) - 1.0) > 1e-6:
+            sys.exit(f"\n{trajectory}: no pose: {line}")
+        last_s = numbers[0]
+    if not lines:
+        sys.exit(f"\n{trajectory}: no poses")
+    return len(lines)
 
 
 if __name__ == "__main__":
