@@ -42,6 +42,7 @@ def main() -> None:
     assert "C kernels" in inside(root, "robotctl", "doctor", code=1)  # there are no boards
     assert "good" in inside(root, "robotctl", "config", "check")
     assert "robotd" in inside(root, "getent", "passwd", "robotd")
+    assert any((root / "usr/lib/robotd").rglob("robotd/cli/__pycache__/main.*.pyc")), "each start would compile again"
     missing = [name for name in SHARED if not (root / name).exists()]
     assert not missing, f"not there: {missing}"
     config = root / CONFIG

@@ -45,7 +45,10 @@ def main(tests: Sequence[str]) -> int:
         subprocess.run([sys.executable, "-m", "venv", str(BUILD)], check=True)
     install = [str(python), "-m", "pip", "--disable-pip-version-check", "install", "-q", "--only-binary", ":all:"]
     subprocess.run([*install, *pinned, *TOOLS], check=True)
-    # Run where the source is: what was compiled in place serves every version of Python and NumPy.
+    # Run where the source is: what was compiled in place serves every version of Python and NumPy. Processes that tests
+    # start look elsewhere, and find it by this.
+    (site,) = (BUILD / "lib").glob("python3.*/site-packages")
+    (site / "robotd.pth").write_text(f"{ROOT}\n", encoding="utf-8")
     # An old version may use what newer ones around it call deprecated: whether it works is asked, not whether it will.
     old = ("-W", "ignore::DeprecationWarning", "-W", "ignore::PendingDeprecationWarning")
     words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-o", "timeout=600", *old, *(tests or TESTS)]
