@@ -2,20 +2,24 @@
 
 import argparse
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 from robotd.cli.exit_codes import OK
 from robotd.cli.quantities import whole
 from robotd.cli.show.terminal import out, print_json, print_table
 from robotd.cli.verb import Verb
-from robotd.cli.verbs.map_store import store_arguments, store_of
+from robotd.cli.verbs.map_store import filled_store_of, store_arguments
 from robotd.core.errors import MapError
 from robotd.core.map_stop import MapStop
-from robotd.maps.store import StoredMap
-from robotd.slam.changed_places import changed_places
+
+if TYPE_CHECKING:
+    from robotd.maps.store import StoredMap
 
 
 def _changes(arguments: argparse.Namespace) -> int:
-    store = store_of(arguments)
+    from robotd.slam.changed_places import changed_places  # noqa: PLC0415  # the engine, for this verb alone
+
+    store = filled_store_of(arguments)
     newer = store.load(arguments.name, arguments.version)
     version = newer.entry.version
     older = store.load(arguments.name, version - 1 if arguments.since is None else arguments.since)
@@ -40,7 +44,7 @@ def _changes(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _stops_of(stored: StoredMap) -> tuple[MapStop, ...]:
+def _stops_of(stored: "StoredMap") -> tuple[MapStop, ...]:
     if stored.stops is None:
         entry = stored.entry
         raise MapError(f"{entry.name} version {entry.version}: it is not known of which stops this map was made")

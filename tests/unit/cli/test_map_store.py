@@ -83,7 +83,8 @@ def test_words_for_what_cannot_be(maps: Path, capsys: pytest.CaptureFixture[str]
 
 
 @pytest.mark.parametrize(
-    "words", ["copy lab hall", "rename lab hall", "delete lab --yes", "compare lab lab", "export lab out"]
+    "words",
+    ["copy lab hall", "rename lab hall", "delete lab --yes", "compare lab lab", "export lab out", "changes lab"],
 )
 def test_where_no_maps_are_it_is_said_where_was_looked_and_how_another_place_is_named(
     words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
