@@ -13,7 +13,6 @@
 #include "search/search_masks.h"
 #include "search/search_units.h"
 #include "shared/arena.h"
-#include "shared/threads.h"
 
 #define HOPES 64 /* this many bounds at a time are made finer, and the windows tried that they lead to */
 #define STEPS 12
@@ -190,6 +189,13 @@ static void search_heading(worker *self, place_in_search *at)
     }
 }
 
+/* Make the bound of a hope finer. */
+static void make_finer(worker *self, hope *h)
+{
+    draw(self, h->heading);
+    h->bound = descend(self, h->heading, h->unit, h->place);
+}
+
 static void work(void *shared, int32_t number)
 {
     search *s = shared;
@@ -197,6 +203,8 @@ static void work(void *shared, int32_t number)
     for (int32_t next; (next = take_one(&s->next, s->taken)) >= 0;)
         if (s->phase == BOUNDING)
             bound_heading(self, next);
+        else if (s->phase == HOPING)
+            make_finer(self, &s->some[next]);
         else
             search_heading(self, &s->together[next]);
 }
@@ -206,7 +214,7 @@ static void share(search *s, int32_t taken)
 {
     s->next = 0;
     s->taken = taken;
-    share_among_threads(work, s, s->job->threads);
+    crew_work(&s->threads);
     s->work = 0;
     for (int32_t i = 0; i < THREADS_MAX; i++)
         s->work += looked_at(&s->workers[i]);
@@ -284,10 +292,11 @@ static int32_t hopes_of(const search *s, hope *hopes)
     return count;
 }
 
-/* Try the window that a hope leads to: some rank may be reached there. */
+/* Try the window that a hope leads to: a better rank than was seen so far may be reached there. */
 static void try_hope(search *s, worker *first, const hope *h)
 {
     look_up(s);
+    s->asked = larger(s->least, s->job->best_rank + 1);
     if (h->place[0] >= s->job->map->rows || h->place[1] >= s->job->map->cols || allowed_misses(s) < 0 ||
         !open_window(s->job, h->place[0], h->place[1], &first->at))
         return;
@@ -299,10 +308,9 @@ static void try_hope(search *s, worker *first, const hope *h)
 /* Make some bounds finer, and try the best of them. */
 static void try_some(search *s, worker *first, hope *hopes, int32_t count)
 {
-    for (int32_t i = 0; i < count; i++) {
-        draw(first, hopes[i].heading);
-        hopes[i].bound = descend(first, hopes[i].heading, hopes[i].unit, hopes[i].place);
-    }
+    s->phase = HOPING;
+    s->some = hopes;
+    share(s, count);
     sort_best(hopes, count);
     for (int32_t i = 0; i < count && hopes[i].bound > s->job->best_rank && hopes[i].bound >= s->least; i++)
         try_hope(s, first, hopes + i);
@@ -408,6 +416,7 @@ int32_t search_poses(search_job *job)
         return 0;
     begin(&s, job);
     pthread_mutex_init(&s.lock, NULL);
+    crew_begin(&s.threads, work, &s, job->threads);
     if (job->by_blocks) {
         s.phase = BOUNDING;
         share(&s, job->heading_count);
@@ -426,6 +435,7 @@ int32_t search_poses(search_job *job)
         s.least = larger(1, job->least_rank - job->slack);
     }
     job->least = s.least;
+    crew_end(&s.threads);
     pthread_mutex_destroy(&s.lock);
     return 1;
 }

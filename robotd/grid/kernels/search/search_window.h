@@ -2,6 +2,7 @@
 #include <pthread.h>
 
 #include "search/search_kernels.h"
+#include "shared/threads.h"
 
 #define TOGETHER 4 /* headings that are searched before what they reached raises what is asked for */
 
@@ -41,12 +42,14 @@ typedef struct search {
     int32_t *order;      /* [ordered]: the headings that can hold an answer, the best bound first */
     int32_t ordered;
     hope *hopes;                        /* [headings] */
+    hope *some;                         /* of them, those that are made finer */
     place_in_search together[TOGETHER]; /* the headings that are searched at a time */
     int32_t next, taken;                /* of these */
     int64_t work;                       /* what all of them have looked at */
     int64_t share;                      /* how much each of these headings may cost */
     enum {
         BOUNDING,
+        HOPING,
         RANKING,
         COLLECTING
     } phase;        /* ranking: only the best rank is sought */
@@ -55,6 +58,7 @@ typedef struct search {
     int32_t asked;  /* what it was before these headings: what is looked at must not depend on which of them is first */
     int32_t reached; /* the best rank, then */
     pthread_mutex_t lock;
+    crew threads;
     worker workers[THREADS_MAX];
 } search;
 
