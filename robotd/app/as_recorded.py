@@ -25,7 +25,7 @@ SINCE: dict[str, dict[str, Any]] = {
         "history": False,
     },
     "planning": {"keeps_bumps": False},
-    "second_look": {"on_walls_min": 0.0, "contrast_beside_min": 0.0},
+    "second_look": {"on_walls_min": 0.0, "contrast_beside_min": 0.0, "contrast_nowhere_min": 0.0},
 }
 """By section and key; a section that is missing was not recorded, and says nothing."""
 

@@ -42,10 +42,10 @@ class Hill:
         return heights
 
     @property
-    def elsewhere(self) -> float:
-        """How high a robot would stand that is not on the map."""
-        own = float((self.likelihood.elsewhere_logs(self.sight) * self.weights).sum())
-        return own + sum(hill.elsewhere for hill in self.further)
+    def elsewhere(self) -> NDArray[np.float64]:
+        """What :meth:`logs` are of a robot that is not on the map, ``float64[readings]``."""
+        own: NDArray[np.float64] = self.likelihood.elsewhere_logs(self.sight) * self.weights
+        return np.concatenate((own, *(hill.elsewhere for hill in self.further))) if self.further else own
 
     @property
     def all_say(self) -> float:

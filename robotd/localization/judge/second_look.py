@@ -14,7 +14,7 @@ twenty beams on one moved chair would be evidence enough against any place.
 Belief alone is too sure of itself where two places truly are alike: by luck the map shows one of them a little more
 sharply, and over a whole room that adds up to any belief. So a place must also stand out from each other one by its
 *contrast*: the sum of what the readings say, by its standard error. No single reading can decide, and no sum of
-differences that are as small as such luck.
+differences that are as small as such luck. Nowhere is a rival like any other: a small room resembles many.
 """
 
 import math
@@ -121,13 +121,15 @@ def second_look(
     # Climbed as well: a ring of fixed poses would miss the ridge of a corridor by a few centimetres.
     _, aside = climb(hill, _around(found[0], settings), _ASIDE_STEPS, _ASIDE_MOVES)
     # Before any reading, each place has an equal share of the belief that the robot is on the map at all.
-    shares = _places(likelihood, settings) * settings.off_map_share / (1.0 - settings.off_map_share)
-    to_beat = hill.elsewhere + math.log(shares)
+    beforehand = math.log(_places(likelihood, settings) * settings.off_map_share / (1.0 - settings.off_map_share))
+    to_beat = float(hill.elsewhere.sum()) + beforehand
     # Belief alone was 0.9999 sure of the wrong one of two rooms that are alike (decision 16).
     elsewhere, beside = _contrasts(hill, found)
+    with_nowhere = _contrast_with_nowhere(hill, found[0], beforehand)
     on_walls = share_on_walls(likelihood, readings, found[0], settings.on_wall_m)
     least = settings.contrast_min if on_walls >= settings.on_walls_min else settings.contrast_off_walls_min
-    stands_out = elsewhere >= least and beside >= settings.contrast_beside_min
+    is_here = beside >= settings.contrast_beside_min and with_nowhere >= settings.contrast_nowhere_min
+    stands_out = elsewhere >= least and is_here
     weighed = _weigh(found, scores - to_beat, float(aside.max()) - to_beat, settings, stands_out=stands_out)
     return replace(weighed, contrast=elsewhere, ends=ends_at(hill, found[0]))
 
@@ -206,6 +208,22 @@ def _contrasts(hill: Hill, poses: NDArray[np.float64]) -> tuple[float, float]:
     errors = np.sqrt((said * said).sum(axis=1) + np.where(is_beside, 0.0, in_common**2))
     contrasts = np.divide(said.sum(axis=1), errors, out=np.zeros(len(said)), where=errors > 0.0)
     return float(contrasts[~is_beside].min(initial=math.inf)), float(contrasts[is_beside].min(initial=math.inf))
+
+
+def _contrast_with_nowhere(hill: Hill, pose: NDArray[np.float64], beforehand: float) -> float:
+    """Return the contrast of a pose ``float64[3]`` with being nowhere on the map.
+
+    Of all places of a map one that is wrong is the best, and the more there are, the better it is by chance: what each
+    lacks beforehand is taken off. Nowhere has no map that could show it more or less sharply.
+
+    Args:
+        hill: the readings.
+        pose: the best one.
+        beforehand: how much less a place is believed than nowhere before any reading, logarithm.
+    """
+    said = hill.logs(pose[None])[0] - hill.elsewhere
+    error = math.sqrt(float((said * said).sum()))
+    return (float(said.sum()) - beforehand) / error if error > 0.0 else 0.0
 
 
 def share_on_walls(likelihood: Likelihood, readings: Readings, pose: NDArray[np.float64], on_wall_m: float) -> float:

@@ -35,6 +35,9 @@ class SecondLookSettings:
     contrast_beside_min: Annotated[float, Within(0.0, 100.0)] = 1.28
     """The same for places that see the same walls, a step to the side or a few degrees turned: along a corridor, or on
     coarse cells, belief alone chose between them."""
+    contrast_nowhere_min: Annotated[float, Within(0.0, 100.0)] = 1.28
+    """The same for being nowhere on the map, less what each of its many places lacks of belief beforehand: a small room
+    that is not on it resembles some corner of it, and belief alone was sure of that."""
     on_walls_min: Annotated[float, Within(0.0, 1.0, "of 1")] = 0.9
     """Where fewer of the hits end on walls, the robot may look at ground that nobody has mapped, which resembles some
     wall of any building; then ``contrast_off_walls_min`` counts."""

@@ -21,7 +21,13 @@ from robotd.localization.judge.climbing import Hill
 from robotd.localization.judge.ends import ends_at
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
-from robotd.localization.judge.second_look import SecondLook, _contrasts, second_look, share_on_walls
+from robotd.localization.judge.second_look import (
+    SecondLook,
+    _contrast_with_nowhere,
+    _contrasts,
+    second_look,
+    share_on_walls,
+)
 from robotd.localization.judge.second_look_settings import SecondLookSettings
 from robotd.localization.judge.shortlist import near
 from robotd.sim.physics.walls import WallSegments, ray_cast
@@ -218,13 +224,16 @@ APART_M = 10.0
 class Said:
     """A likelihood that says what it is told to: the logarithms of poses 0, 1, 2... are rows."""
 
-    def __init__(self, *rows: list[float], sharpness: float = 0.0) -> None:
-        self._rows = np.array(rows)
+    def __init__(self, *rows: list[float], sharpness: float = 0.0, elsewhere: float = 0.0) -> None:
+        self._rows, self._elsewhere = np.array(rows), elsewhere
         self.model = ErrorModel(map_sharpness_sigma=sharpness)
 
     def logs(self, sight: Any, poses: NDArray[np.float64]) -> NDArray[np.float64]:
         logs: NDArray[np.float64] = self._rows[(poses[:, 0] / APART_M).astype(int)]
         return logs
+
+    def elsewhere_logs(self, sight: Any) -> NDArray[np.float64]:
+        return np.full(self._rows.shape[1], self._elsewhere)
 
 
 @dataclass
@@ -232,6 +241,11 @@ class OfHits:
     """The sight of some hits, and then of nothing but misses."""
 
     is_hit: NDArray[np.bool_]
+
+
+def contrast_with_nowhere(said: Said, beforehand: float) -> float:
+    hill = Hill(said, OfHits(np.ones(16, np.bool_)), np.ones(16))  # type: ignore[arg-type]  # stand-ins
+    return _contrast_with_nowhere(hill, np.zeros(3), beforehand)
 
 
 def contrast_of(*rows: list[float], sharpness: float = 0.0, misses: int = 0) -> float:
@@ -282,6 +296,27 @@ def test_what_lies_beside_must_stand_out_too_but_no_luck_of_the_map_is_held_agai
     elsewhere, beside = _contrasts(hill, poses)
     assert elsewhere == math.inf
     assert beside == pytest.approx(10.0)
+
+
+def test_nowhere_is_a_rival_and_the_stronger_the_more_places_the_map_has() -> None:
+    said = Said([1.0] * 16, sharpness=0.1)
+    assert contrast_with_nowhere(said, 0.0) == pytest.approx(4.0)
+    assert contrast_with_nowhere(said, 12.0) == pytest.approx(1.0)
+    assert contrast_with_nowhere(Said([1.0] * 16, elsewhere=1.0), 12.0) == 0.0
+
+
+def test_a_dozen_readings_are_believed_but_do_not_stand_out_from_nowhere() -> None:
+    readings = scan(FURNISHED.boxes, HERE, np.random.default_rng(1), 0.015, 0.02)
+    likelihood, starts = mapped(FURNISHED), everywhere(mapped(FURNISHED), HERE)
+
+    def state_of(count: int, settings: SecondLookSettings) -> PoseState:
+        ranks = np.full(len(starts), 100)
+        return second_look(likelihood, Readings.of(readings[:count]), starts, ranks, settings).state
+
+    on_belief_alone = replace(SecondLookSettings(), contrast_nowhere_min=0.0)
+    assert state_of(12, on_belief_alone) is PoseState.LOCALIZED
+    assert state_of(12, SecondLookSettings()) is PoseState.AMBIGUOUS
+    assert state_of(60, SecondLookSettings()) is PoseState.LOCALIZED
 
 
 def test_one_of_two_rooms_that_exist_twice_is_seldom_taken_for_sure() -> None:
