@@ -22,6 +22,7 @@ from robotd.grid.wall_field import WallField
 from robotd.localization.fit.agreement import Agreement, agreement
 from robotd.localization.fit.refinement import PoseBox
 from robotd.localization.fit.refinement_settings import RefinementSettings
+from robotd.localization.fit.ridge import ridge_of
 from robotd.localization.fit.tracking import NotHere, Tracked, TrackingSettings, track
 from robotd.localization.localizer import Localizer
 from robotd.localization.outcome import Outcome
@@ -91,6 +92,8 @@ class PlacingSettings:
     box_sigmas: float = 2.5
     near_sigmas: float = 1.0
     box_m: float = 0.05
+    ridge_rad: float = 0.05
+    """How far the heading of what was found is doubted when others beside it are asked."""
     far_gain: float = 0.05
     """What a place must be worth more than one nearer to odometry's, times how much less odometry believes in it."""
     sure_share: float = 0.6
@@ -182,7 +185,23 @@ def place(ground: Ground, readings: Readings, prior: Believed, settings: Placing
 def near_prior(
     ground: Ground, readings: Readings, prior: Believed, settings: PlacingSettings
 ) -> tuple[Tracked, Agreement] | None:
-    """Return the best pose about where a sweep is believed to have been taken; None with too few readings."""
+    """Return where a sweep was taken, about where that is believed, and how well walls hold it there.
+
+    Along a wall all places are as good; the agreement is that of the best of them. None with too few readings.
+    """
+    best = _best_near(ground, readings, prior, settings)
+    if best is None:
+        return None
+    found, agreed = best
+    about = Pose2(prior.pose.x_m, prior.pose.y_m, found.pose.heading_rad)
+    box = PoseBox.around(about, _half_m(prior, settings.box_sigmas, settings), settings.ridge_rad)
+    pose, scatter = ridge_of(ground.walls, ground.ternary.vacant, readings, box, settings.refinement)
+    return replace(found, pose=pose, covariance=found.covariance + scatter), agreed
+
+
+def _best_near(
+    ground: Ground, readings: Readings, prior: Believed, settings: PlacingSettings
+) -> tuple[Tracked, Agreement] | None:
     far = _within(ground, readings, prior, settings.box_sigmas, settings)
     if far is None or far[1].explained_share >= settings.sure_share:
         return far
@@ -196,11 +215,15 @@ def near_prior(
     return far if gained >= settings.far_gain * less_believed else near
 
 
+def _half_m(prior: Believed, sigmas: float, settings: PlacingSettings) -> float:
+    return sigmas * prior.deviation_m + settings.box_m
+
+
 def _within(
     ground: Ground, readings: Readings, prior: Believed, sigmas: float, settings: PlacingSettings
 ) -> tuple[Tracked, Agreement] | None:
-    half_m = sigmas * prior.deviation_m + settings.box_m
-    return _in_box(ground, readings, PoseBox.around(prior.pose, half_m, sigmas * prior.deviation_rad), settings)
+    box = PoseBox.around(prior.pose, _half_m(prior, sigmas, settings), sigmas * prior.deviation_rad)
+    return _in_box(ground, readings, box, settings)
 
 
 def _in_box(

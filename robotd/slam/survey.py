@@ -164,8 +164,9 @@ def _placed(survey: Survey, readings: Readings, travel: Travel) -> tuple[Survey,
     kind = EdgeKind.STEP if placed.outcome.is_found else EdgeKind.ODOMETRY
     found = placed.believed.no_surer(settings.floor_m, settings.floor_rad)
     edge = edge_to(graph, last, len(graph.stops), found, kind)
-    # Only from what the map fully explains: a place that odometry itself decided would teach it its own error.
-    learns = placed.outcome is Outcome.PLACED
+    # Only from what the map fully explains, and is as sure of: a place that odometry itself decided, as along a wall,
+    # would teach it that it does not err.
+    learns = placed.outcome is Outcome.PLACED and placed.believed.deviation_m <= prior.deviation_m / math.sqrt(2.0)
     after = replace(
         survey,
         graph=graph.with_stop(stop, placed.believed.pose, edge),

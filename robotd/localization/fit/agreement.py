@@ -52,29 +52,41 @@ class Agreement:
 
 
 def agreement(walls: WallField, vacant: NDArray[np.bool_], readings: Readings, pose: Pose2) -> Agreement:
-    """Return what a map says of a sweep at a pose. O(m), and the way of its beams.
+    """Return what a map says of a sweep at a pose; see :func:`agreements`."""
+    at = np.array([[pose.x_m, pose.y_m, pose.heading_rad]])
+    explained, contradicted = agreements(walls, vacant, readings, at)
+    return Agreement(explained[0], contradicted[0])
+
+
+def agreements(
+    walls: WallField, vacant: NDArray[np.bool_], readings: Readings, poses: NDArray[np.float64]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return what a map says of a sweep at poses: which readings it explains, and which it contradicts.
 
     Args:
         walls: of the map; walls alone block.
         vacant: ``bool[rows, cols]``: the cells that were seen, and seen vacant.
-        readings: hits and misses, robot frame.
-        pose: of the robot, map frame.
+        readings: ``m`` hits and misses, robot frame.
+        poses: ``float64[n, 3]``: x, y [m] and heading [rad] of the robot, map frame.
+
+    Returns:
+        Both ``bool[n, m]``, as in :class:`Agreement`. O(n m), and the way of the beams.
     """
     spec = walls.spec
-    at = np.array([[pose.x_m, pose.y_m, pose.heading_rad]])
-    ways = ranges_along(walls, Heads.of(readings, spec.resolution_m).beams, at, _BLOCKED_BY)
+    ways = ranges_along(walls, Heads.of(readings, spec.resolution_m).beams, poses, _BLOCKED_BY)
     # Only by a wall: where the map ends, or nobody has looked, nothing says that the beam could not go on.
-    blocked = (ways.ranges_m[0] < readings.range_m - _FAR_M) & ways.ends[0]
-    cells = spec.flat_at(readings.heads_at(pose))
+    blocked = (ways.ranges_m < readings.range_m - _FAR_M) & ways.ends
+    heads_m = np.stack([readings.heads_at(Pose2(*pose)) for pose in poses.tolist()])
+    cells = spec.flat_at(heads_m.reshape(-1, 2)).reshape(blocked.shape)
     on_map = cells >= 0
-    distance_m = np.full(len(readings), np.inf)
+    distance_m = np.full(blocked.shape, np.inf)
     codes = walls.codes.reshape(-1)[cells[on_map]].astype(np.intp)
     distance_m[on_map] = np.abs(DISTANCES[Walls.CENTRES][codes + 128]) * spec.resolution_m
     # Off the map a head lies in no vacant cell, so it can neither be explained there nor contradicted.
-    in_vacant = np.zeros(len(readings), np.bool_)
+    in_vacant = np.zeros(blocked.shape, np.bool_)
     in_vacant[on_map] = vacant.reshape(-1)[cells[on_map]]
     is_miss = readings.is_miss
     explained = ~blocked & np.where(is_miss, in_vacant, distance_m <= _NEAR_M)
     # Between near and far lies nothing: a head 20 cm from a wall may be of that wall or of something before it.
     contradicted = blocked | ~is_miss & in_vacant & (distance_m > _FAR_M)
-    return Agreement(explained, contradicted)
+    return explained, contradicted

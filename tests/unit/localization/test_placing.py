@@ -64,6 +64,26 @@ def test_a_sweep_is_placed_where_it_was_taken_and_surer_than_odometry() -> None:
     assert placed.agreement.consent > 0.9
 
 
+@pytest.mark.parametrize("off_m", [-0.1, 0.0, 0.1])
+def test_along_the_wall_of_a_hall_odometry_has_the_say_and_nobody_is_sure(off_m: float) -> None:
+    """A wall that goes on where nobody has looked drew each sweep back to where the map ended, by 24 cm, sure to 4."""
+    spec, random = GridSpec(0.05, -1.0, -1.0, (280, 640)), np.random.default_rng(0)
+    solid = np.ones(spec.shape, np.bool_)
+    solid[20:-20, 20:-20] = False
+    hall = WallField.of(spec, solid, solid)
+    grid = OccupancyGrid(spec, settings=GridSettings(raise_alpha=0.5, lower_alpha=0.9))
+    for x_m in (9.0, 12.0):
+        grid.lay(sweep_at(hall, Pose2(x_m, 8.0, 1.0), random), Pose2(x_m, 8.0, 1.0))
+    here = Pose2(15.4, 8.0, 0.4)
+    prior = Believed(Pose2(15.4 + off_m, 7.9, 0.42), np.diag([0.25**2, 0.25**2, 0.15**2]))
+    placed = place(Ground(grid, LocalizationSettings()), sweep_at(hall, here, random), prior, USUAL)
+    assert placed.outcome is Outcome.PLACED
+    assert placed.believed.pose.x_m == pytest.approx(prior.pose.x_m, abs=0.05)
+    assert placed.believed.pose.y_m == pytest.approx(here.y_m, abs=0.05)
+    assert placed.believed.deviation_m > 0.15
+    assert math.sqrt(placed.believed.covariance[1, 1]) < 0.1
+
+
 def test_where_odometry_is_far_off_it_is_found_by_looking_wider() -> None:
     prior = Believed(HERE @ Pose2(1.1, 0.9, 0.5), COVARIANCE)
     placed = place(ground_of(HERE, Pose2(3.0, 2.0, 0.0)), seen_from(HERE), prior, USUAL)
