@@ -306,17 +306,12 @@ def test_nowhere_is_a_rival_and_the_stronger_the_more_places_the_map_has() -> No
 
 
 def test_a_dozen_readings_are_believed_but_do_not_stand_out_from_nowhere() -> None:
-    readings = scan(FURNISHED.boxes, HERE, np.random.default_rng(1), 0.015, 0.02)
-    likelihood, starts = mapped(FURNISHED), everywhere(mapped(FURNISHED), HERE)
-
-    def state_of(count: int, settings: SecondLookSettings) -> PoseState:
-        ranks = np.full(len(starts), 100)
-        return second_look(likelihood, Readings.of(readings[:count]), starts, ranks, settings).state
-
-    on_belief_alone = replace(SecondLookSettings(), contrast_nowhere_min=0.0)
-    assert state_of(12, on_belief_alone) is PoseState.LOCALIZED
-    assert state_of(12, SecondLookSettings()) is PoseState.AMBIGUOUS
-    assert state_of(60, SecondLookSettings()) is PoseState.LOCALIZED
+    readings = Readings.of(scan(FURNISHED.boxes, HERE, np.random.default_rng(1), 0.015, 0.02))
+    starts, usual = everywhere(mapped(FURNISHED), HERE), SecondLookSettings()
+    ranks, on_belief_alone = np.full(len(starts), 100), replace(usual, contrast_nowhere_min=0.0)
+    for count, settings, is_sure in ((12, on_belief_alone, True), (12, usual, False), (60, usual, True)):
+        state = second_look(mapped(FURNISHED), readings[:count], starts, ranks, settings).state
+        assert state is (PoseState.LOCALIZED if is_sure else PoseState.AMBIGUOUS)
 
 
 def test_one_of_two_rooms_that_exist_twice_is_seldom_taken_for_sure() -> None:
