@@ -154,7 +154,8 @@ async def _go(context: MissionContext, end_m: Point, looked: tuple[RangeReading,
     # The look before has just shown how fast the head is.
     reading_s = (looked[-1].time_ns - looked[0].time_ns) / NS_PER_S / max(1, len(looked) - 1)
     bearings_rad = bearings_on_the_way(reach_m(driving), half_width_m, speed_mps=driving.speed_mps, reading_s=reading_s)
-    met_m = await drive_watching(context, tie.map_from_odom.inverse().transform(*end_m), bearings_rad)
+    seen_rad = await context.sweeper.within_reach(bearings_rad)
+    met_m = await drive_watching(context, tie.map_from_odom.inverse().transform(*end_m), seen_rad)
     return () if met_m is None else (tie.map_from_odom.transform(*met_m),)
 
 

@@ -178,6 +178,11 @@ class Sweeper:
         _check_answered(readings, len(readings), self.settings.readings_min_share)
         return tuple(readings)
 
+    async def within_reach(self, bearings_rad: Sequence[float]) -> tuple[float, ...]:
+        """Return those of some bearings that the head pans to by itself."""
+        limits = await self.robot.pantilt.limits()
+        return tuple(rad for rad in bearings_rad if limits.pan_min_rad <= rad <= limits.pan_max_rad)
+
     async def read_on_the_way(self, bearing_rad: float) -> RangeReading:
         """Take one reading while the robot drives, the light being on, in the frame of where the robot is then.
 

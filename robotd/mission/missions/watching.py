@@ -39,13 +39,16 @@ async def drive_watching(context: MissionContext, end_m: Point, bearings_rad: Se
     Args:
         context: the mission's.
         end_m: where to go, ``odom`` frame, as what is returned.
-        bearings_rad: where to look, over and over.
+        bearings_rad: where to look, over and over; nowhere, where the head does not pan ahead.
 
     Raises:
         MissionError: the rangefinder does not answer; the robot stands.
         DeviceError, LinkTimeout, TransportError: a device failed, the head or the laser among them.
         Interrupted: the mission was held meanwhile.
     """
+    if not bearings_rad:
+        await drive_leg(context.robot.drive, *end_m, context.settings.driving, context.hold)
+        return None
     watch = _Watch(context, end_m)
     looking = asyncio.create_task(watch.look(bearings_rad), name="look ahead")
     try:
