@@ -133,7 +133,6 @@ async def _use_a_map_of(client: AsyncClient, cells: int) -> None:
 
 async def _while_mapping(it: House, browser: Any, seconds: float) -> AsyncIterator[Figure]:
     await armed(it.client)
-    alone = await idle(it, seconds / 2)
     page, _ = await _cold(browser, it)
     await page.evaluate(_DRAWN)
     scanning = asyncio.create_task(_scan_on(it.client))
@@ -142,12 +141,13 @@ async def _while_mapping(it: House, browser: Any, seconds: float) -> AsyncIterat
             waits = await page.evaluate(f"{_TO_DRAWN}('{event}')")
             yield Figure(f"{name}: come to drawn, p95", f"{wished} from the robot", f"{_p95(waits):.0f} ms")
         await page.context.close()
+        alone = await idle(it, seconds)
         seen, cost = await with_crowd(it, _MANY, seconds)
         yield Figure(
             f"{_MANY} browsers while it sweeps: gateway; daemon; each",
             "<= 5 % of a core, 70 MiB; +0.3 points; 15 kB/s",
             f"{cost.gateway_share:.1%}, {cost.gateway_mib:.0f} MiB;"
-            f" {100 * (cost.daemon_share - alone.daemon_share):+.1f} points beside an idle one;"
+            f" {100 * (cost.daemon_share - alone.daemon_share):+.1f} points beside one that sweeps for nobody;"
             f" {seen.bytes_per_s / 1000:.1f} kB/s",
         )
         yield Figure("odometry: from the robot to a browser, p95", "50 ms, drawn", f"{seen.p95_ms:.0f} ms")
