@@ -123,7 +123,7 @@ docs: .venv/.docs  ## The pages as a site, in build/docs: every warning an error
 deb: .venv/.dev  ## A Debian package in build/deb, with lintian's word on it; make deb ROOT=directory (of debootstrap; as root) installs, runs, upgrades, purges it there
 	@$(BIN)/python -m pip wheel -q --disable-pip-version-check --no-deps -w build/deb .
 	@$(BIN)/python systemd/debian/build.py build/deb/robotd-*.whl build/deb
-	@if command -v lintian >/dev/null; then lintian --tag-display-limit 0 build/deb/robotd_*-1.deb; else echo "lintian is not installed: not asked"; fi
+	@if command -v lintian >/dev/null; then lintian --tag-display-limit 0 build/deb/robotd_*-1.deb build/deb/robotd-gateway_*-1.deb; else echo "lintian is not installed: not asked"; fi
 	@if test -n "$(ROOT)"; then $(BIN)/python systemd/debian/build.py --revision 2 build/deb/robotd-*.whl build/deb && \
 		$(BIN)/python systemd/debian/try.py $(ROOT) build/deb/robotd_*-1.deb build/deb/robotd_*-2.deb; fi
 

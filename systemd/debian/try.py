@@ -1,5 +1,6 @@
-"""Install, run, upgrade and purge a package in a root directory: ``try.py ROOT PACKAGE NEWER``, as root.
+"""Install, run, upgrade and purge packages in a root directory: ``try.py ROOT PACKAGE NEWER``, as root.
 
+Those of the gateway are tried with them, which lie beside them.
 ROOT is a minimal Debian of the package's release, as debootstrap makes one; nothing outside of it is touched.
 """
 
@@ -29,9 +30,27 @@ def inside(root: Path, *words: str, code: int = 0) -> str:
 
 
 def installed(root: Path, package: Path) -> None:
-    """Install a package over what is there."""
-    (root / "tmp" / package.name).write_bytes(package.read_bytes())
-    inside(root, "dpkg", "--force-confold", "-i", f"/tmp/{package.name}")
+    """Install a package, and its gateway's, over what is there."""
+    both = (package, package.with_name(package.name.replace("robotd_", "robotd-gateway_")))
+    for one in both:
+        (root / "tmp" / one.name).write_bytes(one.read_bytes())
+    inside(root, "dpkg", "--force-confold", "-i", *(f"/tmp/{one.name}" for one in both))
+
+
+def gateway_tried(root: Path) -> None:
+    """Try the gateway: it says that nobody may come in yet, and nothing enabled it."""
+    assert "right" in inside(root, "robotd-gateway", "--check")
+    assert "robotctl gateway token new" in inside(root, "robotd-gateway", code=78)
+    assert "robotd-gateway" in inside(root, "getent", "passwd", "robotd-gateway")
+    assert not list((root / "etc/systemd").rglob("*.wants/robotd-gateway.service")), "it opens a port: never by itself"
+
+
+def gateway_gone(root: Path) -> None:
+    """Purge it: the daemon stays, who might come in is forgotten."""
+    inside(root, "dpkg", "--purge", "robotd-gateway")
+    left = [path for name in ("usr/bin/robotd-gateway", "var/lib/robotd-gateway") if (path := root / name).exists()]
+    assert not left, f"left behind: {left}"
+    inside(root, "robotctl", "-V")
 
 
 def main() -> None:
@@ -43,12 +62,14 @@ def main() -> None:
     assert "good" in inside(root, "robotctl", "config", "check")
     assert "robotd" in inside(root, "getent", "passwd", "robotd")
     assert any((root / "usr/lib/robotd").rglob("robotd/cli/__pycache__/main.*.pyc")), "each start would compile again"
+    gateway_tried(root)
     missing = [name for name in SHARED if not (root / name).exists()]
     assert not missing, f"not there: {missing}"
     config = root / CONFIG
     config.write_text(MINE + config.read_text())
     installed(root, newer)
     assert config.read_text().startswith(MINE), "an upgrade must keep the owner's configuration"
+    gateway_gone(root)
     kept = root / "var/lib/robotd/maps/office"
     kept.mkdir(parents=True, exist_ok=True)
     inside(root, "dpkg", "--purge", "robotd")
