@@ -56,6 +56,7 @@ async def test_a_gateway_that_is_killed_and_one_that_takes_its_place(tmp_path: P
             await wait_for(page, ".banner.warning", "this page has lost the gateway")
             await page.keyboard.press("Escape")
             await wait_for(page, ".banner.danger", "STOP NOT CONFIRMED")
+            await page.wait_for_timeout(3000)  # for so long it is said again, and a gateway that comes meanwhile obeys
         assert control.calls == []
         async with program_of(*GATEWAY, str(tmp_path / "robotd-gateway.toml")):
             await wait_for(page, ".age", "live")
