@@ -69,6 +69,8 @@ OTHERS = {
     "map import --maps": ["MAPYAML"],
     "map export --config": ["kitchen", "NEW"],
     "map export --maps": ["kitchen", "NEW"],
+    "map changes --config": ["kitchen"],
+    "map changes --maps": ["kitchen"],
     "map stops --config": ["kitchen"],
     "map stops --maps": ["kitchen"],
     "export tum file": ["NEW"],
