@@ -83,8 +83,8 @@ def ray_cast(
     to_start = walls.starts_m - np.array(origin_m)
     along = walls.along_m
     cross = cos * along[:, 1] - sin * along[:, 0]
-    # Parallel walls divide by zero here, and are met edge-on below.
-    with np.errstate(divide="ignore", invalid="ignore"):
+    # Parallel walls divide by zero here, or by next to nothing, and are met edge-on below.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         distance = (to_start[:, 0] * along[:, 1] - to_start[:, 1] * along[:, 0]) / cross
         share = (to_start[:, 0] * sin - to_start[:, 1] * cos) / cross
     met = (distance >= 0.0) & (share >= -_ON_THE_WALL) & (share <= 1.0 + _ON_THE_WALL)
