@@ -3,7 +3,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from robotd.sim.physics.walls import NO_WALLS, Plate, Point, WallSegments, clearance_m, nearest_points, ray_cast
