@@ -31,8 +31,9 @@ def estimator_at_stop(
     """
     settings = the_map.settings
     is_open = tuple(headings_rad) == settings.headings_all_round() and not settings.conservative
-    kind = ByWalls if is_open and settings.heading is HeadingSearch.WALLS else Localizer
-    estimator: Estimator = kind.at_stop(
+    everywhere = Localizer.at_stop(
         the_map, map_id, headings_rad, within, judgement=judgement, layers=layers, threads=threads
     )
+    asks_walls = is_open and settings.heading is HeadingSearch.WALLS
+    estimator: Estimator = ByWalls(everywhere, within, threads) if asks_walls else everywhere
     return SmallestErrorTold(estimator, the_map, threads) if tells_smallest_error else estimator

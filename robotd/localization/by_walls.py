@@ -13,9 +13,8 @@ from weakref import WeakKeyDictionary
 from robotd.contract.area import Area
 from robotd.contract.estimate import PoseEstimate, PoseState
 from robotd.contract.walls_verdict import WallsVerdict
-from robotd.core.reading import RangeReading, Slant, Tilt
+from robotd.core.reading import RangeReading, Slant
 from robotd.localization.count.heat import Heat
-from robotd.localization.judge.judgement import Judgement
 from robotd.localization.localizer import Localizer
 from robotd.localization.orientation.separated_orientation import (
     Axis,
@@ -37,24 +36,6 @@ class ByWalls:
     within: Area | None
     threads: int
     readings: list[RangeReading] = field(default_factory=list)
-
-    @classmethod
-    def at_stop(
-        cls,
-        the_map: ReadyMap,
-        map_id: str,
-        headings_rad: Sequence[float],
-        within: Area | None = None,
-        *,
-        judgement: Judgement | None = None,
-        layers: Sequence[tuple[Tilt, ReadyMap]] = (),
-        threads: int = 1,
-    ) -> "ByWalls":
-        """Begin with no readings; arguments as of :meth:`.Localizer.at_stop`, ``headings_rad`` all round."""
-        everywhere = Localizer.at_stop(
-            the_map, map_id, headings_rad, within, judgement=judgement, layers=layers, threads=threads
-        )
-        return cls(everywhere, within, threads)
 
     def add(self, *readings: RangeReading) -> None:
         """Take measured readings, hits or misses.

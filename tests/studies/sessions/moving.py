@@ -1,4 +1,4 @@
-"""Furniture that somebody moves between two sessions: a share of what stands in a room, each piece a step aside."""
+"""Furniture that somebody moves between two sessions: a share of what stands in a room, each piece by a step."""
 
 import math
 import random

@@ -133,9 +133,9 @@ def test_a_beam_meets_a_tables_top_at_its_edge_from_below_or_from_above(eye: flo
 
 def _grazes(eye: float, climb: float, aim: float) -> bool:
     around = {
-        math.isinf(slow_table(0.70, 0.74, eye + up, climb, aim + aside))
+        math.isinf(slow_table(0.70, 0.74, eye + up, climb, aim + turned_rad))
         for up in (-0.002, 0.002)
-        for aside in (-0.002, 0.002)
+        for turned_rad in (-0.002, 0.002)
     }
     return len(around) == 2
 
