@@ -14,6 +14,7 @@ from robotd.core.reading import RangeReading, ReadingStatus, Tilt
 from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.pose_set import PoseSet
 from robotd.grid.readings import Readings
+from robotd.grid.tables import NO_INFORMATION
 from robotd.localization.count.explained import explained_at
 from robotd.localization.layer_seen import LayerSeen
 from robotd.localization.ready_map import ReadyMap
@@ -31,7 +32,7 @@ readings = st.builds(
     st.floats(0.05, 1.5),
 )
 # Vacant, never seen, an obstacle.
-evidence = hnp.arrays(np.uint8, SPEC.shape, elements=st.sampled_from([0, 0, 0, 127, 255]))
+evidence = hnp.arrays(np.uint8, SPEC.shape, elements=st.sampled_from([0, 0, 0, NO_INFORMATION, 255]))
 
 
 def ready(cells: NDArray[np.uint8]) -> ReadyMap:
@@ -58,7 +59,7 @@ def agreeing_by_definition(cells: NDArray[np.uint8], taken: Sequence[RangeReadin
     best = max((rank for rank in ranks if rank is not None), default=0)
     enough = best - math.ceil(SETTINGS.rival_share * len(taken))
     return [
-        bool(cells[row, col] == 127 if rank is None else rank >= enough)
+        bool(cells[row, col] == NO_INFORMATION if rank is None else rank >= enough)
         for (_, row, col), rank in zip(found.poses.tolist(), ranks, strict=True)
     ]
 
@@ -81,7 +82,7 @@ def test_it_leaves_the_poses_that_the_definition_leaves(
 
 def test_what_was_never_seen_at_its_tilt_has_no_say() -> None:
     found = found_of({(0, 3, 4), (2, 7, 7)})
-    layer = LayerSeen(TILT, ready(np.full(SPEC.shape, 127, np.uint8)))
+    layer = LayerSeen(TILT, ready(np.full(SPEC.shape, NO_INFORMATION, np.uint8)))
     layer.add(Readings.of([RangeReading(0, 0.1, ReadingStatus.OK, 0.7)] * 20))
     left, best = layer.agreeing(found, HEADINGS_RAD)
     assert (len(left), best) == (len(found), 0)
