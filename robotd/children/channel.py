@@ -8,6 +8,8 @@ from typing import Protocol
 from robotd.core.errors import ChildError
 
 Part = bytes | bytearray | memoryview
+Message = bytes | memoryview
+"""A long one is a view of the memory into which it arrived: a map is not copied on the loop to be received."""
 ROOM_BYTES = 2**27
 """What may wait to leave, or to be taken: twice the largest map."""
 
@@ -29,7 +31,7 @@ class Channel(Protocol):
         Parts must not be changed until they have left, which may be later.
         """
 
-    async def receive(self) -> bytes:
+    async def receive(self) -> Message:
         """Wait for the next message.
 
         Raises:
@@ -54,11 +56,11 @@ class Inbox:
     def __init__(self) -> None:
         self.bytes = 0
         """Of all that waits."""
-        self._messages: deque[bytes] = deque()
+        self._messages: deque[Message] = deque()
         self._lost: ChildError | None = None
         self._news = asyncio.Event()
 
-    def put(self, message: bytes) -> None:
+    def put(self, message: Message) -> None:
         """Let a message wait."""
         self._messages.append(message)
         self.bytes += len(message)
@@ -70,7 +72,7 @@ class Inbox:
         self._lost = self._lost or reason
         self._news.set()
 
-    async def get(self) -> bytes:
+    async def get(self) -> Message:
         """Wait for a message; ChildError if none is to come."""
         while not self._messages:
             # Asked only when nothing waits: what was sent before the end is received first.

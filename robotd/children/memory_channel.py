@@ -2,7 +2,7 @@
 
 import asyncio
 
-from robotd.children.channel import ROOM_BYTES, HungUp, Inbox, Part
+from robotd.children.channel import ROOM_BYTES, HungUp, Inbox, Message, Part
 
 
 class MemoryChannel:
@@ -22,7 +22,7 @@ class MemoryChannel:
         self._peer._inbox.put(message)  # noqa: SLF001  # as above
         return True
 
-    async def receive(self) -> bytes:
+    async def receive(self) -> Message:
         """Wait for the next message; HungUp if an end is gone."""
         message = await self._inbox.get()
         if self._peer is not None:

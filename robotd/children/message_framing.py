@@ -1,6 +1,5 @@
 """Messages in a stream of bytes, and back: four bytes of length, least first, then the message."""
 
-from collections import deque
 from collections.abc import Iterator
 
 from robotd.core.errors import RemoteProtocolError
@@ -21,46 +20,46 @@ class Unframer:
     def __init__(self, longest: int = LONGEST) -> None:
         """Refuse messages of more than ``longest`` bytes, before any room is made for them."""
         self._longest = longest
-        # Pieces, put together when a message is whole: a map's bytes are copied once, not with every piece.
-        self._pieces: deque[memoryview] = deque()
-        self._held = 0
-        self._length: int | None = None
-        """Of the message that is on its way, once its first bytes are here."""
+        self._rest = memoryview(b"")
+        """Came after the last whole message, and is less than one."""
+        self._long: memoryview | None = None
+        """The message that is on its way, if it is longer than what was there when it began."""
+        self._filled = 0
+        """Of that."""
 
-    def feed(self, data: bytes) -> Iterator[bytes]:
+    def feed(self, data: bytes) -> Iterator[bytes | memoryview]:
         """Yield the messages that are whole now.
+
+        One that came in pieces is a view of memory of its own, into which each piece went as it came: to join a map of
+        megabytes once it is whole would keep the loop for all of it.
 
         Raises:
             RemoteProtocolError: a message says that it is longer than messages may be; nothing after it can be read.
         """
-        self._pieces.append(memoryview(data))
-        self._held += len(data)
-        while (message := self._next()) is not None:
-            yield message
-
-    def _next(self) -> bytes | None:
-        if self._length is None:
-            if self._held < _LENGTH:
-                return None
-            self._length = int.from_bytes(self._taken(_LENGTH), "little")
+        came = memoryview(data)
+        if self._long is not None:
+            came = self._fill(self._long, came)
+            if self._filled < len(self._long):
+                return
+            whole, self._long = self._long.toreadonly(), None
+            yield whole
+        self._rest = memoryview(bytes(self._rest) + came) if self._rest else came
+        while len(self._rest) >= _LENGTH:
+            length = int.from_bytes(self._rest[:_LENGTH], "little")
             # At once: what says that it has four gigabytes must not be waited for, or held.
-            if self._length > self._longest:
-                raise RemoteProtocolError(f"a message of {self._length} bytes, expected at most {self._longest}")
-        if self._held < self._length:
-            return None
-        message = self._taken(self._length)
-        self._length = None
-        return message
+            if length > self._longest:
+                raise RemoteProtocolError(f"a message of {length} bytes, expected at most {self._longest}")
+            self._rest = self._rest[_LENGTH:]
+            if len(self._rest) < length:
+                self._long, self._filled = memoryview(bytearray(length)), 0
+                self._rest = self._fill(self._long, self._rest)
+                return
+            yield bytes(self._rest[:length])
+            self._rest = self._rest[length:]
 
-    def _taken(self, count: int) -> bytes:
-        """Return the next ``count`` bytes, which are here."""
-        self._held -= count
-        taken: list[memoryview] = []
-        while count:
-            piece = self._pieces.popleft()
-            if piece.nbytes > count:
-                self._pieces.appendleft(piece[count:])
-                piece = piece[:count]
-            taken.append(piece)
-            count -= piece.nbytes
-        return b"".join(taken)
+    def _fill(self, message: memoryview, came: memoryview) -> memoryview:
+        """Add to a message what belongs to it; return what is left over."""
+        taken = min(len(message) - self._filled, len(came))
+        message[self._filled : self._filled + taken] = came[:taken]
+        self._filled += taken
+        return came[taken:]

@@ -91,7 +91,7 @@ async def _said(life: Channel, within_s: float, share: Callable[[], Share]) -> b
     while left_s > _LEAST_S:
         try:
             async with within(left_s, of=""):
-                return await life.receive()
+                return bytes(await life.receive())
         except TimeoutError:
             waited_s += left_s
             # Only what the child could have used counts: on a busy machine it may wait for a processor longer

@@ -128,8 +128,12 @@ def _spawn(program: Program) -> Process:
         # Safe path: what lies in the working directory must not be imported in place of what is installed.
         command = [sys.executable, "-P", *program.runs, str(os.getpid()), str(program.memory_bytes)]
         command += [program.sockets_in, ",".join(map(str, inherited)), *program.arguments]
-        # No pipes: what it says goes over its lanes, and its log to where ours goes.
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=(*inherited, *program.inherits))
+        # No pipes: what it says goes over its lanes, and its log to where ours goes. A session of its own: most
+        # kernels share processors among sessions first, and in one with a child that strangers keep busy the process
+        # that owns the lines would have its turn when that child's share is due (decision 70).
+        process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, pass_fds=(*inherited, *program.inherits), start_new_session=True
+        )
         try:
             running = Process(process, near_ends)
         except BaseException:

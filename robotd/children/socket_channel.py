@@ -3,7 +3,7 @@
 import asyncio
 import socket
 
-from robotd.children.channel import ROOM_BYTES, HungUp, Inbox, Outgoing, Part
+from robotd.children.channel import ROOM_BYTES, HungUp, Inbox, Message, Outgoing, Part
 from robotd.children.message_framing import LONGEST, Unframer, header
 from robotd.core.errors import ChildError, ProtocolError
 
@@ -49,7 +49,7 @@ class SocketChannel:
             self._write()
         return True
 
-    async def receive(self) -> bytes:
+    async def receive(self) -> Message:
         """Wait for the next message; ChildError if an end is gone, or the other one sent what is no message."""
         message = await self._inbox.get()
         self._read_on()

@@ -191,7 +191,7 @@ class MapChanged:
     """Their values ``uint8[n]``, or the whole grid ``uint8[rows, cols]``."""
     stops: int | None = None
     """How many stops the map is made of by now; None if that is not known."""
-    packed: bytes | None = None
+    packed: bytes | memoryview | None = None
     """The whole grid as :mod:`robotd.core.grid_bytes` packs it, where it was packed already; then ``values`` is empty.
     """
 

@@ -57,7 +57,7 @@ def pack_map(change: MapChanged) -> MapPayload:
 
 
 def _packed(change: MapChanged, values: NDArray[np.uint8]) -> bytes:
-    return packed_cells(values) if change.packed is None else change.packed
+    return packed_cells(values) if change.packed is None else bytes(change.packed)
 
 
 def unpack_map(payload: MapPayload) -> MapChanged:

@@ -37,7 +37,7 @@ def packed_cells(cells: NDArray[np.uint8]) -> bytes:
     return zlib.compress(cell_bytes(cells), _QUICK)
 
 
-def unpacked_cells(packed: bytes, spec: GridSpec) -> NDArray[np.uint8]:
+def unpacked_cells(packed: bytes | memoryview, spec: GridSpec) -> NDArray[np.uint8]:
     """Return ``uint8[rows, cols]``, read-only, from the packed bytes of a grid. Takes no more memory than that.
 
     Raises:

@@ -90,7 +90,7 @@ class Asked:
     async def _take_from(self, lane: Channel) -> NoReturn:
         latest, taken = -1, 0
         while True:
-            numbered = decode_request(await lane.receive(), LONGEST_REQUEST, FROM_FRONT)
+            numbered = decode_request(bytes(await lane.receive()), LONGEST_REQUEST, FROM_FRONT)
             if isinstance(numbered, BadRequest):
                 if numbered.means_stop:
                     # In doubt it is a stop (decision 17), also from a front that has lost its mind.

@@ -11,6 +11,7 @@ import msgpack
 import msgspec
 import numpy as np
 
+from robotd.children.channel import Message
 from robotd.contract.answers import Done
 from robotd.contract.envelope import Reply, decode_reply, encode_error, encode_result
 from robotd.contract.events import MapChanged
@@ -66,7 +67,7 @@ def settings_message(settings: ServerSettings) -> bytes:
     return msgspec.msgpack.encode(settings)
 
 
-def settings_of(message: bytes) -> ServerSettings:
+def settings_of(message: Message) -> ServerSettings:
     """Return the settings of the heart's first message; ChildError if it holds none."""
     try:
         return msgspec.msgpack.decode(message, type=ServerSettings)
@@ -95,7 +96,7 @@ def event(published: Published) -> Parts:
     return _EVENT, packed
 
 
-def said(message: bytes) -> Reply | tuple[int, MapChanged] | Published:
+def said(message: Message) -> Reply | tuple[int, MapChanged] | Published:
     """Return what the heart said: the answer to a request, a map that is one, or what happened.
 
     Raises:
@@ -106,11 +107,11 @@ def said(message: bytes) -> Reply | tuple[int, MapChanged] | Published:
     except (ValueError, KeyError, TypeError, RobotdError) as error:
         raise ChildError(f"the heart said what nobody understands: {error!r}") from error
     if found is None:
-        raise ChildError(f"the heart told of something that is not known: {message[:40]!r}")
+        raise ChildError(f"the heart told of something that is not known: {bytes(message[:40])!r}")
     return found
 
 
-def _said(message: bytes) -> Reply | tuple[int, MapChanged] | Published | None:
+def _said(message: Message) -> Reply | tuple[int, MapChanged] | Published | None:
     kind, rest = message[:1], memoryview(message)[1:]
     if kind == _ANSWER:
         return decode_reply(bytes(rest))

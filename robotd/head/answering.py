@@ -5,7 +5,7 @@ from robotd.head.job_table import perform
 from robotd.head.wire import pack_answer, pack_error, unpack_job
 
 
-def answer_to(desk: Desk, data: bytes) -> bytes:
+def answer_to(desk: Desk, data: bytes | memoryview) -> bytes:
     """Do what bytes ask for, and return the answer as bytes; never raises."""
     try:
         # One function for the process and for replays: what a test sees is what the daemon runs.

@@ -172,7 +172,7 @@ class FarHead:
         # Before anything new: a job may be about a map that only the one before held.
         for step in self._memory:
             step.check(await self._answered(lane, step.data))
-        self._back(printable_bytes(about))
+        self._back(printable_bytes(bytes(about)))
         while True:
             # One at a time, though the lane would take more: who answers out of turn can only be seen if one
             # answer is due.

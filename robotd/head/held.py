@@ -59,7 +59,7 @@ class Held:
         """What is told of it."""
         stops = None if self.stops is None else len(self.stops.stops)
         packed = packed_cells(self.grid.cells)
-        return HeldMap(self.grid.spec, self.digest, packed, stops, self.grid.settings, self.tilts)
+        return HeldMap(self.grid.spec, self.digest, memoryview(packed), stops, self.grid.settings, self.tilts)
 
     @property
     def tilts(self) -> tuple[Tilt, ...]:

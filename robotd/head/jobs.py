@@ -39,7 +39,7 @@ class HeldMap(msgspec.Struct, frozen=True):
 
     spec: GridSpec
     digest: str
-    packed: bytes
+    packed: memoryview
     """Its cells, as :mod:`robotd.core.grid_bytes` packs them."""
     stops: int | None
     """How many stops it was made of; None if that is not known."""
@@ -69,7 +69,7 @@ class TakeMap(Job[HeldMap], frozen=True):
     name, answer = "take map", HeldMap
     number: int
     spec: GridSpec
-    packed: bytes
+    packed: memoryview
     settings: GridSettings
     stops: bytes | None = None
     """``stops.bin``, packed, if there is one; it was checked before."""

@@ -48,7 +48,7 @@ def pack_job(job: Job[Any]) -> bytes:
     return msgspec.msgpack.encode((job.name, job))
 
 
-def unpack_job(data: bytes) -> Job[Any]:
+def unpack_job(data: bytes | memoryview) -> Job[Any]:
     """Return the job of these bytes.
 
     Raises:

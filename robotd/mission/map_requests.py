@@ -230,7 +230,9 @@ class MapRequests:
     async def use(self, noted: NotedMap, command: CommandEntry) -> None:
         """Take a map into use as ``command`` noted it."""
         number, grid = self._head.number(), noted.grid
-        held = await self._head.ask(TakeMap(number, grid.spec, packed_of(noted), grid.settings, stops_of(noted)))
+        held = await self._head.ask(
+            TakeMap(number, grid.spec, memoryview(packed_of(noted)), grid.settings, stops_of(noted))
+        )
         place = MapInUse(*(noted.map_id, noted.name, number, held), bumps_m=noted.bumps_m, errand=noted.exploring)
         self._use(command, place)
 

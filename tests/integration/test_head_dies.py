@@ -12,7 +12,7 @@ import pytest
 from robotd.app.compose import compose, head_settings
 from robotd.app.daemon import new_journal
 from robotd.app.replaying import replay_recording
-from robotd.children.channel import Channel, Part
+from robotd.children.channel import Channel, Message, Part
 from robotd.children.in_process import InProcess, Main
 from robotd.children.process import Running
 from robotd.config import Config
@@ -75,7 +75,7 @@ class _Between:
     before_job: Callable[[], Awaitable[None]]
     received: int = 0
 
-    async def receive(self) -> bytes:
+    async def receive(self) -> Message:
         message = await self.lane.receive()
         self.received += 1
         if self.received > 1:

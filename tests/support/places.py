@@ -55,7 +55,7 @@ def unpaced(compute: object) -> Compute:
 def held(spec: GridSpec | None = None, digest: str = "digest", stops: int | None = None) -> HeldMap:
     """Return what is told of a blank map that nobody holds."""
     spec = spec or GridSettings(rows=20, cols=20).spec_covering(((0.0, 0.0),), 0.2)
-    return HeldMap(spec, digest, packed_cells(OccupancyGrid(spec).cells), stops, GridSettings())
+    return HeldMap(spec, digest, memoryview(packed_cells(OccupancyGrid(spec).cells)), stops, GridSettings())
 
 
 def place(name: str = "m", begun: HeldMap | None = None) -> MapInUse:
@@ -66,7 +66,7 @@ def place(name: str = "m", begun: HeldMap | None = None) -> MapInUse:
 async def place_of(head: Head, grid: OccupancyGrid, name: str) -> MapInUse:
     """Return a map in use, held by a head."""
     number = head.number()
-    begun = await head.ask(TakeMap(number, grid.spec, packed_cells(grid.cells), grid.settings))
+    begun = await head.ask(TakeMap(number, grid.spec, memoryview(packed_cells(grid.cells)), grid.settings))
     return MapInUse(name, name, number, begun)
 
 

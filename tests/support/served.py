@@ -24,7 +24,7 @@ async def served(heart: Heart, settings: ServerSettings) -> AsyncIterator[None]:
     try:
         await asyncio.wait((ready, ended), return_when=asyncio.FIRST_COMPLETED)
         assert not ended.done(), ended.result()
-        assert ready.result().startswith(READY)
+        assert bytes(ready.result()).startswith(READY)
         yield
     finally:
         front.kill()

@@ -44,7 +44,7 @@ def _estimated() -> tuple[Narrow, bytes]:
     readings = workload.sweep_of(room, 9, pose).measured
     headings_rad = LocalizationSettings().headings_near(pose.heading_rad)
     done = partial(answer_to, Desk(HeadSettings()))
-    done(pack_job(TakeMap(1, grid.spec, packed_cells(grid.cells), GridSettings())))
+    done(pack_job(TakeMap(1, grid.spec, memoryview(packed_cells(grid.cells)), GridSettings())))
     done(pack_job(Prepare(2, MapRef(1), "m", headings_rad, None)))
     done(pack_job(Narrow(2, readings[:-_BATCH], 0, final=False)))
     job = Narrow(2, readings[-_BATCH:], 0, final=True)

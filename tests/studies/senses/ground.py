@@ -49,7 +49,7 @@ class Ground:
             off = Pose2(draw.gauss(0, _STOP_M), draw.gauss(0, _STOP_M), draw.gauss(0, _STOP_RAD))
             grid.insert(Sweep(0, IDENTITY, readings_at(world, stop @ off, bearings_rad, cutoff_m, draw)), stop)
         desk, map_ref = Desk(head_settings(config)), MapRef(0)
-        perform(desk, TakeMap(0, spec, packed_cells(grid.cells), config.grid))
+        perform(desk, TakeMap(0, spec, memoryview(packed_cells(grid.cells)), config.grid))
         return cls(world, grid, desk, map_ref, cutoff_m)
 
     def somewhere(self, draw: random.Random) -> Pose2:

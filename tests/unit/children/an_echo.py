@@ -30,7 +30,7 @@ async def main() -> None:
 
 async def echo(lane: Channel, birth: Birth) -> None:
     while True:
-        match await lane.receive():
+        match bytes(await lane.receive()):
             case b"exit":
                 os._exit(3)
             case b"hang":

@@ -230,7 +230,7 @@ async def test_its_last_words_are_heard_before_its_death_is_told() -> None:
 
     async def serve(lanes: Sequence[Channel]) -> None:
         while True:
-            heard.append(await lanes[0].receive())
+            heard.append(bytes(await lanes[0].receive()))
 
     def died(death: Death) -> None:
         assert heard == [b"stop"]

@@ -20,6 +20,18 @@ def test_messages_come_out_as_they_went_in_whatever_the_pieces(messages: list[by
     assert found == messages
 
 
+def test_a_message_that_comes_in_pieces_is_not_joined_when_it_is_whole() -> None:
+    unframer = Unframer()
+    stream = framed(bytes(range(256)) * 16) + framed(b"next")
+    assert not list(unframer.feed(stream[:100]))
+    assert not list(unframer.feed(stream[100:4000]))
+    long, after = unframer.feed(stream[4000:])
+    assert isinstance(long, memoryview)
+    assert long.readonly
+    assert long.obj is not stream
+    assert [long, after] == [bytes(range(256)) * 16, b"next"]
+
+
 def test_a_length_beyond_the_bound_is_refused_before_its_bytes_come() -> None:
     unframer = Unframer(longest=10)
     assert list(unframer.feed(framed(b"ten letter"))) == [b"ten letter"]

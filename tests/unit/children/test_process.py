@@ -73,7 +73,7 @@ class Echo:
     async def says(self, message: bytes) -> bytes:
         await self.child.is_ready.wait()
         self.lane.send(message)
-        return await self.lane.receive()
+        return bytes(await self.lane.receive())
 
 
 @contextlib.asynccontextmanager
@@ -127,6 +127,13 @@ async def test_it_has_its_lanes_and_no_other_descriptor_of_ours_and_no_memory_wi
             assert str(ours.fileno()).encode() not in numbers
             assert await echo.says(b"eat") == b"no memory"
             assert await echo.says(b"well") == b"well"
+
+
+async def test_it_shares_no_session_with_what_must_have_its_turn_before_it() -> None:
+    async with an_echo() as echo:
+        await echo.child.is_ready.wait()
+        pid = echo.processes[-1].pid
+        assert os.getsid(pid) == pid != os.getsid(0)
 
 
 async def test_signals_of_a_terminal_do_not_end_it() -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from robotd import __version__
-from robotd.children.channel import Channel, Part
+from robotd.children.channel import Channel, Message, Part
 from robotd.children.in_process import InProcess, Main
 from robotd.children.inside import live
 from robotd.children.process import Running
@@ -91,7 +91,7 @@ class Heads:
             self.done.append(name)
             answer = answer_to(desk, message[NUMBER:])
             if self.reply is not None and name in self.at.split(",") and life in self.of_lives:
-                await self.reply(lane, message[:NUMBER], answer)
+                await self.reply(lane, bytes(message[:NUMBER]), answer)
             else:
                 lane.send(message[:NUMBER], answer)
 
@@ -191,7 +191,7 @@ class Full:
         self.sent += 1
         return self.sent == 1 and self.lane.send(*parts)
 
-    async def receive(self) -> bytes:
+    async def receive(self) -> Message:
         return await self.lane.receive()
 
     async def room(self) -> None:

@@ -72,7 +72,7 @@ def a_life() -> list[Job[Any]]:
     return [
         *(begin, insert, make, ShowMap(MapRef(1, 1)), Plan(MapRef(1, 1), HERE, (0.5, 0.5))),
         PreviewWay(MapRef(1, 1), HERE, (0.5, 0.5)),
-        TakePart(SPEC, sha256(shown.packed).hexdigest(), len(shown.packed), 0, shown.packed),
+        TakePart(SPEC, sha256(shown.packed).hexdigest(), len(shown.packed), 0, bytes(shown.packed)),
         *(ReadMap(2, content), TakeMap(3, SPEC, shown.packed, GRID, content.files["stops.bin"])),
         *(BeginMap(5, SPEC, GRID), PlaceStop(MapRef(5), "m", SWEEP, Travel(), HERE, 7)),
         PlaceStop(MapRef(5, 1), "m", SWEEP, Travel(Pose2(0.02, 0.0, 0.01), 0.02, 0.01), HERE, 8),
