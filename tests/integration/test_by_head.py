@@ -10,7 +10,13 @@ from robotd.contract.events import MissionPhase, MissionProgress, RangeMeasured,
 from robotd.contract.missions import Look, Measure, Scan
 from robotd.contract.modes import Mode
 from robotd.contract.requests import Arm, RecordStart, RecordStop, Stop
+from robotd.core.pose import Odometry
 from robotd.core.reading import ReadingStatus
+from robotd.hardware.devices.drive import Drive
+from robotd.mission.missions import stop_and_sweep
+from robotd.mission.motion.legs import rotate_to
+from robotd.mission.motion.steering import DrivingSettings
+from robotd.mission.safety.hold import Hold
 from robotd.sim.buildings.world import load_world
 from robotd.sim.robot import SimulatedRobot
 from tests.integration.conftest import Live
@@ -82,3 +88,24 @@ async def test_a_stop_ends_it(live: Live, mission: Look | Scan | Measure) -> Non
                 assert event.phase is MissionPhase.STOPPED
                 break
         assert it.daemon.supervisor.mode is Mode.DISARMED
+
+
+@pytest.mark.parametrize(("inexact", "readings"), [(1, 300), (100, None)])
+async def test_a_base_that_turns_too_far_between_parts_of_a_sweep_turns_again(
+    live: Live, monkeypatch: pytest.MonkeyPatch, inexact: int, readings: int | None
+) -> None:
+    turns: list[float] = []
+
+    async def too_far(drive: Drive, heading_rad: float, settings: DrivingSettings, hold: Hold | None) -> Odometry:
+        turns.append(heading_rad)
+        # More than the head makes up for: it would be asked to pan beyond its limits, and its board would refuse.
+        off_rad = 0.06 if len(turns) <= inexact else 0.0
+        return await rotate_to(drive, heading_rad + off_rad, settings, hold)
+
+    monkeypatch.setattr(stop_and_sweep, "rotate_to", too_far)
+    async with live(SimulatedRobot(load_world("office"), seed=5)) as it:
+        said, end = await it.do(Scan())
+        sweeps = [event.sweep for event in said if isinstance(event, SweepDone)]
+    assert [len(sweep.readings) for sweep in sweeps] == ([] if readings is None else [readings])
+    assert (len(turns), end.phase) == ((2, MissionPhase.DONE) if readings else (5, MissionPhase.FAILED))
+    assert readings or "the base stands 2.9 degrees off" in end.message

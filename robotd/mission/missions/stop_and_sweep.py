@@ -36,6 +36,8 @@ FAILED = frozenset(
 )
 """Readings that the rangefinder owes; a miss, and what it cannot see, are answers."""
 _LIMIT_MARGIN_RAD = 0.03  # the base turns only roughly as far as it should, and the head makes up for it
+_TURNS = 5
+"""So often the base is turned before it is given up: a set-point that comes late lets it turn on meanwhile."""
 
 
 class SweepListener(Protocol):
@@ -235,8 +237,17 @@ class Sweeper:
         return await self.hold.through(lambda: self._turn_to(start.in_odom.heading_rad + part.base_turn_rad))
 
     async def _turn_to(self, heading_rad: float) -> Odometry:
-        await rotate_to(self.robot.drive, heading_rad, self.driving, self.hold)
-        return await settle(self.robot.drive, self.settings.settle_s, self.driving)
+        for _ in range(_TURNS):
+            await rotate_to(self.robot.drive, heading_rad, self.driving, self.hold)
+            here = await settle(self.robot.drive, self.settings.settle_s, self.driving)
+            off_rad = wrap_rad(here.in_odom.heading_rad - heading_rad)
+            # Farther off than the head can make up for, it would be asked to pan beyond its limits.
+            if abs(off_rad) <= _LIMIT_MARGIN_RAD:
+                return here
+        raise MissionError(
+            f"the base stands {math.degrees(off_rad):.1f} degrees off what it was to turn to, after {_TURNS} turns;"
+            f" the head makes up for {math.degrees(_LIMIT_MARGIN_RAD):.1f}"
+        )
 
     async def _read_through_holds(
         self, pan_rad: float, lag_rad: float, start: Odometry, here: Odometry
