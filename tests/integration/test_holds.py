@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -18,7 +19,12 @@ from robotd.contract.requests import Arm, RecordStart, RecordStop, Stop
 from robotd.core.angles import wrap_rad
 from robotd.core.clock import now_ns
 from robotd.core.errors import RobotdError
+from robotd.core.pose import Odometry
+from robotd.hardware.devices.drive import Drive
+from robotd.mission.missions import by_odometry
 from robotd.mission.missions.sweep_settings import SweepSettings
+from robotd.mission.motion import legs
+from robotd.mission.motion.legs import translate_to
 from robotd.mission.motion.steering import DrivingSettings
 from robotd.mission.safety.hold import HOLDS_A_MINUTE, Stall
 from robotd.sim.buildings.world import load_world
@@ -224,6 +230,31 @@ async def test_a_deadman_is_a_hold_if_we_stood_still_and_a_fault_if_not(
         assert status.mode == "mapping"
         assert status.held is not None
         assert (await ended(it, mission_id)).phase is MissionPhase.DONE
+
+
+@pytest.mark.parametrize("mission", [DriveStraight(0.5), DriveTo(1.0, 1.0, Legs.STRAIGHT)])
+async def test_a_deadman_in_the_last_moment_of_a_way_is_a_hold_and_not_a_fault_afterwards(
+    live: Live, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mission: DriveStraight | DriveTo
+) -> None:
+    async def too_late(drive: Drive, *arguments: Any, **more: Any) -> Odometry:
+        here = await translate_to(drive, *arguments, **more)
+        # Told of with the odometry that ends the way, as what came late comes all at once.
+        it.daemon.causes.stalled(Stall(now_ns(), STALL_S, False, "robotd.log"))
+        it.robot.boards["drive"]._latch(Fault.DEADMAN)  # type: ignore[attr-defined]  # as in hardware
+        return here
+
+    async with going(live, tmp_path) as it:
+        start = it.robot.start
+        await it.done(MapStart.of("office", (), start, Legs.STRAIGHT))
+        with monkeypatch.context() as patched:
+            patched.setattr(by_odometry, "translate_to", too_late)
+            patched.setattr(legs, "translate_to", too_late)
+            mission_id = it.daemon.control.start(mission, LEASE_S)
+            assert (await ended(it, mission_id)).phase is MissionPhase.DONE
+        await asyncio.sleep(1.0)
+        status = it.daemon.control.status
+        assert (status.mode, status.held, twist(it)) == (Mode.IDLE, None, (0.0, 0.0))
+        assert all(not device.faults and device.armed for device in status.devices)
 
 
 async def test_a_stall_while_nothing_is_under_way_ends_nothing(live: Live, tmp_path: Path) -> None:

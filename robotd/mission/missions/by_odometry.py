@@ -5,8 +5,9 @@ import math
 from robotd.contract.events import MissionPhase
 from robotd.contract.missions import DriveStraight, Turn
 from robotd.core.pose import Odometry
+from robotd.mission.missions.at_rest import at_rest
 from robotd.mission.missions.context import MissionContext, Reporter
-from robotd.mission.motion.legs import TurnedSoFar, next_odometry, settle, translate_to, turn_by
+from robotd.mission.motion.legs import TurnedSoFar, next_odometry, translate_to, turn_by
 
 
 async def run_straight(context: MissionContext, mission: DriveStraight, report: Reporter) -> str:
@@ -23,7 +24,7 @@ async def run_straight(context: MissionContext, mission: DriveStraight, report: 
     await hold.through(lambda: translate_to(drive, *goal_m, driving, hold, backwards=is_back))
     # Told in the frame of the start: who tries a new base holds it against a ruler laid there, not against
     # odometry's origin.
-    ahead_m, aside_m = start.inverse().transform(*_place_m(await _at_rest(context)))
+    ahead_m, aside_m = start.inverse().transform(*_place_m(await at_rest(context)))
     return f"drove {ahead_m:.3f} m ahead and {aside_m:.3f} m to the left, by odometry"
 
 
@@ -33,14 +34,8 @@ async def run_turning(context: MissionContext, mission: Turn, report: Reporter) 
     report.at(MissionPhase.DRIVING)
     turned = TurnedSoFar()  # once: a hold does not begin the turn again
     await hold.through(lambda: turn_by(drive, mission.angle_rad, turned, driving, hold))
-    turned.note(await _at_rest(context))
+    turned.note(await at_rest(context))
     return f"turned {math.degrees(turned.rad):.2f} deg, by odometry"
-
-
-async def _at_rest(context: MissionContext) -> Odometry:
-    """Wait until the robot stands: what is said of the way counts how it came to rest."""
-    driving, settle_s = context.settings.driving, context.settings.sweep.settle_s
-    return await context.hold.through(lambda: settle(context.robot.drive, settle_s, driving))
 
 
 def _place_m(here: Odometry) -> tuple[float, float]:

@@ -4,8 +4,9 @@ from robotd.contract.events import MissionPhase
 from robotd.contract.missions import DriveTo, Legs
 from robotd.contract.ways import Hindrance, Point
 from robotd.core.errors import MissionError
-from robotd.core.pose import Odometry, Pose2
+from robotd.core.pose import Pose2
 from robotd.head.jobs import Plan
+from robotd.mission.missions.at_rest import at_rest
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.plan_told import PlanTold
 from robotd.mission.motion.legs import drive_leg, next_odometry
@@ -22,17 +23,17 @@ class NoWay(MissionError):
         """The reachable point nearest to it, if there is one."""
 
 
-async def drive_to(context: MissionContext, place: MapInUse, plan: PlanTold, goal_m: Point, legs: Legs) -> Odometry:
-    """Drive to a point in the map frame and return odometry there; after each hold, from where the robot is then.
+async def drive_to(context: MissionContext, place: MapInUse, plan: PlanTold, goal_m: Point, legs: Legs) -> None:
+    """Drive to a point in the map frame, where the robot comes to rest; after each hold, from where it is then.
 
     Raises:
         NoWay: the robot is not localized on the map, or the point cannot be reached.
         DeviceError, LinkTimeout, TransportError: the base failed on the way.
     """
-    return await context.hold.through(lambda: _drive_to(context, place, plan, goal_m, legs))
+    await context.hold.through(lambda: _drive_to(context, place, plan, goal_m, legs))
 
 
-async def _drive_to(context: MissionContext, place: MapInUse, plan: PlanTold, goal_m: Point, legs: Legs) -> Odometry:
+async def _drive_to(context: MissionContext, place: MapInUse, plan: PlanTold, goal_m: Point, legs: Legs) -> None:
     # Not the latest, which may be from before a hold: the next.
     here = await next_odometry(context.robot.drive, context.settings.driving.silence_s)
     tie = context.whereabouts.believed
@@ -46,8 +47,7 @@ async def _drive_to(context: MissionContext, place: MapInUse, plan: PlanTold, go
     odom_from_map = tie.map_from_odom.inverse()
     for waypoint_m in waypoints_m:
         point_m = odom_from_map.transform(*waypoint_m)
-        here = await drive_leg(context.robot.drive, *point_m, context.settings.driving, context.hold)
-    return here
+        await drive_leg(context.robot.drive, *point_m, context.settings.driving, context.hold)
 
 
 async def _planned(context: MissionContext, place: MapInUse, start: Pose2, goal_m: Point) -> tuple[Point, ...]:
@@ -62,7 +62,7 @@ async def run_driving(context: MissionContext, place: MapInUse, mission: DriveTo
     """Carry out a :class:`DriveTo`; return what to tell the client."""
     report.at(MissionPhase.DRIVING)
     plan = PlanTold(report, place.map_id)
-    arrived = await drive_to(context, place, plan, (mission.x_m, mission.y_m), mission.legs)
-    pose = context.whereabouts.pose_of(arrived)
+    await drive_to(context, place, plan, (mission.x_m, mission.y_m), mission.legs)
+    pose = context.whereabouts.pose_of(await at_rest(context))
     assert pose is not None  # drive_to refuses to start without
     return f"arrived at ({pose.x_m:.2f}, {pose.y_m:.2f}) m"

@@ -16,6 +16,7 @@ from robotd.exploring.settings import Pace
 from robotd.exploring.tried import Tried
 from robotd.head.jobs import Choose, Chosen
 from robotd.localization.outcome import Outcome
+from robotd.mission.missions.at_rest import at_rest
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.driving import NoWay
 from robotd.mission.missions.looking_ahead import drive_looking
@@ -160,6 +161,7 @@ class Exploring:
         hindrance = await self._reach(self.errand.began_m)
         if hindrance:
             self.report.at(MissionPhase.DRIVING, message=f"not got back: {hindrance}")
+        await at_rest(self.context)
 
     def end(self, chosen: Chosen) -> str:
         """Tell why it ended and what is left; return that for people."""

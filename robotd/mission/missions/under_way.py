@@ -161,6 +161,8 @@ class MissionUnderWay:
         try:
             report.at(MissionPhase.STARTED)
             message = await row.carry_out(self._host, self._context, mission, report)
+            # Held in its last step: devices are armed again by a mission under way, and by nothing else.
+            await self._context.hold.over()
         except MissionError as error:  # it cannot be done: the robot stands, and stays armed
             self._current.apply(Occasion.FINISH, str(error))
             report.at(MissionPhase.FAILED, message=str(error))
