@@ -127,9 +127,11 @@ def second_look(
     elsewhere, beside = _contrasts(hill, found)
     with_nowhere = _contrast_with_nowhere(hill, found[0], beforehand)
     on_walls = share_on_walls(likelihood, readings, found[0], settings.on_wall_m)
-    least = settings.contrast_min if on_walls >= settings.on_walls_min else settings.contrast_off_walls_min
-    is_here = beside >= settings.contrast_beside_min and with_nowhere >= settings.contrast_nowhere_min
-    stands_out = elsewhere >= least and is_here
+    least, least_beside = settings.contrast_min, settings.contrast_beside_min
+    if on_walls < settings.on_walls_min:
+        # Ground that nobody has mapped resembles the step beside a wrong place as well as a wrong place.
+        least = least_beside = settings.contrast_off_walls_min
+    stands_out = elsewhere >= least and beside >= least_beside and with_nowhere >= settings.contrast_nowhere_min
     weighed = _weigh(found, scores - to_beat, float(aside.max()) - to_beat, settings, stands_out=stands_out)
     return replace(weighed, contrast=elsewhere, ends=ends_at(hill, found[0]))
 

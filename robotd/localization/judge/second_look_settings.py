@@ -42,7 +42,8 @@ class SecondLookSettings:
     """Where fewer of the hits end on walls, the robot may look at ground that nobody has mapped, which resembles some
     wall of any building; then ``contrast_off_walls_min`` counts."""
     contrast_off_walls_min: Annotated[float, Within(0.0, 100.0)] = 3.0
-    """The least contrast where many hits end on no wall: by chance it is reached once in 700 times."""
+    """The least contrast where many hits end on no wall, with places elsewhere and beside: by chance it is reached once
+    in 700 times."""
     on_wall_m: Annotated[float, Within(0.001, 1.0, "m")] = 0.075
     """A hit is on a wall that is no farther than this, or than a cell and a half."""
 

@@ -3,7 +3,6 @@
 import math
 from dataclasses import asdict, dataclass, replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,14 +16,13 @@ from robotd.grid.occupancy import OccupancyGrid
 from robotd.grid.readings import Readings
 from robotd.grid.settings import GridSettings
 from robotd.grid.tables import NO_INFORMATION
+from robotd.localization.judge import second_look as judging
 from robotd.localization.judge.climbing import Hill
 from robotd.localization.judge.ends import ends_at
 from robotd.localization.judge.error_model import ErrorModel
 from robotd.localization.judge.likelihood import Likelihood
 from robotd.localization.judge.second_look import (
     SecondLook,
-    _contrast_with_nowhere,
-    _contrasts,
     second_look,
     share_on_walls,
 )
@@ -218,93 +216,6 @@ def test_impossible_settings_are_refused(name: str) -> None:
         SecondLookSettings(**{name: -1})
 
 
-APART_M = 10.0
-
-
-class Said:
-    """A likelihood that says what it is told to: the logarithms of poses 0, 1, 2... are rows."""
-
-    def __init__(self, *rows: list[float], sharpness: float = 0.0, elsewhere: float = 0.0) -> None:
-        self._rows, self._elsewhere = np.array(rows), elsewhere
-        self.model = ErrorModel(map_sharpness_sigma=sharpness)
-
-    def logs(self, sight: Any, poses: NDArray[np.float64]) -> NDArray[np.float64]:
-        logs: NDArray[np.float64] = self._rows[(poses[:, 0] / APART_M).astype(int)]
-        return logs
-
-    def elsewhere_logs(self, sight: Any) -> NDArray[np.float64]:
-        return np.full(self._rows.shape[1], self._elsewhere)
-
-
-@dataclass
-class OfHits:
-    """The sight of some hits, and then of nothing but misses."""
-
-    is_hit: NDArray[np.bool_]
-
-
-def contrast_with_nowhere(said: Said, beforehand: float) -> float:
-    hill = Hill(said, OfHits(np.ones(16, np.bool_)), np.ones(16))  # type: ignore[arg-type]  # stand-ins
-    return _contrast_with_nowhere(hill, np.zeros(3), beforehand)
-
-
-def contrast_of(*rows: list[float], sharpness: float = 0.0, misses: int = 0) -> float:
-    poses = np.array([[APART_M * number, 0.0, 0.0] for number in range(len(rows))])
-    sight = OfHits(np.arange(len(rows[0])) < len(rows[0]) - misses)
-    elsewhere, beside = _contrasts(Hill(Said(*rows, sharpness=sharpness), sight, np.ones(len(rows[0]))), poses)  # type: ignore[arg-type]  # stand-ins
-    assert beside == math.inf
-    return elsewhere
-
-
-def test_no_single_reading_decides_however_loud_it_is() -> None:
-    assert contrast_of([50.0, 0.0, 0.0], [0.0, 0.0, 0.0]) == pytest.approx(1.0)
-    assert contrast_of([50.0, 0.0, 0.0], [0.0, 0.0, 0.0]) < SecondLookSettings().contrast_min
-
-
-def test_many_readings_that_agree_decide_and_those_that_contradict_each_other_do_not() -> None:
-    nothing = [0.0] * 16
-    assert contrast_of([1.0] * 16, nothing) == pytest.approx(4.0)
-    assert contrast_of([1.0] * 9 + [-1.0] * 7, nothing) == pytest.approx(0.5)
-
-
-def test_the_nearest_rival_counts_and_one_that_is_the_same_in_all_is_no_contrast() -> None:
-    nothing = [0.0] * 4
-    assert contrast_of([1.0] * 4, nothing, [1.0, 1.0, 0.0, 0.0]) == pytest.approx(math.sqrt(2.0))
-    assert contrast_of(nothing, nothing) == 0.0
-
-
-def test_small_differences_in_all_readings_are_no_more_than_luck_of_the_map() -> None:
-    nothing = [0.0] * 100
-    assert contrast_of([0.1] * 100, nothing) == pytest.approx(10.0)
-    assert contrast_of([0.1] * 100, nothing, sharpness=0.1) < 1.0
-    assert contrast_of([0.5] * 100, nothing, sharpness=0.1) > 3.0
-
-
-def test_misses_have_no_such_luck_as_there_is_no_wall_to_be_shown_sharply() -> None:
-    """In a hall most beams meet nothing: they were held against the few that tell two bays apart."""
-    nothing, told = [0.0] * 100, [3.0] * 5 + [0.0] * 95
-    of_hits = contrast_of(told, nothing, sharpness=0.11)
-    assert contrast_of(told, nothing, sharpness=0.11, misses=70) > 1.4 * of_hits
-    assert contrast_of(told, nothing, misses=70) == contrast_of(told, nothing)
-
-
-def test_what_lies_beside_must_stand_out_too_but_no_luck_of_the_map_is_held_against_it() -> None:
-    """It is seen on the same walls, so the map shows both as sharply: a step along a corridor, on belief alone."""
-    said = Said([0.1] * 100, [0.0] * 100, sharpness=0.1)
-    hill = Hill(said, OfHits(np.ones(100, np.bool_)), np.ones(100))  # type: ignore[arg-type]  # stand-ins
-    poses = np.array([[APART_M - 0.1, 2.0, 0.0], [APART_M + 0.4, 2.0, 0.1]])
-    elsewhere, beside = _contrasts(hill, poses)
-    assert elsewhere == math.inf
-    assert beside == pytest.approx(10.0)
-
-
-def test_nowhere_is_a_rival_and_the_stronger_the_more_places_the_map_has() -> None:
-    said = Said([1.0] * 16, sharpness=0.1)
-    assert contrast_with_nowhere(said, 0.0) == pytest.approx(4.0)
-    assert contrast_with_nowhere(said, 12.0) == pytest.approx(1.0)
-    assert contrast_with_nowhere(Said([1.0] * 16, elsewhere=1.0), 12.0) == 0.0
-
-
 def test_a_dozen_readings_are_believed_but_do_not_stand_out_from_nowhere() -> None:
     readings = Readings.of(scan(FURNISHED.boxes, HERE, np.random.default_rng(1), 0.015, 0.02))
     starts, usual = everywhere(mapped(FURNISHED), HERE), SecondLookSettings()
@@ -374,6 +285,25 @@ def test_where_hits_end_on_no_wall_a_rival_must_be_beaten_by_more() -> None:
         for least in (0.0, 100.0)
     }
     assert states == {0.0: PoseState.LOCALIZED, 100.0: PoseState.AMBIGUOUS}
+
+
+@pytest.mark.parametrize(
+    ("on_walls", "elsewhere", "beside", "state"),
+    [
+        (0.95, 2.0, 2.0, PoseState.LOCALIZED),
+        (0.85, 4.0, 4.0, PoseState.LOCALIZED),
+        (0.85, 2.0, 4.0, PoseState.AMBIGUOUS),
+        # Sure of a place 18 m off: a scan of a convention centre, which was not on the map there.
+        (0.62, 4.1, 1.46, PoseState.AMBIGUOUS),
+    ],
+)
+def test_off_the_walls_more_is_asked_of_every_rival_on_the_map(
+    monkeypatch: pytest.MonkeyPatch, on_walls: float, elsewhere: float, beside: float, state: PoseState
+) -> None:
+    monkeypatch.setattr(judging, "_contrasts", lambda hill, poses: (elsewhere, beside))
+    monkeypatch.setattr(judging, "share_on_walls", lambda *_: on_walls)
+    readings = scan(PLAIN.boxes, HERE, np.random.default_rng(3), 0.015, 0.0)
+    assert look(PLAIN, readings, everywhere(mapped(PLAIN), HERE)).state is state
 
 
 def test_how_much_of_a_sweep_the_map_knows_is_told_with_the_place() -> None:
