@@ -101,8 +101,8 @@ truth: .venv/.dev  ## All ways to ask of all logs in ROBOTD_DATA, by robotctl ev
 spread: .venv/.dev  ## A thousand short recordings asked by one worker and by two, ended, killed, resumed: the same answers, how soon (an hour; COUNT=100)
 	@$(BIN)/python -m tests.studies.spread.run $(if $(COUNT),--count $(COUNT)) $(if $(ONLY),--only "$(ONLY)")
 
-senses: .venv/.dev  ## How few readings tell where it is, which of two equal rooms it is, and whether being carried off shows (minutes; PLACES=20)
-	@$(BIN)/python -m tests.studies.senses.run $(if $(PLACES),--places $(PLACES) --twins $(PLACES) --carried $(PLACES)) $(if $(CUTOFF),--cutoff $(CUTOFF))
+senses: .venv/.dev  ## How few readings tell where it is, which of two equal rooms it is, and whether being carried off shows (minutes; PLACES=20; LOG=path/to/a/raw.log: being carried off in that building alone)
+	@$(BIN)/python -m tests.studies.senses.run $(if $(LOG),--log "$(LOG)") $(if $(PLACES),--places $(PLACES) --twins $(PLACES) --carried $(PLACES)) $(if $(CUTOFF),--cutoff $(CUTOFF))
 
 height: .venv/.dev  ## What maps at several tilts gain among tables, sideboards and crates: looks and ways, a table (minutes; PLACES=20)
 	@$(BIN)/python -m tests.studies.height.run $(if $(PLACES),--places $(PLACES))

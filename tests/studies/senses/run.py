@@ -5,11 +5,14 @@ import asyncio
 import sys
 from collections import Counter
 from collections.abc import Iterable
+from pathlib import Path
 from statistics import fmean, median
 
+from robotd.sim.buildings.log_file import read_log
 from robotd.sim.buildings.world import load_world, world_names
+from tests.studies.senses import on_logs
 from tests.studies.senses.ground import Ground
-from tests.studies.senses.trials import Came, carried_off, look, resolve
+from tests.studies.senses.trials import Came, CarriedOff, carried_off, look, resolve
 
 _MAP_SEED = 1
 _TWINS = "symmetric"
@@ -22,7 +25,13 @@ def main() -> None:
     parser.add_argument("--twins", type=int, default=100, help="robots among equal rooms (default: %(default)s)")
     parser.add_argument("--carried", type=int, default=200, help="robots carried off (default: %(default)s)")
     parser.add_argument("--cutoff", type=float, default=6.0, help="how far a reading sees [m] (default: %(default)s)")
+    parser.add_argument("--log", type=Path, help="be carried off in this recorded building, and do nothing else")
     arguments = parser.parse_args()
+    told = _on_log(arguments.log, arguments.carried) if arguments.log else _in_worlds(arguments)
+    sys.exit(told[Came.WRONG] > 0)
+
+
+def _in_worlds(arguments: argparse.Namespace) -> Counter[Came]:
     told = Counter[Came]()
     for world in world_names():
         ground = Ground.of(load_world(world), _MAP_SEED, arguments.cutoff)
@@ -31,7 +40,15 @@ def main() -> None:
             told += _resolved(ground, arguments.twins)
         else:
             told += _carried(world, ground, arguments.carried)
-    sys.exit(told[Came.WRONG] > 0)
+    return told
+
+
+def _on_log(log: Path, robots: int) -> Counter[Came]:
+    ground = on_logs.LoggedGround.of(read_log(log).scans, robots)
+    tried = [on_logs.carried_off(ground, robot) for robot in range(len(ground.asked) // 2)]
+    print(f"{log.name}, nothing known: {_in_words(one.known for one in tried)}", flush=True)
+    carried = _told(log.name, [one.carried for one in tried if one.carried is not None])
+    return carried + Counter(one.known for one in tried)
 
 
 def _looks(world: str, ground: Ground, places: int) -> Counter[Came]:
@@ -53,11 +70,14 @@ def _resolved(ground: Ground, robots: int) -> Counter[Came]:
 
 def _carried(world: str, ground: Ground, robots: int) -> Counter[Came]:
     tried = (asyncio.run(carried_off(ground, seed)) for seed in range(robots))
-    done = [one for one in tried if one is not None]
+    return _told(world, [one for one in tried if one is not None])
+
+
+def _told(where: str, done: list[CarriedOff]) -> Counter[Came]:
     if done:
         noticed = sum(one.noticed for one in done)
         print(
-            f"carried off in {world}: noticed {noticed} of {len(done)}; then {_in_words(one.came for one in done)}",
+            f"carried off in {where}: noticed {noticed} of {len(done)}; then {_in_words(one.came for one in done)}",
             flush=True,
         )
     return Counter(one.came for one in done)

@@ -17,7 +17,7 @@ from tests.studies.senses.ground import Ground
 from tests.studies.senses.looks import adaptive_look
 
 _RIGHT_M = 0.3
-_SAME_M = 0.3
+SAME_M = 0.3
 _IN_VAIN_MAX = 6
 _SPEED_MPS = 0.4
 _CARRIED_M = 2.0
@@ -87,7 +87,7 @@ class _Robot:
         self.carried.moved(self.in_odom)
         self.carried.looks(self.in_odom)
         estimate, _ = await adaptive_look(self.ground, self.truth, self.draw)
-        return self.carried.weighed(estimate, None, self.in_odom, _SAME_M)
+        return self.carried.weighed(estimate, None, self.in_odom, SAME_M)
 
     def drive(self, corners_m: Sequence[tuple[float, float]]) -> None:
         """Go to corners, as they lie to where it stands: each leg 5 % too far or not, and up to 3 degrees aside."""

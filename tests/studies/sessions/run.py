@@ -1,4 +1,4 @@
-"""``make sessions``: a hundred stops, then fifty more with furniture moved; fails if a robot is sure and wrong."""
+"""``make sessions``: a hundred stops, fifty with furniture moved; fails for one sure and wrong, or lost for good."""
 
 import argparse
 import sys
@@ -19,7 +19,7 @@ def main() -> None:
     print(f"{'robot':>5}{heads}{'longest unsure':>16}{'moved':>7}{'listed':>8}{'elsewhere':>11}", flush=True)
     world, stops = load_world("laboratory"), (arguments.first, arguments.later)
     trials = [_told(seed, tried(world, arguments.share, stops, seed)) for seed in range(arguments.seeds)]
-    sys.exit(any(trial.counts[Found.WRONG] for trial in trials))
+    sys.exit(any(trial.counts[Found.WRONG] or trial.is_lost_for_good for trial in trials))
 
 
 def _told(seed: int, trial: Trial) -> Trial:

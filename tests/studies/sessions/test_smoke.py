@@ -44,3 +44,10 @@ def test_how_long_it_did_not_know_is_counted_over_both_days() -> None:
     trial = Trial(first, later, 1, 1, 0)
     assert trial.longest_unsure == 3
     assert trial.counts[Found.LOST] == 2
+
+
+def test_lost_for_good_is_who_does_not_know_at_the_last_stops() -> None:
+    lost = (Found.LOST, Found.UNSURE) * 3
+    assert Trial((), (Found.RIGHT, *lost), 1, 1, 0).is_lost_for_good
+    assert not Trial((), (*lost, Found.RIGHT), 1, 1, 0).is_lost_for_good
+    assert not Trial(lost, lost[:5], 1, 1, 0).is_lost_for_good

@@ -25,6 +25,8 @@ from tests.support.living import Living, living
 _RIGHT_M = 0.3
 _MAPPED_EACH = 5
 """On the other day, one of this number of stops is laid into the map."""
+_GAVE_UP = 6
+"""A robot that does not know where it is at this number of last stops will not find out; as many as `resolve` tries."""
 _NAME = "home"
 
 
@@ -60,6 +62,12 @@ class Trial:
             run = run + 1 if found in {Found.UNSURE, Found.LOST} else 0
             longest = max(longest, run)
         return longest
+
+    @property
+    def is_lost_for_good(self) -> bool:
+        """Whether it did not know where it is in the end, as often as it looked."""
+        last = self.later[-_GAVE_UP:]
+        return len(last) == _GAVE_UP and all(found in {Found.UNSURE, Found.LOST} for found in last)
 
     @property
     def counts(self) -> Counter[Found]:
