@@ -13,12 +13,7 @@ from pathlib import Path
 from robotd.children.inside import die_with_parent
 from robotd.cli.emulated import config_text
 from robotd.client import AsyncClient
-from robotd.client.async_client import AsyncSubscription
 from robotd.contract.device_status import LinkState
-from robotd.contract.events import MissionProgress
-from robotd.contract.missions import Legs, MapStart
-from robotd.contract.topics import Topic
-from robotd.contract.ways import Point
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.core.errors import RobotdError
 from robotd.hardware.link.tap import Direction
@@ -37,8 +32,6 @@ SESSION_NICE = -10
 DAEMON = ("-m", "robotd.app.daemon", "--log-level", "error", "--config")
 STALLING_DAEMON = ("-m", "tests.studies.safety.stalling")
 _PATIENCE_S = 60.0
-_ATTEMPTS = 5
-_LEASE_S = 10.0
 _ROOT = Path(__file__).parents[2]
 
 
@@ -152,43 +145,6 @@ async def armed(client: AsyncClient) -> None:
         return
     await client.clear()
     await client.arm()
-
-
-async def set_in_motion(it: Rig, client: AsyncClient, stop_m: Callable[[], Point], is_fast: Callable[[], bool]) -> None:
-    """Send the robot to a place and return as soon as it is fast.
-
-    A mission that ends before that is begun once more: a busy machine may keep odometry back until the base counts as
-    silent.
-
-    Raises:
-        TimeoutError: it was never fast.
-    """
-    with client.subscribe(Topic.MISSION) as events:
-        for _ in range(_ATTEMPTS):
-            await until_ready(client)  # a base that was silent comes back
-            await armed(client)
-            mission = MapStart.of("motion", (stop_m(),), it.robot.truth, Legs.STRAIGHT)
-            started = await client.start(mission, _LEASE_S)
-            if await _is_fast_before_the_end(events, started.mission_id, is_fast):
-                return
-            await until(lambda: it.robot.at_rest)
-    raise TimeoutError("it never moved as it was told")
-
-
-async def _is_fast_before_the_end(events: AsyncSubscription, mission_id: int, is_fast: Callable[[], bool]) -> bool:
-    end = asyncio.create_task(_end(events, mission_id), name="end of the mission")
-    try:
-        await until(lambda: is_fast() or end.done())
-        return not end.done()
-    finally:
-        end.cancel()
-        await asyncio.gather(end, return_exceptions=True)
-
-
-async def _end(events: AsyncSubscription, mission_id: int) -> None:
-    async for event in events:
-        if isinstance(event, MissionProgress) and event.mission_id == mission_id and event.is_last:
-            return
 
 
 @contextlib.asynccontextmanager

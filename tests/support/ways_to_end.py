@@ -17,7 +17,7 @@ from robotd.contract.events import MissionPhase, MissionProgress
 from robotd.contract.missions import DriveTo, Legs, MapStart
 from robotd.contract.topics import Topic
 from robotd.core.clock import NS_PER_S, now_ns
-from tests.support.real_rig import STALLING_DAEMON, Rig, armed, ms_since, set_in_motion, until
+from tests.support.real_rig import STALLING_DAEMON, Rig, armed, ms_since, until
 
 LEASE_S = 0.1
 CLIENT_LEASE_S = 0.5
@@ -115,7 +115,9 @@ async def daemon_killed(rig: Rig, trials: int) -> AsyncIterator[float]:
     body = rig.robot._body
     for _ in range(trials):
         async with rig.daemon(config="quick.toml") as daemon, AsyncClient(rig.runtime_dir) as client:
-            await set_in_motion(rig, client, lambda: far_end(rig), lambda: body.velocity[0] > _MOVING_MPS)
+            await armed(client)
+            await client.start(MapStart.of("safety", (far_end(rig),), rig.robot.truth, Legs.STRAIGHT), 10.0)
+            await until(lambda: body.velocity[0] > _MOVING_MPS)
             killed_ns = now_ns()
             daemon.kill()
             await until(lambda: Fault.DEADMAN in getattr(rig.robot.boards["drive"], "faults", Fault.NONE))

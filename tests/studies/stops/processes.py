@@ -8,10 +8,11 @@ import tempfile
 from pathlib import Path
 
 from robotd.client import AsyncClient
+from robotd.contract.missions import Legs, MapStart
 from robotd.core.clock import NS_PER_S, now_ns
 from robotd.sim.emulators.catalogue import Dialects
 from tests.studies.stops.causes import SIGNALS
-from tests.support.real_rig import DAEMON, STALLING_DAEMON, Rig, rig, set_in_motion, until
+from tests.support.real_rig import DAEMON, STALLING_DAEMON, Rig, armed, rig, until
 from tests.support.ways_to_end import far_end
 
 STALL = "stall"
@@ -21,8 +22,10 @@ CAUSES = (*(number.name for number in SIGNALS), STALL)
 ACTIVITIES = ("turning", "driving")
 WATCHED_S = 1.7
 _FAST_MPS, _FAST_RADPS = 0.15, 0.2
+_LEASE_S = 10.0
 _LOOK_S = 0.002
 _BEHIND_M = 0.5
+_ATTEMPTS = 5
 
 
 def run_real_trials(dialects: Dialects, activity: str, cause: str, trials: int) -> list[float | None]:
@@ -51,11 +54,22 @@ async def _trial(it: Rig, activity: str, cause: str) -> float | None:
 
 
 async def _in_motion(it: Rig, client: AsyncClient, activity: str) -> None:
+    """Wait until it moves as wanted; a busy machine may have stopped it before, and then it is told once more."""
     body = it.robot._body
-    if activity == "turning":
-        await set_in_motion(it, client, lambda: _behind(it), lambda: abs(body.velocity[1]) > _FAST_RADPS)
-    else:
-        await set_in_motion(it, client, lambda: far_end(it), lambda: body.velocity[0] > _FAST_MPS)
+    for _ in range(_ATTEMPTS):
+        await armed(client)
+        stop_m = _behind(it) if activity == "turning" else far_end(it)
+        await client.start(MapStart.of("stops", (stop_m,), it.robot.truth, Legs.STRAIGHT), _LEASE_S)
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(_LEASE_S):
+                if activity == "turning":
+                    await until(lambda: abs(body.velocity[1]) > _FAST_RADPS)
+                else:
+                    await until(lambda: body.velocity[0] > _FAST_MPS)
+                return
+        await client.stop("once more")
+        await until(lambda: it.robot.at_rest)
+    raise TimeoutError("it never moved as it was told")
 
 
 async def _rest_s(it: Rig) -> float | None:
