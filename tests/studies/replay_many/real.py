@@ -250,10 +250,14 @@ class _Session:
         if end == Ends.STOPPED:
             await self._client.record_stop()
             end = Ends.SIGNALS[0]
+        # Looked up before it ends: whose child one was cannot be asked afterwards.
+        children = [child_of(self._daemon.pid, f"robotd.{name}") for name in ("front", "head")]
         self._daemon.send_signal(signal.Signals[end])
         if end == Ends.KILLED:
-            # Its children die with it, but for one that was frozen as it began: it would hold our pipe for good.
-            os.killpg(self._daemon.pid, signal.SIGKILL)
+            # They die with it, but for one that was frozen as it began: it would hold our pipe for good.
+            for child in filter(None, children):
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(child, signal.SIGKILL)
         async with asyncio.timeout(_END_S):
             await self._daemon.wait()
 
