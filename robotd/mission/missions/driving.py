@@ -24,7 +24,7 @@ class NoWay(MissionError):
 
 
 async def drive_to(context: MissionContext, place: MapInUse, plan: PlanTold, goal_m: Point, legs: Legs) -> None:
-    """Drive to a point in the map frame, where the robot comes to rest; after each hold, from where it is then.
+    """Drive to a point in the map frame, where the robot is told to stop; after each hold, from where it is then.
 
     Raises:
         NoWay: the robot is not localized on the map, or the point cannot be reached.

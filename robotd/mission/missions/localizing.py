@@ -20,9 +20,10 @@ from robotd.core.errors import MissionError
 from robotd.core.pose import IDENTITY, Odometry, Pose2
 from robotd.core.reading import RangeReading, Slant, Tilt
 from robotd.head.jobs import Narrow, Narrowed, Prepare
+from robotd.mission.missions.at_rest import at_rest
 from robotd.mission.missions.context import MissionContext, Reporter
 from robotd.mission.missions.looking_until_sure import LookingUntilSure
-from robotd.mission.missions.stop_and_sweep import faults_text, standing
+from robotd.mission.missions.stop_and_sweep import faults_text
 from robotd.mission.missions.tilts import require_tilts
 from robotd.mission.whereabouts.map_in_use import MapInUse
 from robotd.recording.results import result_of
@@ -46,9 +47,9 @@ async def run_localizing(
     context: MissionContext, place: MapInUse, mission: Localize, report: Reporter, number: int
 ) -> LookedRound:
     """Carry out a :class:`Localize`: sweep, estimate, and tie odometry to the map if the answer is unique."""
-    settings, tilts = context.settings, await _tilts(context, place, mission)
+    tilts = await _tilts(context, place, mission)
     # Before headings are chosen: the prior is of where it stands now, not of where it was still turning.
-    here = await context.hold.through(lambda: standing(context.robot, settings.sweep.settle_s, settings.driving))
+    here = await at_rest(context)
     headings_rad = _headings(context, mission, here)
     # Before the sweep: a head that does not reach all round lets the base turn, and that way belongs to the
     # next look.

@@ -21,13 +21,12 @@ from robotd.head.jobs import MapRef, Narrow, Prepare, TakeMap
 from robotd.logs.scan import Scan
 from robotd.mission.whereabouts.carried import Carried, Sure
 from robotd.slam.survey import SurveySettings
-from tests.studies.senses.trials import SAME_M, Came, CarriedOff, came
+from tests.studies.senses.trials import CARRIED_M, SAME_M, Came, CarriedOff, came
 
 _REACH = Reach(range_max_m=30.0, clear_m=8.0)
 """As ``robotctl eval --slam`` believes recorded ranges."""
 _CELL_M = 0.1
 _STOP = 1
-_CARRIED_M = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +84,7 @@ def carried_off(ground: LoggedGround, robot: int) -> OnLog:
     carried = Carried(MotionError(), Sure(0.05, is_proof=False))
     in_odom = _laser_in_odom(ground.scans[before])
     known = came(_weighed(carried, ground.look(before), in_odom), ground.truth[before])
-    if known is not Came.RIGHT or ground.truth[before].distance_m(ground.truth[after]) < _CARRIED_M:
+    if known is not Came.RIGHT or ground.truth[before].distance_m(ground.truth[after]) < CARRIED_M:
         return OnLog(known, None)
     first = _weighed(carried, ground.look(after), in_odom)
     if came(first, ground.truth[after]) is Came.WRONG:

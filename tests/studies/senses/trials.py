@@ -20,7 +20,7 @@ _RIGHT_M = 0.3
 SAME_M = 0.3
 _IN_VAIN_MAX = 6
 _SPEED_MPS = 0.4
-_CARRIED_M = 2.0
+CARRIED_M = 2.0
 
 
 class Came(enum.StrEnum):
@@ -126,7 +126,7 @@ async def carried_off(ground: Ground, seed: int) -> CarriedOff | None:
     if came(await robot.look(), robot.truth) is not Came.RIGHT:
         return None
     before = robot.truth
-    while robot.truth.distance_m(before) < _CARRIED_M:
+    while robot.truth.distance_m(before) < CARRIED_M:
         robot.truth = ground.somewhere(draw)
     first = await robot.look()
     noticed = first.contradiction is not None or first.state is PoseState.LOST
